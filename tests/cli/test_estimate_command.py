@@ -206,6 +206,8 @@ def test_batch_answers_absurd_sizes_by_a_reason_and_no_warning(tmp_path, rung):
     "text,where",
     [
         ("", "1:1"),
+        (f"{HEADER}\n", "2:1"),
+        (f"{HEADER}\n,,,,,,,,,\n\n", "2:1"),
         (HEADER.replace(",width", "") + "\n", "1:10"),
         (f"{HEADER},width\n{ROW},3\n", "1:11"),
         (f"{HEADER},stiffness\n{ROW},3\n", "1:11"),
@@ -225,10 +227,6 @@ def test_malformed_table_names_line_and_column_and_writes_nothing(tmp_path, caps
     assert status == 2 and rows is None
     assert f"in.csv:{where}:" in capsys.readouterr().err
     assert [p.name for p in tmp_path.iterdir()] == ["in.csv"]
-
-
-def test_batch_without_rows_gives_a_header(tmp_path):
-    assert batch(tmp_path, HEADER + "\n") == (0, [])
 
 
 @pytest.mark.parametrize(

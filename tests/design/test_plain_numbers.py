@@ -30,6 +30,13 @@ def test_a_plain_number_is_read(text, value):
     assert as_number(text) == value
 
 
+@pytest.mark.parametrize("text", ["1e400", "-1e999", "1" + 400 * "0"])
+def test_digits_beyond_all_numbers_are_no_infinity(text):
+    with pytest.raises(ValueError, match="beyond all numbers"):
+        as_number(text)
+    assert as_number("-inf") == -as_number("Infinity") == float("-inf")
+
+
 def test_a_cell_of_a_table_an_option_and_a_pose_are_read_by_it(capsys):
     assert isnan(number("1_0"))
     with pytest.raises(InputError):

@@ -12,9 +12,14 @@ from tactcad.cli.main import main
 from tactcad.design import csv_table
 from tactcad.design.csv_table import Field
 from tactcad.design.messages import InputError
-from tactcad.lab import calibration, noise, readings, regression
+from tactcad.export.inspection import COLUMNS
+from tactcad.lab import batch, calibration, calibration_text, noise, readings, regression
+from tactcad.lab.inspection_sheet import read_sheet
 from tactcad.lab.load_cell import LoadCell
 from tactcad.lab.simulate import Noise, Truth, calibration_rows
+from tactcad.mechanics.section import REQUIRED
+from tactcad.parts.designs import load
+from tactcad.parts.layout import Layout
 
 HEADER = "element,run,displacement,force,signal"
 STEPS = np.arange(1, 7) * 0.025
@@ -154,6 +159,40 @@ def test_one_bad_cell_of_many_is_named_with_line_and_column(tmp_path, bad):
     with pytest.raises(
         InputError, match=rf"^{tmp_path}/r.csv:2347:2: column 'b' is (not a number|out of range)"
     ):
+        csv_table.read(tmp_path / "r.csv", (Field("a", "1"), Field("b", "1")))
+
+
+READERS = {
+    readings.calibration: HEADER,
+    readings.grasps: "load,element,signal",
+    calibration_text.read: "element,stiffness_N_per_mm,signal_per_deflection_V_per_mm",
+    batch.read_table: ",".join(REQUIRED),
+    lambda path: read_sheet(path, Layout(load("macro-array"))): ",".join(COLUMNS),
+}
+
+
+@pytest.mark.parametrize("below", ["", "\n\n \n", "\n,,\n", '\n""\n'])
+def test_a_header_without_rows_is_refused_by_all_who_read_a_table(tmp_path, below):
+    for read, header in READERS.items():
+        (tmp_path / "h.csv").write_text(header + below.replace(",,", "," * header.count(",")))
+        with pytest.raises(InputError, match="h.csv:2:1: a header and no rows; legal: one row at least$"):
+            read(str(tmp_path / "h.csv"))
+
+
+def test_an_optional_column_is_not_ignored_because_of_its_spelling(tmp_path):
+    """Two samples would be taken for one. A column beside the one that is meant is any other's."""
+    rows = [f",{s},{s}.{n},{e},{n}\n" for s in (1, 2) for n in (1, 2) for e in (1, 2)]
+    (tmp_path / "r.csv").write_text(",Sample,load,element,signal\n" + "".join(rows))
+    with pytest.raises(InputError, match="r.csv:1:2: column is written otherwise; .*; legal: sample$"):
+        readings.grasps(tmp_path / "r.csv")
+    (tmp_path / "r.csv").write_text("Sample,sample,load,element,signal\n" + "".join(rows))
+    assert [g.sample for g in readings.grasps(tmp_path / "r.csv")] == [1, 2]
+
+
+@pytest.mark.parametrize("value", ["#N/A", "#DIV/0!", "#VALUE!", "#NAME?"])
+def test_a_spreadsheet_s_error_value_is_no_comment(value, tmp_path):
+    (tmp_path / "r.csv").write_text(f"a,b\n# a comment\n#N,B.\n1,2\n{value},3\n")
+    with pytest.raises(InputError, match="r.csv:5:1: column 'a' is not a number"):
         csv_table.read(tmp_path / "r.csv", (Field("a", "1"), Field("b", "1")))
 
 

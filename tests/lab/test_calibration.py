@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.stats import binom, norm
@@ -12,6 +14,7 @@ from tactcad.lab import calibration, calibration_text, contact, noise, readings,
 from tactcad.lab.load_cell import LoadCell
 from tactcad.lab.readings import CalibrationReadings
 from tactcad.lab.simulate import Noise, Truth
+from tactcad.lab.units import against_design
 
 CELL = 57.04
 EXACT = LoadCell(CELL)
@@ -299,6 +302,18 @@ def test_an_element_as_stiff_as_the_cell_is_bounded_from_below_only():
     assert (
         np.isinf(row.stiffness.high) and row.stiffness.low > CELL and "from below only" in " ".join(row.notes)
     )
+
+
+@pytest.mark.parametrize("stiffer, gain", [(1.0, 1.0), (2.2, 0.05), (0.45, 20.0)])
+def test_elements_as_made_and_another_amplifier_are_no_other_unit_but_micrometres_are(stiffer, gain):
+    """Of better-array, designed for 79.5 and 5.5 N/mm, 6.9 and 2.8 V/mm."""
+    K = np.array([79.5, 5.5, 79.5, 5.5, 79.5, 79.5, 5.5, 79.5, 5.5, 79.5])
+    truth = Truth(np.arange(1, 11), K * stiffer, np.where(K > 10, 6.9, 2.8) * stiffer * gain, 0 * K)
+    data = simulated(Noise(signal=5e-4 * gain), truth=truth)
+    assert against_design(data, calibration.calibrate(data, EXACT), EXACT, "better-array") == []
+    data = replace(data, displacement=data.displacement * 1e3)
+    (warning,) = against_design(data, calibration.calibrate(data, EXACT), EXACT, "better-array")
+    assert warning.endswith("(displacement in um?)")
 
 
 @pytest.mark.parametrize("cell", [0.0, -3.0, np.nan])

@@ -237,6 +237,21 @@ def test_forces_of_the_wrong_sign_or_size_are_noted_and_change_no_ratio():
     assert f"(no. 1: {50 * np.ptp(LOAD) * share[0] / share.sum():.3g} N)" in note
 
 
+def test_presses_of_any_array_are_believed_and_wrong_units_are_not():
+    """60 arrays from 0.03 to 150 N/mm, pressed on anything, any two or more of their elements read."""
+    rng = np.random.default_rng(3)
+    for n in rng.integers(2, 30, 60):
+        K = 10 ** (rng.uniform(-0.7, 0.7, n) + rng.uniform(-0.8, 1.5))
+        truth = simulate.Truth(np.arange(1, n + 1), K, 10 ** rng.uniform(-3, 1, n), np.zeros(n))
+        load, x = np.arange(1, 9) * 0.01 * K.sum(), K.mean() * 10 ** rng.uniform(-2, 4)
+        read = rng.permutation(n)[: int(rng.integers(2, n + 1))]
+        right = grasped(x, 1e-6, truth=truth, load=load)
+        right = replace(right, element=right.element[read], signal=right.signal[read])
+        for factor in (1.0, 1e3, 1e-3, 102.0):  # on the load: mN or g for N, N for mN
+            found = grasp.evaluate(replace(right, load=load * factor), exact(truth), elements=n)
+            assert len(found.warnings) == (factor != 1), (n, read, x, factor, found.warnings)
+
+
 def test_readings_before_contact_are_left_out():
     load = np.concatenate([[0.0], LOAD])
     reading = grasped(3.85, 1e-9, load=load, heights=np.array([0.02, 0.0, 0.0, 0.0]))

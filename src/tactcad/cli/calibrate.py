@@ -37,7 +37,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--design",
         metavar="DESIGN",
         help="take the load cell and its limits from the design's [calibration] instead "
-        "(load_cell_stiffness, load_cell_accuracy)",
+        "(load_cell_stiffness, load_cell_accuracy); warns of readings far from the design's estimates",
     )
     parser.add_argument(
         "--run-scatter",
@@ -57,6 +57,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     from tactcad.design.files import refuse_overwriting, write_whole
     from tactcad.lab import calibration, calibration_text, readings
+    from tactcad.lab.units import against_design
 
     from .progress import slow_work
 
@@ -65,21 +66,23 @@ def run(args: argparse.Namespace) -> int:
     load_cell = _load_cell(args.load_cell, args.design)
     with slow_work(sys.stderr) as tell:
         tell(0, 1, f"reading {args.file}")
+        table = readings.calibration(args.file)
         rows = calibration.calibrate(
-            readings.calibration(args.file),
+            table,
             load_cell,
             level=args.level,
             drop_outliers=args.drop_outliers,
             run_scatter=args.run_scatter,
             tell=tell,
         )
+    warnings = against_design(table, rows, load_cell, args.design) if args.design else []
     if args.out:
         write_whole(args.out, calibration_text.to_csv(rows, load_cell).encode())
-    sys.stdout.write(
-        calibration_text.to_json(rows, load_cell, args.level)
-        if args.json
-        else calibration_text.to_text(rows, load_cell, args.level)
-    )
+    if args.json:
+        sys.stdout.write(calibration_text.to_json(rows, load_cell, args.level, warnings))
+    else:
+        above = "".join(f"warning: {warning}\n" for warning in warnings)
+        sys.stdout.write(above + calibration_text.to_text(rows, load_cell, args.level))
     return 0
 
 

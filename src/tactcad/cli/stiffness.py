@@ -86,6 +86,7 @@ def run(args: argparse.Namespace) -> int:
                     level=args.level,
                     coupling=pads.coupling(source, g, args.coupling),
                     overload_force=design.rating.overload_force,
+                    elements=sum(map(len, design.array.row_arms)),
                 )
             )
     sys.stdout.write((grasp_text.to_json if args.json else grasp_text.to_text)(results, args.level, unit))

@@ -1,9 +1,9 @@
 """Tables read from CSV: every refusal names file, line and column.
 
-A line that starts with # is a comment. The first other line is the header; columns may stand in any order and
-unknown ones are ignored. Changes that spreadsheets make to a CSV file are undone where they are unambiguous:
-a byte order mark, a first line "sep=;", semicolons or tabs between the columns, empty rows, empty cells at
-the end, and decimal commas.
+A line that starts with # is a comment. The first other line is the header, with one row at least below it;
+columns may stand in any order and unknown ones are ignored. Changes that spreadsheets make to a CSV file are
+undone where they are unambiguous: a byte order mark, a first line "sep=;", semicolons or tabs between the
+columns, empty rows, empty cells at the end, and decimal commas.
 """
 
 from __future__ import annotations
@@ -24,6 +24,7 @@ from tactcad.design.messages import InputError
 from tactcad.design.plain_numbers import as_number
 
 LARGEST_FILE = 100_000_000  # bytes; a million lines of readings are 35 MB
+COMMENT = re.compile(r"\s*#(?!N/A|DIV/0!|VALUE!|REF!|NAME\?|NUM!|NULL!)")  # no spreadsheet's error value
 # a comma before three digits may divide thousands, unless a nought stands before it
 MAY_BE_THOUSANDS = re.compile(r"[+-]?[1-9][0-9]{0,2}(,[0-9]{3})+")
 
@@ -75,10 +76,14 @@ class Table:
         header's width.
 
         Line ends within quotes belong to their row; empty rows are left out. Raises InputError where it is
-        not CSV, or a row is of another length.
+        not CSV, a row is of another length, or there is none.
         """
         rows = _split(self.path, self.lines, self.numbers, self.delimiter)
-        return [(n, _fitted(self, n, row)) for n, row in rows if any(row)]
+        found = [(n, _fitted(self, n, row)) for n, row in rows if any(row)]
+        if not found:
+            where = f"{self.path}:{self.header_line + 1}:1"
+            raise InputError(where, "a header and no rows", legal="one row at least")
+        return found
 
     def column(self, name: str) -> list[str]:
         place = self.header.index(name)
@@ -153,9 +158,7 @@ def read(path: str | Path, fields: tuple[Field, ...], optional: tuple[Field, ...
     return numeric(read_table(path, "readings (CSV)"), fields, optional)
 
 
-def numeric(
-    table: Table, fields: tuple[Field, ...], optional: tuple[Field, ...] = (), least: int = 1
-) -> Rows:
+def numeric(table: Table, fields: tuple[Field, ...], optional: tuple[Field, ...] = ()) -> Rows:
     """Numeric columns of a table.
 
     Parameters
@@ -166,8 +169,6 @@ def numeric(
         Columns that have to be there.
     optional
         Columns that are read where they are there.
-    least
-        Rows that have to be there.
 
     Returns
     -------
@@ -177,16 +178,14 @@ def numeric(
     Raises
     ------
     InputError
-        With line and column: a column missing, too few rows, text for a number, a number outside its legal
-        range.
+        With line and column: a column missing or written otherwise, no row, text for a number, a number
+        outside its legal range.
     """
-    require_columns(table, [f.name for f in fields])
+    require_columns(table, [f.name for f in fields], [f.name for f in optional])
     chosen = fields + tuple(f for f in optional if f.name in table.header)
     rows = _at_once(table, chosen)
     if rows is not None:
         return rows
-    if len(table.records) < least:
-        raise InputError(f"{table.path}:{table.header_line + 1}:1", "no rows below the header")
     lines = np.array([n for n, _ in table.records])
     texts = {f.name: table.column(f.name) for f in chosen}
     if table.delimiter != "," and decimal_commas(t for column in texts.values() for t in column):
@@ -237,7 +236,7 @@ def read_table(path: str | Path, kind: str, most_bytes: int = LARGEST_FILE, comm
     lines = list(io.StringIO(body, newline=""))
     numbers: Sequence[int] = range(first, first + len(lines))
     if comments and "#" in body:
-        kept = [i for i, line in enumerate(lines) if not line.lstrip().startswith("#")]
+        kept = [i for i, line in enumerate(lines) if not COMMENT.match(line)]
         lines, numbers = [lines[i] for i in kept], [numbers[i] for i in kept]
     start = next((i for i, line in enumerate(lines) if line.strip(",;\t \r\n")), None)
     if start is None:
@@ -257,8 +256,15 @@ def read_table(path: str | Path, kind: str, most_bytes: int = LARGEST_FILE, comm
     return Table(shown, delimiter, line, header, lines[end:], numbers[end:])
 
 
-def require_columns(table: Table, names: Sequence[str]) -> None:
-    """Raise InputError at the first of the columns that the table lacks."""
+def require_columns(table: Table, names: Sequence[str], optional: Sequence[str] = ()) -> None:
+    """Raise InputError at the first of the columns that the table lacks, or that it has, as an optional one,
+    with other capitals or signs: it would be ignored."""
+    plain = lambda name: re.sub("[^a-z0-9]+", "_", name.lower()).strip("_")  # noqa: E731
+    lacking = {plain(name): name for name in (*names, *optional) if name not in table.header}
+    for name in table.header:
+        if meant := lacking.get(plain(name)):
+            where = table.where(table.header_line, name)
+            raise InputError(where, "column is written otherwise", value=name, legal=meant)
     for name in names:
         if name not in table.header:
             alone = "; commas, semicolons or tabs between" if len(table.header) == 1 < len(names) else ""

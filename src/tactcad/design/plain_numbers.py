@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from math import isinf
 
 NINE_DIGITS = (
     1e-8  # relative difference below which two numbers agree to nine digits, however the last was rounded
@@ -19,7 +20,9 @@ def as_number(text: str) -> float:
     plain = text.strip(" \t")
     if not _NUMBER.fullmatch(plain):
         raise ValueError(f"not a number: {text!r}")
-    return float(plain)
+    if isinf(value := float(plain)) and "n" not in plain.lower():  # 1e400: nobody asked for infinity
+        raise ValueError(f"beyond all numbers: {text!r}")
+    return value
 
 
 def as_whole(text: str) -> int:

@@ -128,20 +128,16 @@ def read_table(path: Path) -> tuple[list[str], list[list[str]], HingeSection]:
     Raises InputError where the table is malformed.
     """
     table = csv_table.read_table(path, "a table of designs (CSV)", MOST_BYTES, comments=False)
-    for name in table.header:
+    for name in [name for name in table.header if name in ADDED]:
         where = table.where(table.header_line, name)
-        if name in ADDED:
-            raise InputError(where, "column is one that this command adds", value=name)
-        plain = name.lower().replace(" ", "_")
-        if name not in KNOWN and plain in KNOWN:
-            raise InputError(where, "column is written otherwise", value=name, legal=plain)
-    require_columns(table, REQUIRED)
+        raise InputError(where, "column is one that this command adds", value=name)
+    require_columns(table, REQUIRED, KNOWN)
     return table.header, [row for _, row in table.records], _section(table)
 
 
 def _section(table: Table) -> HingeSection:
     names = [name for name in (*REQUIRED, *OPTIONAL) if name in table.header]
-    rows = numeric(table, tuple(Field(name, "") for name in names), least=0)
+    rows = numeric(table, tuple(Field(name, "") for name in names))
     numbers = {name: np.full(len(rows), default) for name, default in OPTIONAL.items()} | rows.columns
     sides = [DEFAULT_SIDES] * len(rows)
     if "sides" in table.header:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from math import inf, isfinite
 
 import numpy as np
@@ -12,7 +13,7 @@ from tactcad.design.csv_table import read as read_table
 from tactcad.design.files import read_json
 from tactcad.design.messages import CheckFailure, InputError
 from tactcad.lab.calibration import ElementCalibration
-from tactcad.lab.load_cell import LoadCell
+from tactcad.lab.load_cell import RIGID, LoadCell
 from tactcad.lab.regression import KNOWN
 from tactcad.lab.sensitivity import Sensitivity
 from tactcad.lab.series_spring import Estimate
@@ -27,7 +28,6 @@ SENSITIVITY_SE = Field("signal_per_deflection_se", "V/mm", 0, 1e6)
 CORRELATION = Field("correlation", "1", -1, 1)
 DOF = Field("dof", "1", 1, 1e9)
 LEAST_SENSITIVITY = 1e-6  # V/mm: a microvolt at a millimetre
-RIGID = 1e9  # N/mm: what a file gives for a rigid load cell
 LOAD_CELL = Field("load_cell_N_per_mm", "N/mm", 1e-6, RIGID)
 LOAD_CELL_HALF_WIDTH = Field("load_cell_half_width", "N/mm", 0, 1e9)
 
@@ -95,7 +95,9 @@ def _range(e: Estimate, digits: int = 3) -> str:
     return f"{e.low:.{digits}f} to {e.high:.{digits}f}"
 
 
-def to_json(rows: list[ElementCalibration], load_cell: LoadCell, level: float) -> str:
+def to_json(
+    rows: list[ElementCalibration], load_cell: LoadCell, level: float, warnings: Sequence[str] = ()
+) -> str:
     """All fields of every element as JSON, infinities as text; `level` is that of the intervals."""
     data = {
         "schema": SCHEMA,
@@ -103,6 +105,7 @@ def to_json(rows: list[ElementCalibration], load_cell: LoadCell, level: float) -
         "load_cell_half_width_N_per_mm": load_cell.half_width,
         "level": level,
         "units": "mm, N, V",
+        "warnings": warnings,
         "elements": rows,
     }
     return json.dumps(plain(data), indent=1, allow_nan=False) + "\n"

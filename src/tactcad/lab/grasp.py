@@ -26,6 +26,7 @@ from tactcad.lab.combine import Interval, Slopes, combine, hull, scatter
 from tactcad.lab.readings import GraspReadings
 from tactcad.lab.regression import require_level, t_quantile
 from tactcad.lab.sensitivity import Sensitivity
+from tactcad.lab.units import LOAD, unlikely
 
 STRAY = 1e-4  # probability, over all elements, below which an element is reported not to follow the others
 SURELY = 3.0  # standard errors below zero from which on an element's force is said to fall; chosen
@@ -64,6 +65,7 @@ class Grasp:
     loads: int  # number used
     dropped_loads: int
     notes: tuple[str, ...]
+    warnings: tuple[str, ...]  # of columns that may be in another unit
 
 
 def evaluate(
@@ -74,6 +76,7 @@ def evaluate(
     level: float = 0.95,
     coupling: np.ndarray | None = None,
     overload_force: float = inf,
+    elements: int = 0,
 ) -> Grasp:
     """K_obj of one sample.
 
@@ -93,6 +96,8 @@ def evaluate(
         are taken to press on separate springs.
     overload_force : float, optional
         N on one element, the most that its stop takes: what passes it is noted.
+    elements : int, optional
+        Number in the whole array, which bears the load; by default those read.
 
     Returns
     -------
@@ -112,12 +117,6 @@ def evaluate(
             "too little to tell a slope from noise",
             value=f"{len(readings.element)} elements at {int(touching.sum())} loads above zero",
             legal="two elements and three loads at least",
-        )
-    for stranger in np.setdiff1d(readings.element, calibration.element)[:1]:
-        raise InputError(
-            f"{readings.path}: sample {readings.sample}",
-            f"element {stranger} of the grasp is not in {calibration.path}",
-            legal=str(calibration.element.tolist()),
         )
     signal = readings.signal[:, touching]
     slopes, noise = common_slopes(readings.element, signal, calibration)
@@ -152,7 +151,12 @@ def evaluate(
             "enter"
         )
     notes += _strays(readings.element, signal)
-    notes += _wrong_forces(readings.load[touching], signal, calibration, slopes, noise, overload_force)
+    load = readings.load[touching]
+    wrong, rise = _wrong_forces(load, signal, calibration, slopes, noise, overload_force)
+    notes += wrong
+    borne = float(np.ptp(load)) * min(len(signal) / max(elements, 1), 1.0)
+    sums, (load_name, signal_name) = [(abs(rise), borne)] if borne else [], readings.columns
+    what = f"sample {readings.sample}: by the calibration the forces rise by"
     if widened > 1:
         notes.append(
             f"the elements disagree beyond their noise (p {p:.1g}): combined interval widened "
@@ -171,6 +175,7 @@ def evaluate(
         int(touching.sum()),
         dropped,
         tuple(notes),
+        tuple(unlikely(what, {load_name: -1, signal_name: 1}, sums, "N", LOAD)),
     )
 
 
@@ -276,14 +281,14 @@ def _strays(element: np.ndarray, signal: np.ndarray) -> list[str]:
 
 def _wrong_forces(
     load: np.ndarray, signal: np.ndarray, calibration: Sensitivity, slopes: Slopes, noise: float, most: float
-) -> list[str]:
+) -> tuple[list[str], float]:
     """A note where elements' forces fall as the load grows, and one where they pass `most` (N): by how much
-    they rise from the least load to the largest, K/K_v times the signal's slope over the load. K_obj goes by
-    ratios and shows neither.
+    they rise from the least load to the largest, K/K_v times the signal's slope over the load; and that of
+    all elements (N). K_obj goes by ratios and shows neither.
     """
     away, span = load - load.mean(), float(np.ptp(load))
     if not span:
-        return []
+        return [], 0.0
     rows = [_row(calibration, int(n)) for n in slopes.element]
     per_signal = calibration.stiffness[rows] / calibration.signal_per_deflection[rows] * span / (away @ away)
     rise, error = per_signal * (signal @ away), np.abs(per_signal) * noise * (away @ away) ** 0.5
@@ -299,7 +304,7 @@ def _wrong_forces(
                 f"with {span:.4g} N more load the force on element {numbers} {what} "
                 f"(no. {slopes.element[worst]}: {rise[worst]:.3g} N)"
             )
-    return notes
+    return notes, float(rise.sum())
 
 
 def _pair(slopes: Slopes, limits: list[Slopes], m: int, r: int, level: float) -> Pair:
@@ -335,7 +340,7 @@ def _row(calibration: Sensitivity, number: int) -> int:
     if not len(rows):
         raise InputError(
             calibration.path,
-            f"element {number} of the grasp is not there",
+            f"element {number} of the grasp is not in it",
             legal=str(calibration.element.tolist()),
         )
     return int(rows[0])

@@ -20,6 +20,7 @@ def to_text(samples: list[Grasp], level: float, per_modulus: float | None = None
     for g in samples:
         c = g.combined
         lines += [
+            *(f"warning: {warning}" for warning in g.warnings),
             f"sample {g.sample}: K_obj = {_number(c.estimate)} N/mm, {100 * level:.10g}% interval "
             f"{_interval(c)} ({c.verdict})",
             "",

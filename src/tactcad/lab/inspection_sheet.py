@@ -95,7 +95,7 @@ def read_sheet(path: str | Path, layout: Layout) -> list[Reading]:
     for designator, name in known:
         if (designator, name) not in readings:
             raise InputError(
-                f"{table.path}:{rows[-1].line + 1 if rows else table.header_line + 1}:1",
+                f"{table.path}:{rows[-1].line + 1}:1",
                 f"the row {name!r} of element {designator} is missing",
                 legal="every row of the sheet, in any order; leave cells blank where nothing was measured",
             )

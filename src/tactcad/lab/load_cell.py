@@ -6,10 +6,12 @@ from dataclasses import dataclass
 from math import inf, isinf
 
 from tactcad.design.messages import InputError
+from tactcad.design.plain_numbers import as_number
 
 # Relative half-width assumed of a load cell's stiffness that is given without limits. Chosen: what one
 # measurement with weights and a micrometer reaches.
 CELL_ACCURACY = 0.02
+RIGID = 1e9  # N/mm: what a calibration's file gives for a rigid load cell
 
 
 @dataclass(frozen=True)
@@ -19,17 +21,16 @@ class LoadCell:
     Raises
     ------
     InputError
-        A stiffness that is not positive, limits that reach zero.
+        A stiffness not positive, or finite and above RIGID; limits that reach zero, or of a rigid one.
     """
 
     stiffness: float
     half_width: float = 0.0
 
     def __post_init__(self) -> None:
-        if not self.stiffness > 0:
-            raise InputError(
-                "load cell", "stiffness must be positive", value=self.stiffness, legal="above 0 N/mm, or inf"
-            )
+        if not 0 < self.stiffness <= RIGID and (self.stiffness, self.half_width) != (inf, 0):
+            legal = f"above 0 N/mm up to {RIGID:g} N/mm, or inf without limits"
+            raise InputError("load cell", "not a stiffness", value=self.stiffness, legal=legal)
         if not 0 <= self.half_width < self.stiffness:
             legal = f"from 0 to below {self.stiffness:g} N/mm"
             raise InputError(
@@ -45,16 +46,16 @@ class LoadCell:
         InputError
             The text is none of these.
         """
-        value, _, limits = text.replace("\N{PLUS-MINUS SIGN}", "+-").partition("+-")
+        value, given, limits = text.strip().replace("\N{PLUS-MINUS SIGN}", "+-").partition("+-")
         try:
-            stiffness = float(value)
-            half = float(limits.removesuffix("%")) if limits else 100 * CELL_ACCURACY
+            stiffness = as_number(value)
+            half = as_number(limits.removesuffix("%")) if given else 100 * CELL_ACCURACY
         except ValueError:
             legal = "a stiffness in N/mm with its limits, as in 57.04+-1 or 57.04+-2%, or inf"
             raise InputError("load cell", "not a stiffness", value=text, legal=legal) from None
-        if isinf(stiffness):
+        if isinf(stiffness) and not given:
             return cls(stiffness)
-        return cls(stiffness, half if limits and not limits.endswith("%") else half * stiffness / 100)
+        return cls(stiffness, half if given and not limits.endswith("%") else half * stiffness / 100)
 
     @property
     def ends(self) -> tuple[float, float]:

@@ -39,6 +39,7 @@ class CalibrationReadings:
     signal: np.ndarray  # V
     line: np.ndarray  # in the file
     path: str = "readings"
+    columns: tuple[str, ...] = ("displacement", "force", "signal")  # their names in the file
 
 
 @dataclass(frozen=True)
@@ -51,6 +52,7 @@ class GraspReadings:
     run: np.ndarray  # [state]
     signal: np.ndarray  # V, [element, state]
     path: str = "readings"
+    columns: tuple[str, ...] = ("load", "signal")  # their names in the file
 
 
 def calibration(path: str | Path) -> CalibrationReadings:
@@ -87,6 +89,7 @@ def calibration(path: str | Path) -> CalibrationReadings:
         signal,
         rows.lines,
         rows.path,
+        tuple(rows.columns)[2:],  # behind element and run
     )
     for number, own in groups(out.element):
         runs, at = len(np.unique(out.run[own])), np.unique(steps(out.displacement[own]))
@@ -174,7 +177,8 @@ def _grasp(
             f"element {elements[e]} has no signal at load {states['load'][s]:g} N",
             legal="every element at every load",
         )
-    return GraspReadings(sample, elements, states["load"], states["run"], grid, rows.path)
+    columns = tuple(rows.columns)[1:3]  # behind the element
+    return GraspReadings(sample, elements, states["load"], states["run"], grid, rows.path, columns)
 
 
 def _numbered(keys: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -1,0 +1,67 @@
+"""Columns that may be in another unit than their name says. Warned of, not refused: the data may be right."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from tactcad.design.messages import CheckFailure
+from tactcad.lab.calibration import ElementCalibration
+from tactcad.lab.load_cell import LoadCell
+from tactcad.lab.readings import CalibrationReadings
+
+FORCES = {"N": 1.0, "mN": 1e-3, "g": 9.80665e-3, "kg": 9.80665}  # N; of g and kg the weight
+LENGTHS, VOLTAGES = {"mm": 1.0, "um": 1e-3, "m": 1e3, "inch": 25.4}, {"V": 1.0, "mV": 1e-3, "uV": 1e-6}
+UNITS = {"displacement": LENGTHS, "force": FORCES, "load": FORCES, "signal": VOLTAGES}
+# Factors from what is expected; chosen. A hinge 20 % too thick is 1.7 times as stiff; the amplifier in use
+# may have another gain; a few of the elements, or all on their stops, bear a part of the load.
+STIFFNESS, SIGNAL, LOAD = 5.0, 30.0, 30.0
+
+
+def unlikely(
+    what: str, powers: Mapping[str, int], pairs: Sequence[tuple[float, float]], unit: str, factor: float
+) -> list[str]:
+    """A warning where a product of columns, each with its power, is by more than the factor from what is
+    expected, with the units that explain it; of the `pairs` of found and expected the middle one tells."""
+    if not pairs:
+        return []
+    found, expected = sorted(pairs, key=lambda pair: pair[0] / pair[1])[len(pairs) // 2]
+    ratio = found / expected
+    if 1 / factor < ratio < factor:
+        return []
+    guesses = []
+    for column, power in powers.items():
+        quantity, _, given = column.partition("_")
+        own = UNITS[quantity].get(given, 1.0)
+        left = {name: ratio * (size / own) ** power for name, size in UNITS[quantity].items()}
+        guesses += [f"{column} in {name}" for name, rest in left.items() if 1 / 3 < rest < 3]  # kg is 10 N
+    hint = f" ({' or '.join(guesses)}?)" if guesses else ""
+    said = f"{what} {found:.3g} {unit}, expected about {expected:.3g} {unit}{hint}"
+    return [f"columns {' and '.join(powers)}: {said}"]
+
+
+def against_design(
+    readings: CalibrationReadings, rows: Sequence[ElementCalibration], cell: LoadCell, source: str
+) -> list[str]:
+    """Warnings where stiffness or signal of a calibration is far from what its design predicts."""
+    from tactcad.lab.array_estimate import estimate  # a calibration without a design needs no part
+    from tactcad.mechanics.ladder import DEFAULT_RUNG
+    from tactcad.mechanics.readout import volts_per_strain
+    from tactcad.parts.designs import load
+    from tactcad.parts.hinge_section import design_readout
+    from tactcad.parts.layout import Layout
+
+    design, force_below_yield = load(source), 1e-6  # N: no strain is estimated above yield
+    try:
+        estimates = {e.number: e for e in estimate(Layout(design), DEFAULT_RUNG, force_below_yield)}
+    except CheckFailure:  # beyond the estimator's range
+        return []
+    own = [(r, estimates[r.element]) for r in rows if r.element in estimates]
+    x, force, signal = readings.columns
+    volts = float(volts_per_strain(design.gauge.factor, design_readout(design)))
+    soft = 1 / cell.stiffness  # the load cell's compliance in series: elements stiffer than it show little
+    k = [(1 / (1 / r.stiffness.value + soft), 1 / (1 / e.stiffness + soft)) for r, e in own]
+    v = [(abs(r.signal_per_force.value), volts * e.gauge_strain / e.force) for r, e in own if e.gauge_strain]
+    return [
+        *unlikely("stiffness with the load cell", {force: 1, x: -1}, k, "N/mm", STIFFNESS),
+        *unlikely("sensitivity", {signal: 1, force: -1}, v, "V/N", SIGNAL),
+    ]
