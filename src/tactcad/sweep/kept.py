@@ -69,8 +69,7 @@ class Kept:
             raise CheckFailure(f"{self.folder}: a result cannot be kept: {why}")
 
     def tidy(self, alone: bool = False) -> None:
-        """Remove from the folder's own store what killed workers left half written; where this process is
-        `alone` with its own workers, which are stopped, what these were writing, too."""
+        """Remove what killed workers left half written; `alone`, what our own stopped ones were writing."""
         if isinstance(self._store, Cache):
             self._store.trim(sys.maxsize)
         for left in (self.folder / STORE).glob(f"??/{UNFINISHED}*") if alone else ():
@@ -118,10 +117,8 @@ def claimed(study: Study, out: str | Path) -> Path:
 
 
 def store_apart(address: str, folder: Path) -> str | None:
-    """The address of a store, a path from the root where it is one; None where it is the folder's own store.
-
-    Raises InputError where it is another place in the folder, another study's folder or store, or none.
-    """
+    """The address of a store, from the root where it is a path; None where it is the folder's own. Raises
+    InputError where it is another place in the folder, another study's folder or store, or no address."""
     files, root = files_at(address)
     if "file" not in files.protocol:
         return address

@@ -6,6 +6,7 @@ from __future__ import annotations
 import logging
 import multiprocessing
 import os
+import signal
 import threading
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -191,12 +192,14 @@ def _loaded_ahead(modules: list[str], scratch: Path) -> Iterator[None]:
     config: dict[str, object] = vars(multiprocessing.current_process())["_config"]
     folder = os.open(scratch, os.O_RDONLY)  # by its number, as a socket's path has at most 107 bytes
     config["tempdir"] = f"/proc/self/fd/{folder}"
+    multiprocessing.set_forkserver_preload(["distributed", *modules])
+    forkserver.ensure_running()
     try:
-        multiprocessing.set_forkserver_preload(["distributed", *modules])
-        forkserver.ensure_running()
         yield
     finally:
-        vars(forkserver)["_forkserver"]._stop()  # another one would look for a socket that is gone
+        server = vars(forkserver)["_forkserver"]
+        os.kill(server._forkserver_pid, signal.SIGKILL)  # to end by itself takes it most of a second
+        server._stop()  # the next sweep starts its own, whose socket is there
         config["tempdir"] = None
         os.close(folder)
 
