@@ -124,7 +124,7 @@ class _Revision:
         if their_code is None or self._file(CODE, MOST_BYTES) is None:
             told = f"the code of {self.name}: its design is by the present code"
             return design_side(self.source, "revision", table, (told,))
-        their_code(f"runs {CODE} of {self.name} ({self.commit[:12]}) of {self.repository.root} as you")
+        their_code(f"runs {CODE} of {self.name} ({self.commit[:12]}) of {str(self.repository.root)!r} as you")
         folder = self.repository.checked_out(self.commit)
         try:
             side = self._told(table, _record(folder, folder / TREE / self.path))
