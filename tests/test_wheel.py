@@ -145,8 +145,13 @@ def test_cut_files_need_no_kernel(installed, empty):
     assert done.stdout == "EOF\n", done.stderr
 
 
-@pytest.mark.parametrize("command", ["export", "check", "release", "review"])
-def test_what_needs_the_kernel_says_what_to_install(installed, empty, command):
+@pytest.mark.parametrize(
+    "command",
+    ["export", "check", "release", "review", "diff macro-array soft-tissue --freecad changes.FCStd"],
+)
+def test_what_needs_the_kernel_says_what_to_install(installed, empty, command, tmp_path, monkeypatch):
+    (tmp_path / "freecad").symlink_to("/bin/true")
+    monkeypatch.setenv("PATH", f"{tmp_path}:{os.environ['PATH']}")
     done = run(installed / "tactcad", *command.split(), cwd=empty)
     assert done.returncode == 1
     assert done.stderr.splitlines()[-1].endswith("not installed: pip install 'tactcad[cad]'")

@@ -430,6 +430,7 @@ def test_the_summary_is_short_and_holds_no_markup(tmp_path, capsys):
     assert re.search(r"… and \d+ more causes\.", text)
     outside = re.sub(r"`[^`\n]*`", "", text)
     assert not re.search(r"[<>@\[\]]", outside) and "everyone" not in outside
+    assert "\u2039img src=x>' \u00a6 @everyone [a] (http://b)" in text and not re.search(r"<|\]\(", text)
     assert len({line.count("|") for line in text.splitlines() if line.startswith("|")}) == 1
     assert "<img" not in page.read_text() and "&lt;img src=x&gt;" in page.read_text()
     assert "What it means" in page.read_text()

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import ast
 import json
+import re
 import subprocess
 import sys
 import tomllib
@@ -103,6 +105,16 @@ def test_where_freecad_is_missing_it_says_how_to_get_it(tmp_path, monkeypatch, c
     assert "apt-get install freecad" in capsys.readouterr().err and not out.exists()
     assert main(["review", "soft-tissue", "--freecad", str(tmp_path / "x.step")]) == 2
     assert "NAME.FCStd" in capsys.readouterr().err
+
+
+def test_the_macro_runs_this_tactcad_whatever_the_folder_holds(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "tactcad.py").write_text("raise SystemExit('theirs')")
+    text = freecad_file.reload_macro(["schema"], tmp_path / "d.FCStd").decode()
+    said = dict(re.findall(r"^(COMMAND|FOLDER) = (.*)$", text, re.MULTILINE))
+    command, folder = (ast.literal_eval(said[name]) for name in ("COMMAND", "FOLDER"))
+    run = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
+    assert run.returncode == 0 and "[element]" in run.stdout, run.stderr
 
 
 freecad_is_here = pytest.mark.skipif(

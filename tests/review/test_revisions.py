@@ -17,6 +17,7 @@ import pytest
 from tactcad.cli.main import main
 from tactcad.export.golden_file import golden_bytes, golden_record
 from tactcad.parts.designs import load
+from tactcad.review.repository import repository_of
 
 ROOT = Path(__file__).parents[2]
 SHIPPED = (ROOT / "hardware" / "smallest-bearing.toml").read_text()
@@ -72,7 +73,7 @@ class Work:
 
     def state(self) -> tuple[str, str, str]:
         """What a comparison must leave as it was."""
-        return self.git("status", "--porcelain"), self.git("worktree", "list"), self.git("branch", "--all")
+        return self.git("status", "--porcelain"), self.git("worktree", "list"), self.git("show-ref", "--head")
 
 
 @pytest.fixture
@@ -112,7 +113,10 @@ def with_code(work: Work, factor: float) -> None:
 
 def diff(capsys, *arguments: str) -> dict:
     assert main(["diff", *arguments, "--json"]) == 0
-    return json.loads(capsys.readouterr().out)
+    told = capsys.readouterr()
+    ran = re.findall(r"tactcad: --their-code runs src/tactcad/__main__.py of (\S+) \(", told.err)
+    assert bool(ran) == ("--their-code" in arguments), told.err
+    return json.loads(told.out)
 
 
 def causes(record: dict) -> list[str]:
@@ -159,7 +163,15 @@ def test_what_is_not_committed_does_not_count_but_as_the_files_that_stand(work, 
         (["HEAD", "HEAD", "gone"], "HEAD:hardware/gone.toml: no such design in that revision"),
         (["HEAD", "HEAD", "/dev/null"], "/dev: no revisions here: not a git repository"),
         (["--", "--upload-pack=x", "HEAD", "small"], "revision: none in .*; found '--upload-pack=x'"),
-        (["HEAD", "--present-code", "HEAD"], "--present-code: goes with revisions only"),
+        *(
+            (
+                [name, "HEAD", "small"],
+                rf"revision: none in .*; found {re.escape(repr(name))}; legal: a commit",
+            )
+            for name in (":/a", "HEAD^{/a}", "HEAD^{commit}", "@{-1}", "HEAD@{1}", "main@{u}", "HEAD~1..main")
+        ),
+        (["--", "--all", "HEAD", "small"], "revision: none in .*; found '--all'"),
+        (["HEAD", "--their-code", "HEAD"], "--their-code: goes with revisions only"),
         (["HEAD", "HEAD"], "DESIGN: no design of that name"),
     ],
 )
@@ -169,6 +181,53 @@ def test_bad_input_is_one_line(work, capsys, arguments, said):
     told = capsys.readouterr()
     assert told.out == "" and re.fullmatch(rf"tactcad: {said}.*\n", told.err)
     assert work.state() == before
+
+
+@pytest.mark.parametrize("hashes", ["sha1", "sha256"])
+def test_every_way_to_name_and_to_keep_commits_is_read(tmp_path, monkeypatch, hashes):
+    """Branch, tag, abbreviated, upstream; packed, borrowed, from a linked worktree."""
+    monkeypatch.setenv("GIT_DEFAULT_HASH", hashes)
+    work = Work(tmp_path)
+    work.commit(SHIPPED)
+    work.git("tag", "--annotate", "--message=one", "v1")
+    work.commit(THICKER)
+    work.git("gc", "--quiet")
+    work.git("clone", "--quiet", "--shared", str(tmp_path), str(tmp_path / "clone"))
+    clone, linked = Work(tmp_path / "clone"), tmp_path / "linked\nfolder"
+    clone.git("worktree", "add", "--quiet", "-b", "topic/a", str(linked), "v1")
+    one, two = (clone.git("rev-parse", name).strip() for name in ("topic/a", "main"))
+    with repository_of(linked / DESIGN) as repository:
+        for name in (
+            "HEAD",
+            "@",
+            "topic/a",
+            "v1",
+            "origin/main~1",
+            "main^1",
+            one,
+            one[:10],
+            f"v1-0-g{one[:7]}",
+        ):
+            assert repository.commit(name) == one
+        for name in ("main", "origin/main", "refs/remotes/origin/HEAD", two):
+            assert repository.commit(name) == two
+        assert repository.file(one, DESIGN, 10**6) == SHIPPED.encode()
+        assert repository.file(two, DESIGN, 10**6) == THICKER.encode()
+        assert repository.file(two, "hardware/gone.toml", 10**6) is None
+
+
+def test_what_a_partial_clone_lacks_is_said_and_not_fetched(work, tmp_path, monkeypatch, capsys):
+    work.git("config", "uploadpack.allowFilter", "true")
+    away = ("--no-checkout", "--filter=blob:none", work.folder.as_uri(), str(tmp_path / "clone"))
+    work.git("clone", "--quiet", *away)
+    (tmp_path / "clone" / "hardware").mkdir()
+    shutil.copy(DESIGN, tmp_path / "clone" / DESIGN)
+    monkeypatch.chdir(tmp_path / "clone")
+    assert main(["diff", "HEAD", ".", "small"]) == 2
+    said = capsys.readouterr().err
+    assert re.fullmatch(r"tactcad: .*small.toml: not in this partial clone; legal: a whole clone\n", said)
+    assert main(["diff", "HEAD", ".", "gone"]) == 2
+    assert "no such design in that revision" in capsys.readouterr().err
 
 
 def test_without_git_it_is_one_line(work, capsys, monkeypatch):
@@ -196,7 +255,7 @@ def test_a_revision_s_own_code_tells_its_geometry_and_its_part_is_said(work, cap
     with_code(work, 1.0)
     work.commit(THICKER)
     before = work.state()
-    told = diff(capsys, "HEAD~1", "HEAD", "small")
+    told = diff(capsys, "HEAD~1", "HEAD", "small", "--their-code")
     assert causes(told) == ["code: HEAD~1 -> HEAD", "element.hinge_thickness: 0.25 -> 0.255"]
     code, hinge = (c["effect"]["elements"] for c in told["meaning"]["consequences"])
     assert [e["stiffness"]["relative"] for e in code] == pytest.approx(4 * [1 / 1.1 - 1], rel=1e-6)
@@ -211,39 +270,28 @@ def test_a_revision_s_own_code_tells_its_geometry_and_its_part_is_said(work, cap
     assert work.state() == before
 
 
-def test_the_present_code_alone_runs_no_other(work, capsys):
+def test_no_other_code_than_the_present_one_runs(work, capsys):
     with_code(work, 1.1)
     work.commit(SHIPPED)
-    told = diff(capsys, "HEAD~1", "HEAD", "small", "--present-code")
+    told = diff(capsys, "HEAD~1", "HEAD", "small")
     assert causes(told) == ["element.hinge_thickness: 0.255 -> 0.25"]
     assert told["not_compared"][1] == "the code of HEAD: its design is by the present code"
     assert not Path(os.environ["RAN"]).exists()
-
-
-def test_hooks_do_not_run(work, capsys):
-    with_code(work, 1.0)
-    work.commit(THICKER)
-    hook = work.folder / ".git" / "hooks" / "post-checkout"
-    hook.parent.mkdir(exist_ok=True)
-    hook.write_text(f"#!/bin/sh\ntouch {work.folder}/hooked\n")
-    hook.chmod(0o755)
-    diff(capsys, "HEAD", "HEAD", "small")
-    assert Path(os.environ["RAN"]).exists() and not (work.folder / "hooked").exists()
 
 
 def test_where_the_code_does_not_run_its_golden_file_stands_for_it(work, capsys):
     with_code(work, 1.0)
     work.write("src/tactcad/__main__.py", "raise ImportError('a library of that time')")
     work.commit(SHIPPED)
-    assert main(["diff", "HEAD", ".", "small"]) == 2
-    said = capsys.readouterr().err
-    assert "a library of that time" in said and "no golden file" in said and said.count("\n") == 1
+    assert main(["diff", "HEAD", ".", "small", "--their-code"]) == 2
+    _, said = capsys.readouterr().err.splitlines()
+    assert "a library of that time" in said and "no golden file" in said
 
     name = load(DESIGN).name
     work.write(f"exports/golden/{name}.json", golden_bytes(golden_record(load(DESIGN))).decode())
     work.commit(SHIPPED)
     work.write(DESIGN, THICKER)
-    told = diff(capsys, "HEAD", ".", "small")
+    told = diff(capsys, "HEAD", ".", "small", "--their-code")
     assert causes(told) == ["element.hinge_thickness: 0.25 -> 0.255"]
     assert re.search(
         r"geometry of HEAD, which was not built \(.*a library of that time", told["not_compared"][0]
@@ -255,7 +303,7 @@ def test_another_tactcad_never_stands_in_for_the_revision_s(work, capsys):
     """A package of the revision that cannot be found: not the installed one's word for it."""
     work.write("src/tactcad/__main__.py", STUB)  # without __init__.py the installed package comes first
     work.commit(SHIPPED)
-    assert main(["diff", "HEAD", ".", "small"]) == 2
+    assert main(["diff", "HEAD", ".", "small", "--their-code"]) == 2
     assert "is loaded instead" in capsys.readouterr().err and not Path(os.environ["RAN"]).exists()
 
 
@@ -264,23 +312,22 @@ def test_a_design_that_the_present_code_refuses_has_no_causes(work, capsys):
     with_code(work, 1.0)
     work.commit(SHIPPED.replace("pad_height = 2.0", "pad_height = 2.0\npad_weight = 1.0"))
     work.write(DESIGN, THICKER)
-    told = diff(capsys, "HEAD", ".", "small")
+    told = diff(capsys, "HEAD", ".", "small", "--their-code")
     assert causes(told) == []
     assert "element.pad_weight: unknown field" in told["meaning"]["untold"][0]
     assert len(told["meaning"]["together"]["elements"]) == 4
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL])
-def test_an_interrupted_comparison_leaves_no_worktree(work, tmp_path, capsys, number):
+def test_an_interrupted_comparison_leaves_nothing(work, tmp_path, capsys, number):
     """Killed, the next run removes what is left."""
     with_code(work, 1.0)
     work.commit(THICKER)
     before = work.state()
     (tmp_path / "tmp").mkdir()
     own = os.environ | {"WAIT": "1", "TMPDIR": str(tmp_path / "tmp"), "PYTHONPATH": str(ROOT / "src")}
-    run = subprocess.Popen(
-        [sys.executable, "-m", "tactcad", "diff", "HEAD", "HEAD", "small"], env=own, stderr=subprocess.DEVNULL
-    )
+    command = [sys.executable, "-m", "tactcad", "diff", "HEAD", "HEAD", "small", "--their-code"]
+    run = subprocess.Popen(command, env=own, stderr=subprocess.DEVNULL)
     waited = time.monotonic()
     while not Path(os.environ["RAN"]).exists() and time.monotonic() - waited < 60:
         time.sleep(0.05)
@@ -289,10 +336,8 @@ def test_an_interrupted_comparison_leaves_no_worktree(work, tmp_path, capsys, nu
     assert run.wait(60) in (128 + number, -number)
     if number == signal.SIGKILL:
         os.kill(int(child[0]), signal.SIGKILL)
-        assert work.state() != before
-        again = {**own, "WAIT": ""}
-        command = [sys.executable, "-m", "tactcad", "diff", "HEAD", "HEAD", "small"]
-        subprocess.run(command, env=again, check=True, capture_output=True)
+        assert list((tmp_path / "tmp").iterdir())
+        subprocess.run(command, env={**own, "WAIT": ""}, check=True, capture_output=True)
     assert work.state() == before
     assert [p for p in (tmp_path / "tmp").iterdir() if p.name.startswith("tactcad-")] == []
 
@@ -311,7 +356,7 @@ def test_the_project_s_own_revisions_compare(tmp_path, monkeypatch, capsys):
     work.commit(SHIPPED)
     work.commit(THICKER)
     monkeypatch.chdir(tmp_path)
-    told = diff(capsys, "HEAD~1", "HEAD", "small")
+    told = diff(capsys, "HEAD~1", "HEAD", "small", "--their-code")
     assert causes(told) == ["element.hinge_thickness: 0.25 -> 0.255"]
     (note,) = told["not_compared"]  # both designs are checked, by the present code
     assert note.startswith("checks and virtual builds by a revision's own code")

@@ -1,4 +1,4 @@
-"""tactcad diff A B [DESIGN] [--present-code] [--json] [--html|--review|--markdown|--freecad FILE] ..."""
+"""tactcad diff A B [DESIGN] [--their-code] [--json] [--html|--review|--markdown|--freecad FILE] ..."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import argparse
 import json
 import sys
 from dataclasses import asdict
+from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -20,16 +21,17 @@ EXAMPLES = """\
   tactcad diff exports/golden/macro-array.json macro-array     what changed since the committed geometry
   tactcad diff before exports/macro-array --html changes.html  two exports, with their pictures side by side
   tactcad diff macro-array my/design.toml --json               two designs, as JSON
-  tactcad diff HEAD~3 HEAD macro-array                         two git revisions of a design, each by its code
+  tactcad diff HEAD~3 HEAD macro-array                         two git revisions of a design
   tactcad diff HEAD . macro-array --review changes.html        what changed since the commit, in 3-D
   tactcad diff HEAD . macro-array --freecad changes.FCStd      the same in FreeCAD
-  tactcad diff main . macro-array --present-code               since main's text, by the present code alone
+  tactcad diff HEAD~3 HEAD macro-array --their-code            the same, each built by the code of its time
   tactcad diff origin/main HEAD macro-array --markdown changes.md --fail-on checks --fail-on revision
                                                                for a pull request
 
 A and B are each a design (a path or a name in hardware/), an export's folder, or a golden file (.json); with
-DESIGN they are git revisions, or '.' for the files as they stand. A revision's own code runs in a worktree of
-it, in your own repository only; where it does not run, its committed golden file stands for it.
+DESIGN they are git revisions (a commit, branch or tag, as HEAD~3), or '.' for the files as they stand. The
+present code reads the designs of both revisions, and nothing of the repository runs. --their-code runs each
+revision's own code as you: use it on code that you trust.
 First stands what each change of the design means by itself, by the present code, largest consequence first:
 K, rated force, signal, stop gap, yield, mass, cut, parts, sheets, bill, and checks that turned.
 What only one of them tells is left out, and said. The exit status is 0 whether anything changed or not, but
@@ -43,9 +45,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("new", metavar="B", help="the same, what it became")
     parser.add_argument("design", metavar="DESIGN", nargs="?", help="A and B are git revisions of it")
     parser.add_argument(
-        "--present-code",
+        "--their-code",
         action="store_true",
-        help="read revisions' designs by the present code, run no other",
+        help="build each revision's design by that revision's own code, which runs as you",
     )
     add_json(parser)
     parser.add_argument(
@@ -116,8 +118,8 @@ def _sides(args: argparse.Namespace) -> tuple[Side, Side]:
     from tactcad.review.revisions import design_file, revision_sides
     from tactcad.review.viewer_library import viewer_library
 
-    if args.present_code and args.design is None:
-        raise InputError("--present-code", "goes with revisions only", legal="A B DESIGN")
+    if args.their_code and args.design is None:
+        raise InputError("--their-code", "goes with revisions only", legal="A B DESIGN")
     read = [named(args.old), named(args.new)] if args.design is None else [design_file(args.design)]
     outs: dict[str, str] = {}  # option by file
     for option in ("--html", "--review", "--markdown", "--freecad"):
@@ -134,9 +136,15 @@ def _sides(args: argparse.Namespace) -> tuple[Side, Side]:
         refuse_no_document(args.freecad)
     if args.review:
         viewer_library()
+    if (args.freecad or args.review) and find_spec("build123d") is None:
+        raise ModuleNotFoundError(name="build123d")  # said as for every command that needs the kernel
     if args.design is None:
         return read_side(args.old), read_side(args.new)
-    return revision_sides(args.old, args.new, args.design, args.present_code)
+    return revision_sides(args.old, args.new, args.design, _say_code if args.their_code else None)
+
+
+def _say_code(what: str) -> None:
+    print(f"tactcad: --their-code {what}", file=sys.stderr)
 
 
 def _material(

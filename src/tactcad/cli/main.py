@@ -11,6 +11,7 @@ import gc
 import importlib
 import importlib.util
 import json
+import os
 import sys
 from collections.abc import Callable
 
@@ -81,6 +82,8 @@ def main(argv: list[str] | None = None) -> int:
 def _own_process() -> int:
     end_on_signals()
     gc.set_threshold(NEW_OBJECTS)
+    # Python that is started from here on, as Dask's helpers, looks for no module in the working folder
+    os.environ["PYTHONSAFEPATH"] = "1"
     output = streams.own()
     try:
         status = main(sys.argv[1:])

@@ -59,7 +59,9 @@ def panels(
     matplotlib.use("Agg")
     import matplotlib.pyplot as plt
 
-    with matplotlib.rc_context(STYLE):
+    with matplotlib.rc_context():
+        matplotlib.rcdefaults()  # a matplotlibrc in the working folder is anybody's: it could have TeX run
+        matplotlib.rcParams.update(STYLE)
         figure, axes = plt.subplots(rows, columns, figsize=size, **options)
         try:
             yield figure, axes

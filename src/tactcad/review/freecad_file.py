@@ -85,7 +85,7 @@ def reload_macro(arguments: Sequence[str], document: Path) -> bytes:
     """FreeCAD's macro that makes the document again, by this tactcad with these arguments, and reloads it."""
     text = RELOAD.read_text("utf-8")
     for line, value in (
-        ('COMMAND = ["tactcad"]', [sys.executable, "-m", "tactcad", *arguments]),
+        ('COMMAND = ["tactcad"]', [sys.executable, "-P", "-m", "tactcad", *arguments]),
         ('FOLDER = "."', os.getcwd()),
         ('DOCUMENT = "review.FCStd"', os.path.realpath(document)),
     ):

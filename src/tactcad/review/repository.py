@@ -1,12 +1,14 @@
 """The git work tree that a design stands in: its revisions, their files, and a checkout of one for a while.
 
-git itself refuses a repository of another owner (safe.directory). Hooks do not run: nothing of a repository
-is executed by looking into it.
+Nothing of a repository runs, whatever it holds. git finds it and names its commits, and refuses one of
+another owner (safe.directory); objects are read through an empty repository of ours, to which that one lends
+its objects and nothing else: no settings, hooks, filters or replacements. Nothing is ever fetched.
 """
 
 from __future__ import annotations
 
 import os
+import re
 import subprocess
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -15,30 +17,44 @@ from pathlib import Path
 
 from tactcad.design.files import scratch_folder
 from tactcad.design.messages import InputError
-from tactcad.ending import unfinished
 
-SCRATCH = "revision"  # purpose of the temporary folder
-TREE = "tree"  # the worktree in it
+TREE = "tree"  # a checkout in its folder
 # Of the variables that lead git elsewhere than to the folder it is given, these are the user's settings.
 KEPT = ("GIT_CONFIG", "GIT_CEILING_DIRECTORIES")
+# A partial clone names a command that fetches what is missing (core.sshCommand, ext::): none may start.
+NO_FETCH = {"GIT_ALLOW_PROTOCOL": "", "GIT_NO_LAZY_FETCH": "1"}
 LEGAL = "a design in a git work tree of your own"
+# A name, as git check-ref-format takes it, and steps to parents. What searches (:/text, ^{/text}) or looks
+# into the reflog (@{-1}) is none.
+REVISION = re.compile(r"(?!-)((?:(?!@\{|\.\.)[^\0-\x20\x7f~^:?*\[\\])+)((?:[~^][0-9]*)*)")
 
 
-def repository_of(file: Path) -> Repository:
+@contextmanager
+def repository_of(file: Path) -> Iterator[Repository]:
     """The repository of the folder where a file stands, or stood. Raises InputError where there is none, git
     is not installed, or git refuses it."""
     folder = next(f for f in file.parents if f.is_dir())
     run = _git(folder, "rev-parse", "--show-toplevel")
     if run.returncode:
         raise InputError(str(folder), f"no revisions here: {_first_line(run.stderr)}", legal=LEGAL)
-    return Repository(Path(os.fsdecode(run.stdout.removesuffix(b"\n"))))
+    root = Path(os.fsdecode(run.stdout.removesuffix(b"\n")))
+    told = _git(root, "rev-parse", "--show-object-format", "--git-path", "objects").stdout
+    hashes, _, objects = os.fsdecode(told.removesuffix(b"\n")).partition("\n")
+    with scratch_folder("revision") as scratch:
+        (scratch / "git" / "refs").mkdir(parents=True)
+        (scratch / "git" / "HEAD").write_text("ref: refs/heads/none\n")
+        settings = f"[core]\nrepositoryFormatVersion = 1\n[extensions]\nobjectFormat = {hashes}\n"
+        (scratch / "git" / "config").write_text(settings)
+        yield Repository(root, root / objects, scratch)
 
 
 @dataclass(frozen=True)
 class Repository:
-    """A work tree, by its root."""
+    """A work tree, by its root; its objects, and a temporary folder with the repository that reads them."""
 
     root: Path
+    objects: Path
+    scratch: Path
 
     def path_of(self, file: Path) -> str:
         """A file's path in the repository, with "/". Raises InputError where it lies outside."""
@@ -49,66 +65,54 @@ class Repository:
 
     def commit(self, revision: str) -> str:
         """The full name of a commit. Raises InputError where `revision` names none."""
-        named = revision and not revision.startswith("-") and "\0" not in revision
-        # what begins with "-" is no revision to git either, but could be read as an option
-        run = self._run("rev-parse", "--verify", "--quiet", f"{revision}^{{commit}}") if named else None
-        if run is None or run.returncode:
-            legal = "a commit, branch or tag, as HEAD~3"
-            raise InputError("revision", f"none in {self.root}", value=revision, legal=legal)
-        return os.fsdecode(run.stdout.strip())
+        found = REVISION.fullmatch(revision)
+        named = found and _git(self.root, "rev-parse", "--verify", "--quiet", found[1])
+        if found and named and not named.returncode:
+            name = os.fsdecode(named.stdout.strip())
+            run = self._run("rev-parse", "--verify", "--quiet", f"{name}{found[2]}^{{commit}}")
+            if not run.returncode:
+                return os.fsdecode(run.stdout.strip())
+        legal = "a commit, branch or tag, as HEAD~3"
+        raise InputError("revision", f"none in {self.root}", value=revision, legal=legal)
 
     def file(self, commit: str, path: str, most_bytes: int) -> bytes | None:
-        """A committed file's content; None where the commit has no such file, or a larger one."""
+        """A committed file's content; None where the commit has no such file, or a larger one. Raises
+        InputError where the clone lacks it."""
+        listed = self._run("ls-tree", "--full-tree", commit, "--", path)
+        if not listed.returncode and not listed.stdout:
+            return None
         size = self._run("cat-file", "-s", f"{commit}:{path}")
-        if size.returncode or int(size.stdout) > most_bytes:
+        if size.returncode:
+            raise InputError(f"{commit[:12]}:{path}", "not in this partial clone", legal="a whole clone")
+        if int(size.stdout) > most_bytes:
             return None
         run = self._run("cat-file", "blob", f"{commit}:{path}")
         return None if run.returncode else run.stdout
 
-    @contextmanager
-    def checked_out(self, commit: str) -> Iterator[Path]:
-        """A worktree of the commit in a temporary folder, `tree` in what is yielded, removed when the block
-        ends, also by a signal.
+    def checked_out(self, commit: str) -> Path:
+        """A folder with the commit's files in TREE, there as long as the repository is. Raises InputError
+        where git cannot make it."""
+        folder = self.scratch / commit
+        (folder / TREE).mkdir(parents=True, exist_ok=True)
+        places = {"GIT_WORK_TREE": str(folder / TREE), "GIT_INDEX_FILE": str(folder / "index")}
+        run = self._run("read-tree", "-u", "--reset", commit, **places)
+        if run.returncode:
+            raise InputError(commit, f"cannot be checked out: {_first_line(run.stderr)}")
+        return folder
 
-        Raises InputError where git cannot make it.
-        """
-        with scratch_folder(SCRATCH) as folder:
-            self._forget_killed()
-            tree = folder / TREE
-            with unfinished(lambda: self._remove(tree)):
-                try:
-                    run = self._run("worktree", "add", "--detach", "--quiet", str(tree), commit)
-                    if run.returncode:
-                        raise InputError(commit, f"cannot be checked out: {_first_line(run.stderr)}")
-                    yield folder
-                finally:
-                    self._remove(tree)
-
-    def _forget_killed(self) -> None:
-        """Take worktrees of killed runs off the repository's list; their folders are swept already."""
-        listed = os.fsdecode(self._run("worktree", "list", "--porcelain").stdout)
-        for line in listed.splitlines():
-            tree = Path(line.removeprefix("worktree "))
-            ours = line.startswith("worktree ") and tree.name == TREE
-            if ours and tree.parent.name.startswith(f"tactcad-{SCRATCH}.") and not tree.exists():
-                self._remove(tree)
-
-    def _remove(self, tree: Path) -> None:
-        # forced twice: one that was interrupted while it was made is still locked
-        self._run("worktree", "remove", "--force", "--force", str(tree))
-
-    def _run(self, *arguments: str) -> subprocess.CompletedProcess[bytes]:
-        return _git(self.root, *arguments)
+    def _run(self, *arguments: str, **places: str) -> subprocess.CompletedProcess[bytes]:
+        ours = {"GIT_DIR": str(self.scratch / "git"), "GIT_OBJECT_DIRECTORY": str(self.objects)}
+        no_settings = {"GIT_CONFIG_NOSYSTEM": "1", "GIT_CONFIG_GLOBAL": os.devnull, "GIT_ATTR_NOSYSTEM": "1"}
+        return _git(self.scratch, *arguments, **ours, **no_settings, **places)
 
 
-def _git(folder: Path, *arguments: str) -> subprocess.CompletedProcess[bytes]:
+def _git(folder: Path, *arguments: str, **more: str) -> subprocess.CompletedProcess[bytes]:
     """git in that folder, whatever repository the environment names."""
     own = {k: v for k, v in os.environ.items() if not k.startswith("GIT_") or k.startswith(KEPT)}
-    command = ["git", "-C", str(folder), "-c", f"core.hooksPath={os.devnull}", "-c", "core.fsmonitor=false"]
     try:
         return subprocess.run(
-            [*command, *arguments],
-            env=own | {"LC_ALL": "C"},
+            ["git", "-C", str(folder), *arguments],
+            env=own | NO_FETCH | {"LC_ALL": "C"} | more,
             stdin=subprocess.DEVNULL,
             capture_output=True,
             check=False,

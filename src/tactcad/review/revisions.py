@@ -1,8 +1,9 @@
-"""A git revision as a side of a comparison: a design and the code as they were committed.
+"""A git revision as a side of a comparison: a design as it was committed, and if asked for its code.
 
-The revision's own code runs in a worktree of it, in a process of its own, and tells the record of geometry by
-the command that every revision has: the difference from a golden file without parts. Where it does not run
-here, the revision's committed golden file stands for it.
+The present code reads the design's text. A revision's own code runs only if the user asks for it: from a
+checkout, in a process of its own, and tells the record of geometry by the command that every revision has:
+the difference from a golden file without parts. If it does not run here, the revision's committed golden file
+stands for it.
 """
 
 from __future__ import annotations
@@ -11,6 +12,7 @@ import json
 import os
 import subprocess
 import sys
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -31,13 +33,15 @@ from .repository import TREE, Repository, repository_of
 WORKING = "."  # in place of a revision: the files as they stand
 CODE = "src/tactcad/__main__.py"
 SECONDS = 300  # a revision's code may take; chosen: the largest array takes some 30
-# The tactcad of that folder or none: an installed one must not stand in for it.
+# The tactcad of that folder or none: an installed one must not stand in for it, which is found out before
+# anything of that folder runs.
 DRIVER = """\
-import runpy, sys
+import importlib.util, runpy, sys
 source = sys.argv.pop(1)
-import tactcad
-if not tactcad.__file__.startswith(source):
-    sys.exit(f"{tactcad.__file__} is loaded instead")
+sys.path.insert(0, source)
+found = importlib.util.find_spec("tactcad").origin
+if not str(found).startswith(source):
+    sys.exit(f"{found} is loaded instead")
 runpy.run_module("tactcad", run_name="__main__", alter_sys=True)
 """
 
@@ -46,17 +50,20 @@ class _NotBuilt(Exception):
     """The revision's code does not run here, or gives no record; says why."""
 
 
-def revision_sides(old: str, new: str, design: str, present_code: bool) -> tuple[Side, Side]:
+def revision_sides(
+    old: str, new: str, design: str, their_code: Callable[[str], None] | None = None
+) -> tuple[Side, Side]:
     """Two revisions of one design.
 
     Parameters
     ----------
     old, new
-        Revisions as git names them; WORKING for the files as they stand, by the present code.
+        Commits, branches or tags, as HEAD~3; WORKING for the files as they stand, by the present code.
     design
         A path, or a name in hardware/.
-    present_code
-        Read the revisions' texts by the present code, and run none of theirs.
+    their_code
+        Receives what is about to run, from where: each revision's own code. None: no code of theirs runs,
+        the present one reads their designs.
 
     Raises
     ------
@@ -64,22 +71,22 @@ def revision_sides(old: str, new: str, design: str, present_code: bool) -> tuple
         Where there is no repository, no such revision, no such design in it, or no way to compare it.
     """
     file = design_file(design)
-    repository = repository_of(file)
-    path = repository.path_of(file)
-    named = [(name, None if name == WORKING else repository.commit(name)) for name in (old, new)]
+    with repository_of(file) as repository:
+        path = repository.path_of(file)
+        named = [(name, None if name == WORKING else repository.commit(name)) for name in (old, new)]
 
-    def side(name: str, commit: str | None, other: bytes | None) -> Side:
-        if commit is None:
-            return read_side(str(file))
-        return _Revision(repository, name, commit, path).side(present_code, other)
+        def side(name: str, commit: str | None, other: bytes | None) -> Side:
+            if commit is None:
+                return read_side(str(file))
+            return _Revision(repository, name, commit, path).side(their_code, other)
 
-    def text(commit: str | None) -> bytes | None:
-        if commit is None:
-            return read_bytes(file, MOST_BYTES, "a design file (TOML)")
-        return repository.file(commit, path, MOST_BYTES)
+        def text(commit: str | None) -> bytes | None:
+            if commit is None:
+                return read_bytes(file, MOST_BYTES, "a design file (TOML)")
+            return repository.file(commit, path, MOST_BYTES)
 
-    (first, one), (second, other) = named
-    return side(first, one, None), side(second, other, text(one))
+        (first, one), (second, other) = named
+        return side(first, one, None), side(second, other, text(one))
 
 
 def design_file(design: str) -> Path:
@@ -105,8 +112,8 @@ class _Revision:
     def source(self) -> str:
         return f"{self.name}:{self.path}"
 
-    def side(self, present_code: bool, other: bytes | None) -> Side:
-        """The side; its code is asked for the `other` side's design, too."""
+    def side(self, their_code: Callable[[str], None] | None, other: bytes | None) -> Side:
+        """The side; its own code, where it runs, is asked for the `other` side's design, too."""
         text = self._file(self.path, MOST_BYTES)
         if text is None:
             raise InputError(self.source, "no such design in that revision", legal="one that was committed")
@@ -114,24 +121,24 @@ class _Revision:
             table = parse_toml(text.decode("utf-8-sig"), self.source)
         except UnicodeDecodeError:
             raise InputError(self.source, "is not UTF-8 text", legal="a design file (TOML)") from None
-        if present_code or self._file(CODE, MOST_BYTES) is None:
+        if their_code is None or self._file(CODE, MOST_BYTES) is None:
             told = f"the code of {self.name}: its design is by the present code"
             return design_side(self.source, "revision", table, (told,))
-        with self.repository.checked_out(self.commit) as folder:
-            try:
-                side = self._told(table, _record(folder, folder / TREE / self.path))
-            except _NotBuilt as why:
-                told = f"geometry of {self.name}, which was not built ({why}): its golden file stands for it"
-                return replace(self._told(table, self._golden(table, folder, why)), untold=(told,))
-            if other is None:
-                return side
-            (folder / "other.toml").write_bytes(other)
-            try:
-                return replace(side, of_other=_record(folder, folder / "other.toml"))
-            except _NotBuilt as why:
-                return replace(
-                    side, untold=(f"the codes: that of {self.name} refuses the other design ({why})",)
-                )
+        their_code(f"runs {CODE} of {self.name} ({self.commit[:12]}) of {str(self.repository.root)!r} as you")
+        folder = self.repository.checked_out(self.commit)
+        try:
+            side = self._told(table, _record(folder, folder / TREE / self.path))
+        except _NotBuilt as why:
+            told = f"geometry of {self.name}, which was not built ({why}): its golden file stands for it"
+            return replace(self._told(table, self._golden(table, folder, why)), untold=(told,))
+        if other is None:
+            return side
+        (folder / "other.toml").write_bytes(other)
+        try:
+            return replace(side, of_other=_record(folder, folder / "other.toml"))
+        except _NotBuilt as why:
+            told = f"the codes: that of {self.name} refuses the other design ({why})"
+            return replace(side, untold=(told,))
 
     def _told(self, table: dict[str, Any], record: Record) -> Side:
         """The side with this record by its own code; its values as far as the present code can read them."""
@@ -158,7 +165,7 @@ class _Revision:
         data = self._file(place.as_posix(), MOST_GOLDEN) if file.parent.name == "hardware" else None
         if data is None:
             refused = f"its code does not run here ({why}), and it has no golden file"
-            raise InputError(self.source, refused, legal="--present-code")
+            raise InputError(self.source, refused, legal="without --their-code")
         (folder / "golden.json").write_bytes(data)
         return read_golden(folder / "golden.json")
 
@@ -167,20 +174,15 @@ class _Revision:
 
 
 def _record(folder: Path, design: Path) -> Record:
-    """What the code in the folder's worktree makes of a design. Raises _NotBuilt."""
+    """What the code in the folder's checkout makes of a design. Raises _NotBuilt."""
     nothing = {"schema": SCHEMA, "design": "none", "revision": "A", "parts": {}, "scenes": {}, "elements": {}}
     (folder / "nothing.json").write_text(json.dumps(nothing))
     source = folder / TREE / "src"
-    command = [sys.executable, "-c", DRIVER, str(source), "diff", "nothing.json", str(design), "--json"]
+    # -I: neither PYTHONPATH nor the working folder is looked into, and no sitecustomize of theirs
+    command = [sys.executable, "-I", "-c", DRIVER, str(source), "diff", "nothing.json", str(design), "--json"]
     try:
         run = subprocess.run(
-            command,
-            cwd=folder,
-            env=os.environ | {"PYTHONPATH": str(source)},
-            stdin=subprocess.DEVNULL,
-            capture_output=True,
-            timeout=SECONDS,
-            check=False,
+            command, cwd=folder, stdin=subprocess.DEVNULL, capture_output=True, timeout=SECONDS, check=False
         )
     except subprocess.TimeoutExpired:
         raise _NotBuilt(f"its code took more than {SECONDS} s") from None

@@ -17,6 +17,7 @@ from .effect import FIGURES, ChangedFigure, SensorEffect
 # Of each list in a Markdown summary; together at most MOST_LINES.
 MOST_LINES, MOST_CAUSES, MOST_TURNED, MOST_NOTES, MOST_NAMES = 60, 24, 8, 4, 8
 MOST_TEXT = 160  # characters of a cause in a table
+PLAIN = str.maketrans({"`": "'", "|": "\u00a6", "<": "\u2039"})  # what looks alike, and is no markup
 COLUMNS = (*FIGURES.values(), "yield", "mass", "cut length")
 
 
@@ -208,7 +209,8 @@ def _codes(names: Iterable[str]) -> str:
 
 
 def _code(text: str) -> str:
-    """As a span of code in a table: on one line, without what would end span or cell."""
-    plain = " ".join(text.split()).replace("`", "'").replace("|", "\u00a6")
+    """As a span of code in a table: on one line, without what would end span or cell, or be a tag or a link
+    to a reader that knows no spans."""
+    plain = " ".join(text.split()).translate(PLAIN).replace("](", "] (")
     plain = plain.encode(errors="backslashreplace").decode()
     return f"`{plain if len(plain) <= MOST_TEXT else plain[: MOST_TEXT - 1] + '…'}`"
