@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import json
 from typing import Any
 
+from tactcad.export.manifest import read_manifest
 from tactcad.parts.envelope import DETAILS
 from tactcad.scenes import scene_names
 
@@ -72,8 +72,8 @@ def _exported(scene: str, detail: str, plan: RunPlan) -> dict:
     )
     plan.say(f"{scene}, {detail}: whole export")
     cold, *again = (measured(export, {"TACTCAD_CACHE": str(folder / "cache")}).seconds for _ in range(4))
-    files = [f["path"] for f in json.loads((folder / "out" / "manifest.json").read_text("utf-8"))["files"]]
-    size = sum((folder / "out" / path).stat().st_size for path in files)
+    files = read_manifest(folder / "out").files
+    size = sum((folder / "out" / f.path).stat().st_size for f in files)
     return {"cold": cold, "unchanged": min(again), "files": len(files) + 1, "export_bytes": size}
 
 

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 
+from tactcad.export.manifest import read_manifest
 from tactcad.parts.designs import load
 
 from . import arrays
@@ -68,13 +68,14 @@ def _row(elements: int, runs: int, plan: RunPlan) -> dict:
         for _ in range(plan.of(1, 5, 10) if run == 0 else 0):
             times["unchanged"].append(measured(export, cache).seconds)
             times["numpy"].append(measured(python("-c", "import numpy")).seconds)
-        files = json.loads((out / "manifest.json").read_text("utf-8"))["files"]
-        size = sum((out / f["path"]).stat().st_size for f in files if f["kind"] == "step-assembly")
+        files = read_manifest(out).files
+        size = sum((out / f.path).stat().st_size for f in files if f.kind == "step-assembly")
         if plan.mode != "smoke":
             plan.say(f"{elements} elements, one arm changed, run {run + 1}")
             design.write_text(arrays.text(elements, changed=True), "utf-8")
             times["changed"].append(measured(export, cache).seconds)
-    row = {"elements": elements, "runs": runs, "bytes": size, "peak_bytes": min(peaks)}
+    row: dict[str, float | None] = {"elements": elements, "runs": runs, "bytes": size}
+    row["peak_bytes"] = min(peaks)
     row |= {name: min(seconds, default=None) for name, seconds in times.items()}
     for above, below in (("cold", "plain"), ("unchanged", "numpy")):
         row[f"{above} / {below}"] = min(times[above]) / min(times[below])
