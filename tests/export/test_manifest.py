@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+from tactcad.design.messages import InputError
 from tactcad.export.manifest import (
     FileRecord,
     Manifest,
@@ -119,12 +120,36 @@ def no_object(folder: Path) -> None:
     (folder / "manifest.json").write_text("[]")
 
 
-@pytest.mark.parametrize(
-    "damage", [one_byte, gone, stray, stray_hidden, no_manifest, cut_manifest, other_schema, no_object]
-)
+def edited(folder: Path) -> None:
+    text = (folder / "manifest.json").read_text()
+    (folder / "manifest.json").write_text(text.replace('"a.b": 0.1', '"a.b": 0.25'))
+
+
+def unsealed(folder: Path) -> None:
+    record = json.loads((folder / "manifest.json").read_text())
+    del record["seal"]
+    (folder / "manifest.json").write_text(json.dumps(record, indent=1) + "\n")
+
+
+def laid_out_anew(folder: Path) -> None:
+    text = (folder / "manifest.json").read_text()
+    (folder / "manifest.json").write_text(json.dumps(json.loads(text), indent=2) + "\n")
+
+
+@pytest.mark.parametrize("damage", [one_byte, gone, stray, stray_hidden])
 def test_damage_is_seen(folder, damage):
     damage(folder)
     assert check_manifest(folder)
+
+
+@pytest.mark.parametrize(
+    "damage", [no_manifest, cut_manifest, other_schema, no_object, edited, unsealed, laid_out_anew]
+)
+def test_a_manifest_is_read_as_it_was_written_or_not_at_all(folder, damage):
+    damage(folder)
+    assert check_manifest(folder)
+    with pytest.raises(InputError, match="manifest.json"):
+        read_manifest(folder)
 
 
 @pytest.mark.parametrize(

@@ -13,6 +13,7 @@ import shutil
 import signal
 import warnings
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -27,6 +28,7 @@ from tactcad.design.messages import CheckFailure, InputError
 from tactcad.export import golden_file as golden
 from tactcad.export import manifest, sides
 from tactcad.export.cache import Cache
+from tactcad.export.contents import sealed
 from tactcad.export.difference_page import page
 from tactcad.export.dxf import dxf_bytes
 from tactcad.export.geometry import geometry
@@ -143,6 +145,10 @@ class Export:
         if name in self.files:
             before = hashlib.sha256(self.files[name][2]).hexdigest()
             listed = self.manifest.replace(before.encode(), hashlib.sha256(changed).hexdigest().encode())
+        with suppress(ValueError, AttributeError, RecursionError):  # sealed anew, so that all of it is read
+            record = json.loads(listed)
+            record.pop("seal", None)
+            listed = sealed(record)
         (place / "manifest.json").write_bytes(listed)
         difference(old, str(place))
 

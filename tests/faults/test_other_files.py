@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
 import os
 import shutil
@@ -177,8 +178,13 @@ def test_an_export_that_was_tampered_with(exported, tmp_path):
         copy = exported / name
         shutil.copytree(folder, copy)
         manifest = json.loads((copy / "manifest.json").read_text())
+        seal = manifest.pop("seal")
         change(copy, manifest)
-        (copy / "manifest.json").write_text(manifest if isinstance(manifest, str) else json.dumps(manifest))
+        if name != "hinge":  # sealed anew, so that what else is wrong is found
+            text = json.dumps(manifest, indent=1, ensure_ascii=False) + "\n"
+            seal = hashlib.sha256(text.encode()).hexdigest()
+        sealed = json.dumps({**manifest, "seal": seal}, indent=1, ensure_ascii=False) + "\n"
+        (copy / "manifest.json").write_text(sealed)
         return name
 
     def part(field: str, value: object):
@@ -188,6 +194,7 @@ def test_an_export_that_was_tampered_with(exported, tmp_path):
         return lambda copy, m: m["files"][0].__setitem__(field, value)
 
     changes = {
+        "hinge": lambda copy, m: m["inputs"]["values"].__setitem__("design.element.hinge_thickness", 0.3),
         "volume": part("volume_mm3", "heavy"),
         "centre": part("centre_mm", [1]),
         "box": part("box_mm", 7),
@@ -206,6 +213,8 @@ def test_an_export_that_was_tampered_with(exported, tmp_path):
         "pipe": lambda copy, m: ((copy / "bom.csv").unlink(), os.mkfifo(copy / "bom.csv")),
         "added": lambda copy, m: (copy / "virus.exe").write_text("x"),
     }
+    same = ["diff", "A.toml", damaged("as it was", lambda copy, m: None)]
+    assert tactcad_forked(*same, cwd=exported, env=environment(exported)).returncode == 0
     names = [damaged(name, change) for name, change in changes.items()]
     (exported / "device" / "device").symlink_to("/dev/zero")
     for name, text in (
@@ -217,10 +226,11 @@ def test_an_export_that_was_tampered_with(exported, tmp_path):
         (exported / name / "manifest.json").write_text(text)
         names.append(name)
     before = {p.name for p in exported.iterdir()}
-    for name, done in zip(
-        names, tactcad_runs([["diff", name, "A.toml"] for name in names], exported, environment(exported))
-    ):
-        assert f"tactcad: {name}: not a sound export: " in refused(done), (name, done.stderr)
+    commands = [[*command, name] for name in names for command in (["diff", "A.toml"], ["review"])]
+    for command, done in zip(commands, tactcad_runs(commands, exported, environment(exported))):
+        said = refused(done)
+        assert f"tactcad: {command[-1]}: not a sound export: " in said, (command, done.stderr)
+        assert command[-1] != "hinge" or "hinge/manifest.json: altered since tactcad wrote it" in said
     assert {p.name for p in exported.iterdir()} == before
 
 

@@ -137,6 +137,30 @@ def test_a_page_of_differences_inside_the_export_that_it_tells_of(exported):
     assert contents(folder) == before
 
 
+def test_an_output_that_is_a_link_is_refused_and_what_it_leads_to_stays(inputs):
+    """Before any work: no check, no solid, nothing in the cache."""
+    _, work = inputs
+    (work / "precious").write_text("ten years")
+    (work / "page.FCStd").symlink_to("precious")
+    (work / "nowhere").symlink_to("not there")
+    (work / "readings.csv").write_bytes(good("calibrate", inputs))
+    (work / "review.FCMacro").symlink_to("precious")
+    commands = [
+        ["review", "A.toml", "--out", "page.FCStd"],
+        ["review", "A.toml", "--out", "nowhere"],
+        ["review", "A.toml", "--freecad", "page.FCStd"],
+        ["review", "A.toml", "--freecad", "review.FCStd"],
+        ["diff", "A.toml", "B.toml", "--markdown", "page.FCStd"],
+        ["calibrate", "readings.csv", "--out", "nowhere"],
+        ["estimate", "--batch", "batch.csv", "--out", "page.FCStd"],
+    ]
+    before = {p.name for p in work.iterdir()}
+    for done in tactcad_runs(commands, work, environment(work)):
+        assert ": is a link; nothing was changed; legal: " in refused(done)
+    assert {p.name for p in work.iterdir()} - {"home", "tmp"} == before - {"home", "tmp"}
+    assert (work / "precious").read_text() == "ten years"
+
+
 def test_outputs_beside_inputs_are_written(inputs):
     """Or the tests above would show nothing."""
     _, work = inputs

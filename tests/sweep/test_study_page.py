@@ -35,7 +35,7 @@ def test_chance_explains_nothing():
 
 
 @pytest.mark.slow
-def test_the_page_stands_alone(tmp_path, scheduler):
+def test_the_page_stands_alone(tmp_path, scheduler, capsys):
     path = written(tmp_path, count="128")
     assert swept(path, "--out", tmp_path / "out", "--scheduler", scheduler).returncode == 0
     assert main(["sweep", "plot", str(tmp_path / "out")]) == 0
@@ -43,6 +43,17 @@ def test_the_page_stands_alone(tmp_path, scheduler):
     assert "element.hinge_thickness" in page and "solid.E4.stiffness" in page and page.count("<svg") == 2
     assert not re.findall(r"(?:src|href)=[\"'](?!#|data:image)", page)
     assert "solid.E9.stiffness: most by element.hinge_thickness" in page
+    for name, was, now in (
+        ("manifest.json", b'"refused": 0', b'"refused": 7'),
+        ("results.parquet", b"", b"0"),
+    ):
+        file = tmp_path / "out" / name
+        as_written = file.read_bytes()
+        file.write_bytes(as_written.replace(was, now, 1))
+        assert main(["sweep", "plot", str(tmp_path / "out")]) == 2
+        assert f"{file}: altered since " in capsys.readouterr().err
+        file.write_bytes(as_written)
+    assert (tmp_path / "out" / "plot.html").read_text() == page
 
 
 def test_three_designs_have_pairs(tmp_path):

@@ -188,9 +188,10 @@ def whole_file(path: str | Path) -> Iterator[Path]:
     """A file to write beside the path: flushed and renamed over it when the block ends well, otherwise
     removed.
 
-    Links are followed; the folder must exist. What killed runs left there is removed first. A file that is
-    replaced keeps its permissions; one that is write-protected is kept. Raises InputError where the place
-    cannot be written to, CheckFailure where there is no room; what was there before is then unchanged.
+    The folder must exist; links are followed to it, and refused in the file's place. What killed runs left
+    there is removed first. A file that is replaced keeps its permissions; one that is write-protected is
+    kept. Raises InputError where the place cannot be written to, CheckFailure where there is no room; what
+    was there before is then unchanged.
     """
     with in_one_line(path):
         place = Path(os.path.realpath(path))
@@ -205,6 +206,7 @@ def whole_file(path: str | Path) -> Iterator[Path]:
 
 def _mode(path: str | Path, place: Path) -> int:
     """Permissions of the file that is to be at `place`. Raises InputError where there can be none."""
+    refuse_link(path)
     if not os.path.lexists(place):
         return 0o666 & ~_umask()
     if not place.is_file():
@@ -217,6 +219,14 @@ def _mode(path: str | Path, place: Path) -> int:
             str(path), "is write-protected; nothing was changed", legal="a new name, or make it writable"
         )
     return mode
+
+
+def refuse_link(path: str | Path) -> None:
+    """Raise InputError where a file to be written is a link: it would go to a place that nobody named."""
+    if os.path.islink(path) and not os.path.isdir(path):
+        raise InputError(
+            str(path), "is a link; nothing was changed", legal="the file that it leads to, or a new name"
+        )
 
 
 @contextmanager
@@ -255,7 +265,7 @@ def scratch_folder(purpose: str) -> Iterator[Path]:
 
 
 def refuse_overwriting(out: str | Path, *inputs: str | Path | None, option: str = "--out") -> None:
-    """Refuse an output that would take away what is read.
+    """Refuse, before any work, an output that would take away what is read, and a file that is a link.
 
     Parameters
     ----------
@@ -270,7 +280,7 @@ def refuse_overwriting(out: str | Path, *inputs: str | Path | None, option: str 
     ------
     InputError
         Where `out` is one of the inputs, under whatever name or link, lies in a folder that is one, or is a
-        folder with one in it.
+        folder with one in it; or where it is a link, but not to a folder.
     """
     absolute(out)  # a folder to start from is there
     place, around = _identity(out), _folders(out)
@@ -281,6 +291,7 @@ def refuse_overwriting(out: str | Path, *inputs: str | Path | None, option: str 
             raise InputError(
                 option, f"{out} would overwrite {source}, which is read", legal="a place apart from it"
             )
+    refuse_link(out)
 
 
 def _identity(path: str | Path) -> tuple[int, int] | None:

@@ -19,7 +19,7 @@ from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 from typing import Any, NoReturn
 
-from tactcad.design.files import read_bytes
+from tactcad.design.files import read_bytes, read_json
 from tactcad.design.messages import InputError
 
 NAME = "manifest.json"
@@ -57,6 +57,38 @@ def sha256_of(data: bytes) -> str:
 def sealed(record: Mapping[str, Any]) -> bytes:
     """The record as JSON text with its seal. Raises ValueError where a number is not finite."""
     return _json({**record, "seal": sha256_of(_json(record))})
+
+
+def read_sealed(folder: Path, schema: str) -> dict[str, Any]:
+    """The folder's manifest without its seal: the one reader of manifests.
+
+    Parameters
+    ----------
+    folder
+        A folder that tactcad wrote.
+    schema
+        The schema that its manifest must have.
+
+    Raises
+    ------
+    InputError
+        Where there is no manifest, it has another schema, or it is not exactly what tactcad wrote.
+    """
+    path = folder / NAME
+    record = read_json(path, MOST_BYTES, "a manifest")
+    found = record.get("schema") if isinstance(record, dict) else None
+    if found != schema:
+        raise InputError(str(path), "another schema", value=found, legal=schema)
+    record.pop("seal", None)
+    try:
+        texts = [row[key] for row in record["files"] for key in ("path", "sha256")]
+        as_written = sealed(record) == read_bytes(path, MOST_BYTES, "a manifest")
+    except (LookupError, TypeError, RecursionError):
+        texts, as_written = [], False
+    if not as_written or not all(isinstance(text, str) for text in texts):
+        what = "altered since tactcad wrote it: its seal is missing, or of another text"
+        raise InputError(str(path), what, legal="the manifest as written, or the folder made again")
+    return record
 
 
 def _json(record: Mapping[str, Any]) -> bytes:
@@ -127,15 +159,8 @@ def _state(path: Path) -> State:
 def _sealed_record(folder: Path, schema: str) -> dict[str, Any] | None:
     """The folder's manifest, None where it is not one of that schema just as we wrote it."""
     try:
-        if not stat.S_ISREG((folder / NAME).lstat().st_mode):
-            return None
-        data = read_bytes(folder / NAME, MOST_BYTES, "a manifest")
-        record = json.loads(data)
-        record.pop("seal")
-        known = record["schema"] == schema and sealed(record) == data
-        texts = [row[key] for row in record["files"] for key in ("path", "sha256")]
-        return record if known and all(isinstance(text, str) for text in texts) else None
-    except (OSError, ValueError, LookupError, TypeError, AttributeError, RecursionError):
+        return read_sealed(folder, schema) if stat.S_ISREG((folder / NAME).lstat().st_mode) else None
+    except (OSError, InputError):
         return None
 
 

@@ -177,10 +177,10 @@ def _xy(p: Point) -> str:
 
 
 def _pictures(old: Side, new: Side) -> Iterable[str]:
-    before, after = old.pictures(), new.pictures()
+    before, after = old.pictures or {}, new.pictures or {}
     if not before and not after:
         return
-    both = old.folder is not None and new.folder is not None
+    both = old.pictures is not None and new.pictures is not None
     names = [n for n in dict.fromkeys([*after, *before]) if _drawn(before.get(n)) != _drawn(after.get(n))]
     yield "<h2>Pictures</h2>"
     same = len(set(before) | set(after)) - len(names)

@@ -7,10 +7,10 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path, PurePosixPath
 from typing import Any
 
-from tactcad.design.files import read_bytes, read_json
+from tactcad.design.files import read_bytes
 from tactcad.design.messages import InputError
 
-from .contents import MOST_BYTES, NAME, sealed, sha256_of
+from .contents import MOST_BYTES, NAME, read_sealed, sealed, sha256_of
 from .formats import PART_FORMATS
 
 SCHEMA = "tactcad-manifest-1"
@@ -78,22 +78,31 @@ def manifest_bytes(manifest: Manifest) -> bytes:
 
 
 def read_manifest(folder: Path) -> Manifest:
-    """The manifest of an export's folder. Raises ValueError where it is absent, damaged, or of another
-    schema."""
+    """The manifest of an export's folder; the files themselves are not looked at.
+
+    Raises InputError where it is absent, altered (contents.py), of another schema, or no export's.
+    """
+    record = read_sealed(folder, SCHEMA)
     try:
-        record = read_json(folder / NAME, MOST_BYTES, "a manifest")
-        if record.pop("schema") != SCHEMA:
-            raise ValueError(f"its schema is not {SCHEMA}")
-        record.pop("seal", None)  # an earlier tactcad's has none
+        del record["schema"]
         files = tuple(FileRecord(**row) for row in record.pop("files"))
         parts = tuple(_part(row) for row in record.pop("parts"))
         manifest = Manifest(files=files, parts=parts, **record)
         _require_kinds(manifest)
         return manifest
-    except InputError as error:
-        raise ValueError(str(error)) from None
     except (ValueError, TypeError, KeyError, AttributeError) as error:
-        raise ValueError(f"{folder / NAME} cannot be used: {error}") from error
+        raise InputError(str(folder / NAME), f"cannot be used: {error}") from error
+
+
+def read_export(source: str, folder: Path) -> Manifest:
+    """The manifest of an export, which `source` names, whose every file is as tactcad wrote it.
+
+    Raises InputError where something in the folder is altered, missing or added.
+    """
+    if wrong := check_manifest(folder):
+        legal = f"a folder with {NAME}, as `tactcad export` writes"
+        raise InputError(source, f"not a sound export: {wrong[0]}", legal=legal)
+    return read_manifest(folder)
 
 
 def _require_kinds(manifest: Manifest) -> None:
@@ -128,8 +137,8 @@ def check_manifest(folder: Path) -> list[str]:
     """
     try:
         manifest = read_manifest(folder)
-    except ValueError as error:
-        return [str(error)]
+    except InputError as error:
+        return [f"{error.where}: {error.what}"]
     named = [file.path for file in manifest.files]
     present = {p.relative_to(folder).as_posix() for p in folder.rglob("*") if not p.is_dir()}
     wrong = [f"{path}: listed twice" for path in sorted(set(named)) if named.count(path) > 1]

@@ -4,7 +4,7 @@ geometry."""
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from copy import deepcopy
 from dataclasses import dataclass
 from pathlib import Path
@@ -22,7 +22,7 @@ from .dxf import read_dxf
 from .geometry import Record, bill_line, contour_record, geometry
 from .golden_file import MOST_BYTES, read_golden
 from .inputs import flattened, inputs_from_json, nested
-from .manifest import NAME, Manifest, check_manifest, read_manifest
+from .manifest import Manifest, read_export
 
 # What an export's files say of a part; holes, placements and stiffness are in none of them.
 IN_EXPORTS = (
@@ -42,9 +42,10 @@ FROM_SHAPE = ("area_mm2", "centre_mm", "box_mm")
 
 @dataclass(frozen=True)
 class Side:
-    """One side: what was named and what it is, its record, and for an export its folder.
+    """One side: what was named and what it is, and its record.
 
     values    the design's fields by path, None where the side does not tell them (a golden file)
+    pictures  an export's pictures by path, None where the side is no export
     table     the design as TOML gives it, None where the side does not tell it
     own_code  the record is by the code of a revision, not by the present one
     of_other  what that code makes of the design on the other side; None where it was not asked, or refuses it
@@ -57,18 +58,11 @@ class Side:
     revision: str
     record: Record
     values: dict[str, Any] | None = None
-    folder: Path | None = None
+    pictures: Mapping[str, bytes] | None = None
     table: dict[str, Any] | None = None
     own_code: bool = False
     of_other: Record | None = None
     untold: tuple[str, ...] = ()
-
-    def pictures(self) -> dict[str, bytes]:
-        """An export's pictures by path."""
-        if self.folder is None:
-            return {}
-        files = [f.path for f in read_manifest(self.folder).files if f.kind == "picture"]
-        return {path: (self.folder / path).read_bytes() for path in files}
 
 
 def named(source: str) -> Path:
@@ -115,14 +109,7 @@ def design_side(
 
 
 def _export(source: str, folder: Path) -> Side:
-    wrong = check_manifest(folder)
-    if wrong:
-        raise InputError(
-            source,
-            f"not a sound export: {wrong[0]}",
-            legal=f"a folder with {NAME}, as `tactcad export` writes",
-        )
-    manifest = read_manifest(folder)
+    manifest = read_export(source, folder)
     inputs = inputs_from_json(manifest.inputs)
     # an export records its design as "design", beside the scenes it was asked for
     values = (
@@ -133,6 +120,7 @@ def _export(source: str, folder: Path) -> Side:
     try:
         record = {"parts": _exported_parts(folder, manifest), "scenes": _exported_bills(folder, manifest)}
         table = values and nested(values)
+        pictures = {f.path: (folder / f.path).read_bytes() for f in manifest.files if f.kind == "picture"}
     except (OSError, ValueError, LookupError, TypeError, AttributeError) as error:
         raise InputError(source, f"not a sound export: {error}") from None
     return Side(
@@ -142,7 +130,7 @@ def _export(source: str, folder: Path) -> Side:
         manifest.revision,
         record,
         values and design_values(values),
-        folder,
+        pictures,
         table,
     )
 

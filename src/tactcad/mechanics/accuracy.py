@@ -19,7 +19,7 @@ from pathlib import Path
 
 import numpy as np
 
-from tactcad.design.messages import CheckFailure
+from tactcad.design.messages import CheckFailure, InputError
 
 from . import validity
 from .register import BY_NAME, REGISTER
@@ -58,8 +58,16 @@ class Choice:
 
 @lru_cache(maxsize=1)
 def accuracy_data() -> dict:
-    """data/accuracy.json as written by the fit."""
-    return json.loads((Path(__file__).parent / "data" / "accuracy.json").read_text("utf-8"))
+    """data/accuracy.json as written by the fit. Raises InputError where a registered rung is not in it."""
+    data = json.loads((Path(__file__).parent / "data" / "accuracy.json").read_text("utf-8"))
+    measured = set.intersection(*(set(zone["promised"]) for zone in data["zones"]))
+    for name in (c.name for c in CANDIDATES if c.name not in measured):
+        raise InputError(
+            f"rung {name} of mechanics/register.py",
+            "its errors are not measured",
+            legal="mechanics/data as `tactcad fit --shipped-samples --out DIR` writes it",
+        )
+    return data
 
 
 def choose(s: HingeSection, accuracy: float, names: Sequence[str] = ()) -> Choice:

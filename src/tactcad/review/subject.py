@@ -13,7 +13,7 @@ from tactcad.design.messages import InputError
 from tactcad.design.tree import Design
 from tactcad.export.cache import Cache, default_root
 from tactcad.export.inputs import Inputs, digest, inputs_from_json, inputs_of, nested, reasons
-from tactcad.export.manifest import NAME, check_manifest, read_manifest
+from tactcad.export.manifest import read_export
 from tactcad.export.pipeline import DRAWN_WITH, LIBRARIES, ROOMS
 from tactcad.export.products import drawing_products, part_products
 from tactcad.export.shapes import Shapes
@@ -43,13 +43,7 @@ def subject(source: str) -> Subject:
 
 
 def _exported(source: str, folder: Path) -> Subject:
-    if wrong := check_manifest(folder):
-        raise InputError(
-            source,
-            f"not a sound export: {wrong[0]}",
-            legal=f"a folder with {NAME}, as `tactcad export` writes",
-        )
-    manifest = read_manifest(folder)
+    manifest = read_export(source, folder)
     before = inputs_from_json(manifest.inputs)
     again = "export it again, or review the design file"
     if before is None:

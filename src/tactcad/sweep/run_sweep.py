@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import time
 from collections.abc import Callable, Generator, Iterator
 from contextlib import AbstractContextManager, closing
@@ -14,6 +13,8 @@ from tactcad import __version__
 from tactcad.design.files import absolute, scratch_folder, write_whole
 from tactcad.design.messages import CheckFailure
 from tactcad.ending import unfinished
+from tactcad.export.contents import NAME as MANIFEST
+from tactcad.export.contents import sealed
 
 from .designs_taken import prepared
 from .far_store import FarStore
@@ -27,7 +28,6 @@ if TYPE_CHECKING:
     import pyarrow as pa
     from distributed import Client
 
-MANIFEST = "manifest.json"
 MOST_CSV = 1_000_000  # rows that are written as CSV unasked
 
 
@@ -191,7 +191,7 @@ def _manifest(study: Study, folder: Path, tally: Tally) -> bytes:
             for name, sha256 in tally.sha256.items()
         ],
     }
-    return (json.dumps(record, indent=1) + "\n").encode()
+    return sealed(record)
 
 
 def _plain(table: object) -> dict:

@@ -4,26 +4,25 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Sequence
-from contextlib import suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tactcad.design.files import read_json, write_whole
+from tactcad.design.files import write_whole
 from tactcad.design.messages import CheckFailure, InputError
+from tactcad.export.contents import read_sealed
 from tactcad.report.plots import BLUE, GREY, drawn, panels
 from tactcad.report.report import ReportSection, ReportTable, ValidationReport, percent, to_html
 
-from .kept import mark_of
+from .kept import SCHEMA, mark_of
 from .results_table import PARQUET
 
 if TYPE_CHECKING:
     from matplotlib.axis import Axis
 
 PAGE = "plot.html"
-MOST_BYTES = 10_000_000  # of a manifest
 MOST_ROWS = 200_000  # that the page is made of, of a longer table by chance
 MOST_RESULTS = 6  # on the page: the first that vary
 FAINT = BLUE + "26"  # 15 %
@@ -40,15 +39,15 @@ def write_page(out: str | Path) -> Path:
     Raises
     ------
     InputError
-        The folder is no study's, or its table is not there.
+        The folder is no study's, or its table is not there, or not as the sweep wrote it.
     CheckFailure
         No field or no result varies among the designs that were measured.
     """
     folder = Path(out)
     mark_of(folder)
-    manifest = _manifest(folder)
-    vary = list(manifest["study"]["vary"])
-    columns, words = _columns(folder, vary)
+    manifest = read_sealed(folder, SCHEMA)
+    vary, sha256 = list(manifest["study"]["vary"]), manifest["files"][0]["sha256"]
+    columns, words = _columns(folder, sha256, vary)
     measured = manifest["designs"] - manifest["refused"]
     fields = [name for name in vary if name in columns]
     results = _results(columns, fields)
@@ -68,31 +67,32 @@ def write_page(out: str | Path) -> Path:
         f"{manifest['refused']} refused",
         summary=tuple(summary),
         sections=tuple(sections),
-        colophon=f"Made of {PARQUET}, SHA-256 {manifest['files'][0]['sha256']}; results shown: "
+        colophon=f"Made of {PARQUET}, SHA-256 {sha256}; results shown: "
         f"{len(shown)} of {len(results)} that vary.",
     )
     write_whole(folder / PAGE, to_html(report).encode())
     return folder / PAGE
 
 
-def _manifest(folder: Path) -> dict[str, Any]:
-    """The manifest of a finished study. Raises InputError where it has none, or not of this table."""
-    manifest = read_json(folder / "manifest.json", MOST_BYTES, "a study's manifest")
-    table, same = folder / PARQUET, False
-    with suppress(OSError, LookupError, TypeError), table.open("rb") as file:
-        same = hashlib.file_digest(file, "sha256").hexdigest() == manifest["files"][0]["sha256"]
-    if not same:
-        raise InputError(str(table), "is not the table that manifest.json names", legal="a finished study")
-    return manifest
-
-
-def _columns(folder: Path, vary: Sequence[str]) -> tuple[dict[str, Floats], dict[str, list[str]]]:
-    """What varies among the designs that were measured, in the order of the table: numbers, and of varied
-    fields that hold words or lists which of these; and those words."""
+def _columns(
+    folder: Path, sha256: str, vary: Sequence[str]
+) -> tuple[dict[str, Floats], dict[str, list[str]]]:
+    """What varies among the designs that were measured, in the order of the table of that digest: numbers,
+    and of varied fields that hold words or lists which of these; and those words."""
     import pyarrow as pa
     import pyarrow.parquet as pq
 
-    file = pq.ParquetFile(folder / PARQUET)
+    try:
+        with open(folder / PARQUET, "rb") as stream:
+            same = hashlib.file_digest(stream, "sha256").hexdigest() == sha256
+        file = pq.ParquetFile(folder / PARQUET)
+    except (OSError, pa.ArrowInvalid) as error:
+        raise InputError(
+            str(folder / PARQUET), f"cannot be read: {error}", legal="a finished study"
+        ) from None
+    if not same:
+        legal = "the table as written, or the same sweep run again"
+        raise InputError(str(folder / PARQUET), "altered since the sweep wrote it", legal=legal)
     share = min(1.0, MOST_ROWS / max(1, file.metadata.num_rows))
     groups = (file.read_row_group(i) for i in range(file.num_row_groups))
     table = pa.concat_tables(group.take(_some(group.num_rows, share)) for group in groups)
