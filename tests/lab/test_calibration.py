@@ -11,10 +11,10 @@ from scipy.stats import t as t_distribution
 
 from tactcad.design.messages import CheckFailure, InputError
 from tactcad.lab import calibration, calibration_text, contact, noise, readings, regression, simulate
+from tactcad.lab.column_units import against_design
 from tactcad.lab.load_cell import LoadCell
 from tactcad.lab.readings import CalibrationReadings
 from tactcad.lab.simulate import Noise, Truth
-from tactcad.lab.units import against_design
 
 CELL = 57.04
 EXACT = LoadCell(CELL)

@@ -57,7 +57,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     from tactcad.design.files import refuse_overwriting, write_whole
     from tactcad.lab import calibration, calibration_text, readings
-    from tactcad.lab.units import against_design
+    from tactcad.lab.column_units import against_design
 
     from .progress import slow_work
 

@@ -22,11 +22,11 @@ import numpy as np
 from scipy.special import fdtrc
 
 from tactcad.design.messages import InputError
+from tactcad.lab.column_units import LOAD, unlikely
 from tactcad.lab.combine import Interval, Slopes, combine, hull, scatter
 from tactcad.lab.readings import GraspReadings
 from tactcad.lab.regression import require_level, t_quantile
 from tactcad.lab.sensitivity import Sensitivity
-from tactcad.lab.units import LOAD, unlikely
 
 STRAY = 1e-4  # probability, over all elements, below which an element is reported not to follow the others
 SURELY = 3.0  # standard errors below zero from which on an element's force is said to fall; chosen
