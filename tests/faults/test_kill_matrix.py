@@ -1,4 +1,4 @@
-"""Five commands that write, ended by four signals at moments spread over each one's run: whole or untouched,
+"""Commands that write, ended by four signals at moments spread over each one's run: whole or untouched,
 and no litter.
 
 What lies there before is what the command made of input A, after it what it makes of B; whatever ends it in
@@ -21,6 +21,7 @@ from pathlib import Path
 
 import pytest
 from command_line import ROOT, Started, contents, environment, tactcad_runs
+from small_target import SMALL
 
 pytestmark = pytest.mark.slow  # kills commands
 
@@ -33,6 +34,7 @@ COMMANDS = {  # N is A or B
     "golden": "golden hardware/N.toml",
     "validate": "validate --table1 N-table1.csv --out there/report",
     "calibrate": "calibrate N-readings.csv --out there/table.csv",
+    "review": "review N.toml --out there/page.html",
 }
 BY_DAY = ("export", "calibrate")  # the quick ones, every signal once; by night all of them
 OTHERS = ("home", "cache")  # where libraries and the cache keep theirs
@@ -190,3 +192,25 @@ def test_twenty_moments_of_each_signal(bench, tmp_path, command):
         standing, early = end_at(case, standing, sent, 20, every=True)
         print(f"{command}, {sent}: 20 moments, {early} before the run's end, seed {SEED}", flush=True)
         assert early >= 8
+
+
+def test_a_synthesis_is_whole_or_not_there(tmp_path):
+    """Its folder must be new: it is there as an undisturbed run makes it, or nothing of it is."""
+    environment(tmp_path)
+    (tmp_path / "N.toml").write_text(SMALL, "utf-8")
+    case = Case(tmp_path, "design N.toml --out there/out", 0.0, {})
+    began = time.monotonic()
+    case.run("N")
+    seconds = time.monotonic() - began
+    whole = lying(tmp_path)
+    assert {"there/out/design.toml", "there/out/report.html", "there/out/report.json"} <= set(whole)
+    for n, sent in enumerate((*STATUS, "SIGTERM", "SIGKILL")):
+        shutil.rmtree(tmp_path / "there", ignore_errors=True)
+        ended(case, "N", sent, (n + 0.5) / 6 * seconds)
+        found = lying(tmp_path)
+        visible = {path: data for path, data in found.items() if not hidden(path)}
+        assert set(visible) in (set(whole), {"N.toml"}, {"N.toml", "there"}), (sent, sorted(visible))
+        assert sent == "SIGKILL" or found == visible, (sent, sorted(set(found) - set(visible)))
+    shutil.rmtree(tmp_path / "there", ignore_errors=True)
+    case.run("N")
+    assert set(lying(tmp_path)) == set(whole)
