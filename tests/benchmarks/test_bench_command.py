@@ -142,7 +142,7 @@ def test_a_peer_that_is_not_installed_is_said(tmp_path, capsys, monkeypatch):
 def test_without_the_kernel_it_says_so_and_measures_the_rest(monkeypatch, capsys):
     from tactcad.bench import session
 
-    monkeypatch.setattr(session, "_kernel", lambda: False)
+    monkeypatch.setattr(session, "missing", lambda extra: [extra])
     assert main(["bench", "--smoke", "--only", "tessellation"]) == 0
     assert "The CAD kernel is not installed: not measured." in capsys.readouterr().out
 

@@ -9,6 +9,8 @@ import subprocess
 from functools import lru_cache
 from pathlib import Path
 
+from tactcad.export.cache import LIBRARIES, default_root
+
 COMMANDS = ("freecadcmd", "FreeCADCmd")
 SCRIPT = Path(__file__).with_name("peers") / "freecad_element.py"
 PATIENCE = 60  # s: a fresh user folder makes FreeCAD's first start slow
@@ -24,10 +26,13 @@ def command() -> list[str]:
 
 
 def environment(job: dict) -> dict[str, str]:
-    """The environment that carries the job: FreeCAD's command line takes every argument for a file to
-    open.
+    """The environment that carries the job, since FreeCAD's command line takes every argument for a file to
+    open; and FreeCAD's home, which is not the user's.
     """
+    home = default_root() / LIBRARIES
+    home.mkdir(parents=True, exist_ok=True)
     return {
+        "HOME": str(home),
         "TACTCAD_PEER": json.dumps(job),
         "QT_QPA_PLATFORM": os.environ.get("QT_QPA_PLATFORM", "offscreen"),
     }

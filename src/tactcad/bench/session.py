@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import importlib
-import importlib.util
 import time
 import traceback
 from collections.abc import Callable, Sequence
@@ -12,6 +11,7 @@ from datetime import date
 from pathlib import Path
 from typing import Any
 
+from tactcad.design.extras import missing
 from tactcad.design.messages import CheckFailure
 
 from .machine import machine, peers, versions
@@ -73,7 +73,7 @@ def _one(name: str, plan: RunPlan) -> dict:
     module_name, needs_kernel = BENCHMARKS[name]
     module = importlib.import_module(f".{module_name}", __package__)
     entry = {"title": module.TITLE, "question": module.QUESTION, "tables": {}, "findings": [], "missing": []}
-    if needs_kernel and not _kernel():
+    if needs_kernel and missing("cad"):
         return entry | {"seconds": 0.0, "missing": ["The CAD kernel is not installed: not measured."]}
     started = time.perf_counter()
     try:
@@ -86,7 +86,3 @@ def _one(name: str, plan: RunPlan) -> dict:
             f"{type(error).__name__} in {at.name}, line {at.lineno} of {Path(at.filename).name}: {error}"
         )
     return entry | {"seconds": round(time.perf_counter() - started, 1)}
-
-
-def _kernel() -> bool:
-    return all(importlib.util.find_spec(name) for name in ("OCP", "build123d", "manifold3d"))
