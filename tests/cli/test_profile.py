@@ -13,11 +13,12 @@ import pytest
 from variants import HARDWARE, variant
 
 import tactcad
-from tactcad.account import HEAVY, KERNEL, account, making, text
+from tactcad.account import HEAVY, account, making, text
 from tactcad.scenes import make_scene, scene_names
 
 DESIGN = HARDWARE / "double-sample.toml"  # two elements, and every rig
 MESHES = {"trimesh", "manifold3d"}
+KERNEL = {name for name, what in HEAVY.items() if what == "CAD kernel"}
 
 
 def run(*arguments, cwd, script="-m"):
@@ -108,7 +109,7 @@ def test_finite_element_estimates_load_no_kernel_and_solve_each_distinct_element
 def test_cut_files_and_inspection_load_no_kernel(tmp_path):
     script = """
 import sys
-from tactcad.account import KERNEL
+from tactcad.account import HEAVY
 from tactcad.export.dxf import check_dxf, dxf_bytes
 from tactcad.parts.designs import load
 from tactcad.parts.layout import Layout
@@ -120,7 +121,7 @@ for name in scene_names(design):
     for part in make_scene(design, name).parts:
         if part.process == "wire-cut":
             assert check_dxf(dxf_bytes(part), part) == []
-found = {m.split(".")[0] for m in sys.modules} & (KERNEL | {"trimesh", "manifold3d"})
+found = {m.split(".")[0] for m in sys.modules} & {n for n, what in HEAVY.items() if what in ("CAD kernel", "meshes")}
 sys.exit(f"loaded {found}" if found else 0)
 """
     done = run(str(DESIGN), cwd=tmp_path, script=script)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import subprocess
+from contextlib import nullcontext
 from dataclasses import replace
 from pathlib import Path
 
@@ -131,24 +132,16 @@ def unsealed(folder: Path) -> None:
     (folder / "manifest.json").write_text(json.dumps(record, indent=1) + "\n")
 
 
-def laid_out_anew(folder: Path) -> None:
-    text = (folder / "manifest.json").read_text()
-    (folder / "manifest.json").write_text(json.dumps(json.loads(text), indent=2) + "\n")
-
-
-@pytest.mark.parametrize("damage", [one_byte, gone, stray, stray_hidden])
-def test_damage_is_seen(folder, damage):
-    damage(folder)
-    assert check_manifest(folder)
+OF_FILES = [one_byte, gone, stray, stray_hidden]
 
 
 @pytest.mark.parametrize(
-    "damage", [no_manifest, cut_manifest, other_schema, no_object, edited, unsealed, laid_out_anew]
+    "damage", [*OF_FILES, no_manifest, cut_manifest, other_schema, no_object, edited, unsealed]
 )
-def test_a_manifest_is_read_as_it_was_written_or_not_at_all(folder, damage):
+def test_damage_is_seen(folder, damage):
     damage(folder)
     assert check_manifest(folder)
-    with pytest.raises(InputError, match="manifest.json"):
+    with pytest.raises(InputError, match="manifest.json") if damage not in OF_FILES else nullcontext():
         read_manifest(folder)
 
 

@@ -118,7 +118,7 @@ def assert_tidy(out: Path, work: Path) -> None:
     """Beside the export lies nothing, nor in other places."""
     assert [p.name for p in out.parent.iterdir()] == [out.name]
     assert out.is_dir() and not out.is_symlink()
-    assert not list((work / "tmp").iterdir())
+    assert not list((work / "tmp").iterdir()) and not list((work / "home").iterdir())
     assert not list((work / "cache").rglob(".new-*"))
 
 
@@ -141,14 +141,14 @@ class Bench:
 # Forks for each command with the program loaded: what a shell would do, without Python's start and the
 # libraries' loading. Reads JSON lines; writes two lines for each, the process's number and its status.
 LOADED = """
-import gc, importlib, json, os, signal, sys, traceback
+import contextlib, gc, importlib, json, os, signal, sys, traceback
 from tactcad.cli.main import COMMANDS, main
-import tactcad.drawing.assemblies.assembly_sheets
-import tactcad.export.pipeline, tactcad.export.sides, tactcad.release.make
-import tactcad.checks.run, tactcad.solids.build
-import tactcad.lab.batch, tactcad.lab.grasp, tactcad.paper.validation
-for name in COMMANDS:
-    importlib.import_module("tactcad.cli." + name)
+modules = "drawing.assemblies.assembly_sheets export.pipeline export.sides release.make"
+modules += " checks.run solids.build"
+modules += " lab.batch lab.grasp paper.validation"
+for name in (*modules.split(), *("cli." + name for name in COMMANDS)):
+    with contextlib.suppress(ModuleNotFoundError):  # where extras are hidden
+        importlib.import_module("tactcad." + name)
 gc.freeze()  # or a child would copy all of it when it looks for what is no longer used
 while line := sys.stdin.buffer.readline():
     asked = json.loads(line)
@@ -175,12 +175,13 @@ while line := sys.stdin.buffer.readline():
 
 
 @cache
-def loaded() -> tuple[subprocess.Popen[bytes], Path]:
-    """The process that forks, and its folder; it ends with this one, which holds its input."""
+def loaded(path: str) -> tuple[subprocess.Popen[bytes], Path]:
+    """The process that forks, with this PYTHONPATH, and its folder; it ends with this one, which holds its
+    input."""
     folder = Path(tempfile.mkdtemp())
     command = [sys.executable, "-c", LOADED]
     pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "bufsize": 0}
-    process = subprocess.Popen(command, cwd=folder, env=environment(folder), **pipes)
+    process = subprocess.Popen(command, cwd=folder, env=environment(folder, PYTHONPATH=path), **pipes)
 
     def end() -> None:
         process.communicate()
@@ -194,7 +195,7 @@ class Started:
     """`tactcad ARGUMENTS` in a process of its own, forked with the program loaded; one at a time."""
 
     def __init__(self, arguments: Sequence[str], cwd: Path, env: dict[str, str]) -> None:
-        process, folder = loaded()
+        process, folder = loaded(env["PYTHONPATH"])
         self.said, self.out, self.err = process.stdout, folder / "out", folder / "err"
         asked = {"arguments": list(arguments), "cwd": str(cwd), "env": env}
         asked |= {"out": str(self.out), "err": str(self.err)}

@@ -138,26 +138,19 @@ def test_a_page_of_differences_inside_the_export_that_it_tells_of(exported):
 
 
 def test_an_output_that_is_a_link_is_refused_and_what_it_leads_to_stays(inputs):
-    """Before any work: no check, no solid, nothing in the cache."""
+    """Before any work: nothing is in the cache."""
     _, work = inputs
     (work / "precious").write_text("ten years")
-    (work / "page.FCStd").symlink_to("precious")
-    (work / "nowhere").symlink_to("not there")
     (work / "readings.csv").write_bytes(good("calibrate", inputs))
-    (work / "review.FCMacro").symlink_to("precious")
-    commands = [
-        ["review", "A.toml", "--out", "page.FCStd"],
-        ["review", "A.toml", "--out", "nowhere"],
-        ["review", "A.toml", "--freecad", "page.FCStd"],
-        ["review", "A.toml", "--freecad", "review.FCStd"],
-        ["diff", "A.toml", "B.toml", "--markdown", "page.FCStd"],
-        ["calibrate", "readings.csv", "--out", "nowhere"],
-        ["estimate", "--batch", "batch.csv", "--out", "page.FCStd"],
-    ]
-    before = {p.name for p in work.iterdir()}
-    for done in tactcad_runs(commands, work, environment(work)):
+    for link, to in {"a.FCStd": "precious", "nowhere": "not there", "b.FCMacro": "precious"}.items():
+        (work / link).symlink_to(to)
+    before = {p.name for p in work.iterdir()} | {"home", "tmp"}
+    commands = """review A.toml --out a.FCStd, review A.toml --out nowhere, review A.toml --freecad a.FCStd,
+        review A.toml --freecad b.FCStd, diff A.toml B.toml --markdown a.FCStd,
+        calibrate readings.csv --out nowhere, estimate --batch batch.csv --out a.FCStd"""
+    for done in tactcad_runs([line.split() for line in commands.split(",")], work, environment(work)):
         assert ": is a link; nothing was changed; legal: " in refused(done)
-    assert {p.name for p in work.iterdir()} - {"home", "tmp"} == before - {"home", "tmp"}
+    assert {p.name for p in work.iterdir()} == before
     assert (work / "precious").read_text() == "ten years"
 
 

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from variants import HARDWARE, variant
 
-from tactcad.design.messages import CheckFailure, InputError
+from tactcad.design.messages import InputError
 from tactcad.export.inputs import flattened, nested
 from tactcad.fem.face_strain import face_strain
 from tactcad.fem.plane_elements import solve_plane
@@ -205,7 +205,7 @@ def test_a_design_is_read_back_from_an_exports_values(macro):
 
 def test_a_missing_viewer_is_said_with_the_remedy(monkeypatch, tmp_path):
     monkeypatch.setattr(viewer_library, "find_spec", lambda name: None)
-    with pytest.raises(CheckFailure, match=r"pip install 'tactcad\[review\]'"):
+    with pytest.raises(InputError, match=r"pip install '\.\[review\]' in a checkout"):
         viewer_library.viewer_library()
 
 

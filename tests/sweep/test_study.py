@@ -93,12 +93,13 @@ def test_bad_arguments(tmp_path, capsys, monkeypatch, arguments, said):
     assert said in last and not (tmp_path / "o").exists()
 
 
-def test_without_dask_it_says_what_to_install(tmp_path, capsys, monkeypatch):
-    monkeypatch.setattr("importlib.util.find_spec", lambda name, *_: None)
-    assert main(["sweep", str(written(tmp_path)), "--out", str(tmp_path / "o")]) == 1
-    assert capsys.readouterr().err == (
-        "tactcad: this needs distributed and pyarrow, not installed here: pip install 'tactcad[sweep]'\n"
-    )
+@pytest.mark.parametrize("what", ["checks", "export"])
+def test_what_needs_solids_is_refused_where_there_is_no_kernel(what, tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr("tactcad.design.extras.find_spec", lambda name: None if name == "OCP" else ...)
+    study = written(tmp_path, what=f'["{what}"]', elements="")
+    assert main(["sweep", str(study), "--out", str(tmp_path / "o")]) == 2
+    said = f"tactcad: measure.what, {what}: needs OCP, not installed here; legal: pip install '.[cad]' in a "
+    assert capsys.readouterr().err == f"{said}checkout of tactcad\n" and not (tmp_path / "o").exists()
 
 
 def test_the_schema_names_every_field_and_takes_the_study(tmp_path, capsys):

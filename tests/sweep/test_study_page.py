@@ -43,17 +43,13 @@ def test_the_page_stands_alone(tmp_path, scheduler, capsys):
     assert "element.hinge_thickness" in page and "solid.E4.stiffness" in page and page.count("<svg") == 2
     assert not re.findall(r"(?:src|href)=[\"'](?!#|data:image)", page)
     assert "solid.E9.stiffness: most by element.hinge_thickness" in page
-    for name, was, now in (
-        ("manifest.json", b'"refused": 0', b'"refused": 7'),
-        ("results.parquet", b"", b"0"),
-    ):
+    for name in ("results.parquet", "manifest.json"):
         file = tmp_path / "out" / name
         as_written = file.read_bytes()
-        file.write_bytes(as_written.replace(was, now, 1))
+        file.write_bytes(as_written.replace(b'"refused": 0', b'"refused": 7') + b"\n")
         assert main(["sweep", "plot", str(tmp_path / "out")]) == 2
         assert f"{file}: altered since " in capsys.readouterr().err
         file.write_bytes(as_written)
-    assert (tmp_path / "out" / "plot.html").read_text() == page
 
 
 def test_three_designs_have_pairs(tmp_path):

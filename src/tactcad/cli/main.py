@@ -9,17 +9,19 @@ from __future__ import annotations
 import argparse
 import gc
 import importlib
-import importlib.util
 import json
 import os
 import sys
 from collections.abc import Callable
+from contextlib import suppress
 
 from tactcad import __version__
-from tactcad.account import KERNEL, account, text
+from tactcad.account import account, text
+from tactcad.design import extras
 from tactcad.design.files import NO_ROOM
 from tactcad.design.messages import CheckFailure, InputError, one_of
 from tactcad.ending import end_on_signals, past_ending
+from tactcad.export.cache import take_libraries_in
 
 from . import streams
 from .parser import Parser
@@ -44,8 +46,18 @@ COMMANDS = {
     "schema": "print every field of a design file with unit, range, default and meaning",
 }
 
-# Commands refused at once where the kernel is not installed; others are when they first need it.
-NEED_KERNEL = ("export", "check", "release", "review", "view", "golden")
+# Extras without which a command, or one of its options, is refused before any work.
+NEEDS = {
+    "export": ("cad",),
+    "check": ("cad",),
+    "sweep": ("sweep",),
+    "release": ("cad",),
+    "review": ("cad",),
+    "view": ("cad", "review"),
+    "golden": ("cad",),
+    "diff --review": ("cad", "review"),
+    "diff --freecad": ("cad",),
+}
 
 DONE, FAILED, BAD_INPUT = 0, 1, 2
 
@@ -74,9 +86,9 @@ def main(argv: list[str] | None = None) -> int:
             raise
         return _refused(f"the output cannot be written: {error.strerror}", FAILED)
     except ImportError as error:
-        if (error.name or "").split(".")[0] not in KERNEL:
+        if (why := extras.refusal(error)) is None:
             raise
-        return _refused(_no_kernel(error), FAILED)
+        return _refused(why, BAD_INPUT)
 
 
 def _own_process() -> int:
@@ -84,6 +96,8 @@ def _own_process() -> int:
     gc.set_threshold(NEW_OBJECTS)
     # Python that is started from here on, as Dask's helpers, looks for no module in the working folder
     os.environ["PYTHONSAFEPATH"] = "1"
+    with suppress(RuntimeError):  # a user without home
+        take_libraries_in()
     output = streams.own()
     try:
         status = main(sys.argv[1:])
@@ -100,13 +114,6 @@ def _own_process() -> int:
 def _refused(why: object, status: int) -> int:
     print(f"tactcad: {why}", file=sys.stderr)
     return status
-
-
-def _no_kernel(error: ImportError | None = None) -> str:
-    """What to install: the kernel, or the system library that it lacks."""
-    if error is None or isinstance(error, ModuleNotFoundError):
-        return "this needs the CAD kernel, which is not installed: pip install 'tactcad[cad]'"
-    return f"the CAD kernel cannot be loaded: {error}; on Debian or Ubuntu: apt-get install libgl1 libx11-6"
 
 
 def _profiled(run: Callable[[argparse.Namespace], int], args: argparse.Namespace) -> int:
@@ -143,8 +150,10 @@ def parser_of(command: str) -> Parser:
 def _dispatch(argv: list[str]) -> int:
     if argv and argv[0] in COMMANDS:
         args = parser_of(argv[0]).parse(argv[1:])
-        if argv[0] in NEED_KERNEL and importlib.util.find_spec("build123d") is None:
-            raise CheckFailure(_no_kernel())
+        for what, needed in NEEDS.items():
+            command, _, option = what.partition(" --")
+            if command == argv[0] and (not option or getattr(args, option)):
+                extras.refuse_missing(what, *needed)
         run = importlib.import_module(f"tactcad.cli.{argv[0]}").run
         return _profiled(run, args) if args.profile else run(args)
     parser = Parser(

@@ -4,11 +4,11 @@
 from __future__ import annotations
 
 import argparse
-import importlib.util
 import json
 import sys
 from typing import TYPE_CHECKING
 
+from tactcad.design.extras import refuse_missing
 from tactcad.design.messages import CheckFailure, InputError
 
 from .allowed import add_allowance, allowance
@@ -31,7 +31,6 @@ result is kept in DIR/store as it finishes: the same command again takes up wher
 nothing twice and gives the same bytes. Refused designs are rows with their reason; where all are, the exit
 status is 1."""
 
-NEEDED = ("distributed", "pyarrow")
 MOST_WORKERS = 1000
 
 
@@ -65,11 +64,6 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    missing = [name for name in NEEDED if importlib.util.find_spec(name) is None]
-    if missing:
-        raise CheckFailure(
-            f"this needs {' and '.join(missing)}, not installed here: pip install 'tactcad[sweep]'"
-        )
     if args.study[0] == "plot":
         return _plot(args)
     return _sweep(args)
@@ -78,7 +72,7 @@ def run(args: argparse.Namespace) -> int:
 def _sweep(args: argparse.Namespace) -> int:
     from tactcad.sweep.on_dask import cores
     from tactcad.sweep.run_sweep import sweep
-    from tactcad.sweep.study import read_study
+    from tactcad.sweep.study import CHECKS, EXPORT, read_study
 
     from .progress import progress, slow_work
 
@@ -99,6 +93,8 @@ def _sweep(args: argparse.Namespace) -> int:
     if asked.seconds is not None and args.scheduler is not None:
         raise InputError("--in", "a cluster's time is not known here", value=args.seconds, legal="--within")
     study = read_study(args.study[0])
+    if solid := [name for name in (CHECKS, EXPORT) if name in study.measure.what]:
+        refuse_missing(f"measure.what, {solid[0]}", "cad")
     workers = args.workers or cores()
     picked = None
     if asked:

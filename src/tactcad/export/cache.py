@@ -38,6 +38,7 @@ MARK = b"""Signature: 8a477f597d28d172789f06886806bc55
 # Cache of tactcad: everything in this folder may be deleted at any time, and tactcad deletes in it.
 """
 SECRET_NAME, SECRET_BYTES = "secret", 32
+LIBRARIES = "libraries"
 
 
 class Cache:
@@ -170,13 +171,23 @@ def default_root() -> Path:
     return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "tactcad" / "entries"
 
 
+def take_libraries_in() -> None:
+    """Have matplotlib and ezdxf keep their lists of fonts in our cache, in this process and those it starts.
+
+    They are not loaded yet: where, they ask the environment then. ezdxf knows XDG_CACHE_HOME only.
+    """
+    root = default_root()
+    os.environ |= {"TACTCAD_CACHE": str(root), "XDG_CACHE_HOME": str(root / LIBRARIES)}
+    os.environ.setdefault("MPLCONFIGDIR", str(root / LIBRARIES / "matplotlib"))
+
+
 def _claim(root: Path) -> None:
     """Mark an empty folder; raises InputError where it is another's."""
     names = os.listdir(root)  # before the mark is read: who put anything there had marked it
     mark = _content(root / MARK_NAME) if MARK_NAME in names else b""
     if mark == MARK:
         return
-    if set(names) - {MARK_NAME} or mark is None or not MARK.startswith(mark):
+    if set(names) - {MARK_NAME, LIBRARIES} or mark is None or not MARK.startswith(mark):
         raise InputError(
             str(root),
             "holds files that are not tactcad's, so it cannot be the cache",

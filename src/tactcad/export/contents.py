@@ -60,19 +60,9 @@ def sealed(record: Mapping[str, Any]) -> bytes:
 
 
 def read_sealed(folder: Path, schema: str) -> dict[str, Any]:
-    """The folder's manifest without its seal: the one reader of manifests.
+    """The manifest of a folder that tactcad wrote, without its seal. Every reader of manifests calls this.
 
-    Parameters
-    ----------
-    folder
-        A folder that tactcad wrote.
-    schema
-        The schema that its manifest must have.
-
-    Raises
-    ------
-    InputError
-        Where there is no manifest, it has another schema, or it is not exactly what tactcad wrote.
+    Raises InputError where there is none, it has another schema, or it is not exactly what tactcad wrote.
     """
     path = folder / NAME
     record = read_json(path, MOST_BYTES, "a manifest")

@@ -95,7 +95,7 @@ def read_manifest(folder: Path) -> Manifest:
 
 
 def read_export(source: str, folder: Path) -> Manifest:
-    """The manifest of an export, which `source` names, whose every file is as tactcad wrote it.
+    """The manifest of an export that `source` names, of which every file is as tactcad wrote it.
 
     Raises InputError where something in the folder is altered, missing or added.
     """

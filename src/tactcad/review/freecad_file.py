@@ -147,11 +147,11 @@ def _run(command: str, folder: Path) -> bytes:
 
 
 def environment(folder: Path) -> dict[str, str]:
-    """Variables under which FreeCAD runs without a screen and with `folder` for its user's home."""
+    """Variables under which FreeCAD runs without a screen, and leaves nothing outside `folder`."""
     runtime = folder / "run"
     runtime.mkdir(mode=0o700)
-    own = {"HOME": str(folder), "QT_QPA_PLATFORM": "offscreen", "XDG_RUNTIME_DIR": str(runtime)}
-    return {**os.environ, **own}
+    own = dict.fromkeys(("HOME", "XDG_CACHE_HOME", "TMPDIR"), str(folder))
+    return {**os.environ, **own, "QT_QPA_PLATFORM": "offscreen", "XDG_RUNTIME_DIR": str(runtime)}
 
 
 def profile(*imports: str) -> str:

@@ -11,12 +11,13 @@ from importlib.metadata import PackageNotFoundError, version
 from importlib.util import find_spec
 from pathlib import Path
 
-from tactcad.design.messages import CheckFailure
+from tactcad.design.extras import install
+from tactcad.design.messages import CheckFailure, InputError
 
 PACKAGE, DISTRIBUTION = "ocp_viewer", "ocp-viewer"
 SCRIPT = "server/static/js/three-cad-viewer.esm.js"
 STYLE = "server/static/css/three-cad-viewer.css"
-INSTALL = "pip install 'tactcad[review]'"
+INSTALL = install("review")
 # The fifth major version's calls are what the page's script makes.
 VERSION = re.compile(r'^const version = "(5\.[\d.]+)";', re.MULTILINE)
 
@@ -36,12 +37,14 @@ def viewer_library() -> ViewerLibrary:
 
     Raises
     ------
+    InputError
+        Where it is not installed; says how to get it.
     CheckFailure
-        Where it is not installed, or is not of the version that the page needs; says how to get it.
+        Where it is not whole, or not of the version that the page needs.
     """
     spec = find_spec(PACKAGE)
     if spec is None or not spec.submodule_search_locations:
-        raise CheckFailure(f"the page's viewer, {DISTRIBUTION}, is not installed: {INSTALL}")
+        raise InputError("the page's viewer", f"{DISTRIBUTION} is not installed", legal=INSTALL)
     folder = Path(next(iter(spec.submodule_search_locations)))
     try:
         script, style = (folder / SCRIPT).read_bytes(), (folder / STYLE).read_text("utf-8")

@@ -19,7 +19,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING, Protocol
 
-from tactcad.account import KERNEL
+from tactcad.design.extras import install
 from tactcad.design.messages import CheckFailure, InputError
 from tactcad.export.inputs import Inputs, reasons
 
@@ -248,8 +248,7 @@ def _refuse_without_tactcad(client: Client) -> None:
     try:
         client.run(metadata.version, "tactcad")
     except metadata.PackageNotFoundError as error:
-        what = "has no tactcad"
-        raise InputError("a worker", what, legal="pip install 'tactcad[sweep]' there") from error
+        raise InputError("a worker", "has no tactcad", legal=f"{install('sweep')} there") from error
 
 
 def all_done(client: Client, orders: Iterable[SweepOrder]) -> Iterator[Done]:
@@ -281,10 +280,8 @@ def all_done(client: Client, orders: Iterable[SweepOrder]) -> Iterator[Done]:
             "little memory? What was finished is kept"
         ) from error
     except ImportError as error:
-        if (error.name or "").split(".")[0] in KERNEL:
-            raise
-        what = f"lacks {error.name}"
-        raise InputError("a worker", what, legal="pip install 'tactcad[sweep]' there") from error
+        legal = f"{install('cad', 'sweep')} there"
+        raise InputError("a worker", f"lacks {error.name}: {error}", legal=legal) from error
     except (CancelledError, CommClosedError, TimeoutError) as error:
         raise CheckFailure(
             "the scheduler is gone; what was finished is kept, and the same command goes on from there"
