@@ -121,7 +121,8 @@ for name in scene_names(design):
     for part in make_scene(design, name).parts:
         if part.process == "wire-cut":
             assert check_dxf(dxf_bytes(part), part) == []
-found = {m.split(".")[0] for m in sys.modules} & {n for n, what in HEAVY.items() if what in ("CAD kernel", "meshes")}
+heavy = {name for name, what in HEAVY.items() if what in ("CAD kernel", "meshes")}
+found = {m.split(".")[0] for m in sys.modules} & heavy
 sys.exit(f"loaded {found}" if found else 0)
 """
     done = run(str(DESIGN), cwd=tmp_path, script=script)

@@ -9,7 +9,7 @@ from importlib.metadata import packages_distributions
 
 import pytest
 from command_line import ROOT, environment, one_by_one, refused, tactcad_runs
-from synthesis.small_target import SMALL
+from small_target import SMALL
 from test_other_files import BATCH
 from test_wheel import BASE, closure
 
@@ -39,7 +39,7 @@ new new.toml --from A.toml --json --profile
 build A.toml --count 20 --seed 1 --json --profile
 build A.toml --within 10% --in 60
 diff A.toml B.toml --json --html out.html --markdown out.md --fail-on checks --profile
-diff HEAD . A.toml --present-code
+diff HEAD . A.toml --their-code
 estimate A.toml --model plane --force 0.1 --json --profile
 estimate A.toml --accuracy 1% --in 60
 estimate A.toml --within 1%
@@ -60,12 +60,8 @@ LONG = """
 design target.toml --out designed --best --within 10% --in 60 --json --profile
 validate --out report --keep --json --profile --design macro-array --table1 table1.csv
 validate --out report --discard --table2 table2.csv
-bench --smoke --only rungs --seed 1 --out bench --keep --json --profile
-bench --smoke --only step --out bench --discard
-fit --shipped-samples --out fit --samples 60 --solids 40 --held-out 10 --held-out-solids 5 --range 240
-fit --shipped-samples --out fit --corners 40 --profile
 """
-NEVER = {"--help", "--full", "--reuse"}  # bench for an hour, fit from samples that take half an hour
+NEVER = {"--help"}
 
 
 @pytest.fixture(scope="module")
