@@ -6,15 +6,19 @@ from dataclasses import replace
 from math import sqrt
 
 import pytest
+from sound_designs import as_table, sound_table
 from variants import variant
 
 from tactcad.contour import circle, rectangle
+from tactcad.design.load import from_table
 from tactcad.design.messages import CheckFailure
 from tactcad.parts.description import Extrusion, Hole, Material, Part, Pocket
 from tactcad.parts.element import element
 from tactcad.parts.layout import Layout
 from tactcad.parts.limits import FACES, within
+from tactcad.parts.rules import broken_rules
 from tactcad.parts.surface_pieces import measured, pieces
+from tactcad.scenes import make_scene
 
 SLANTED = (0.0, -sqrt(0.5), sqrt(0.5))
 BODY = Extrusion(rectangle(0, 0, 10, 8), 5.0, (circle((5, 4), 3.0, "opening"),))
@@ -111,3 +115,13 @@ def test_every_limit_of_an_element_stands_on_its_outline(sides, changes):
     for c in shifted:
         with pytest.raises(CheckFailure):
             measured(part, c)
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_every_limit_of_a_drawn_array_stands_on_its_part(seed):
+    """Holes of one size at several places differ by rounding."""
+    design = from_table(as_table(sound_table(seed, (3, 2), False)))
+    assert not broken_rules(design)
+    for part in make_scene(design, "array").parts:
+        for c in part.characteristics:
+            assert measured(part, c).first, (part.part_no, c.name)

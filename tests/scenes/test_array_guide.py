@@ -252,3 +252,16 @@ def test_rigs_that_handle_the_array_show_the_map_too():
         assert [step.title for step in scene.steps if step.elements] == titles
         assert guide.sensing_face_map(scene).count(b"E10, arm 7") == 1
     assert guide.sensing_face_map(make_scene(design, "sample-stiffness")) is None
+
+
+@pytest.mark.parametrize("count", [1, 2, 3, 7])
+def test_numbers_beside_a_row_never_lie_on_each_other(count):
+    """However small the picture: of a row of two, too, both stand there."""
+    scene = make_scene(variant({"array.row_arms": [[6.0] * count, [6.0] * count]}), "array")
+    for scale in (2.0, 0.5, 0.1, 0.01):
+        texts = guide.numbers(scene, scale, 10.0)
+        for side in ("start", "end"):
+            column = sorted((t for t in texts if t.anchor == side), key=lambda t: t.at[1])
+            assert len(column) >= min(count, 2)
+            for below, above in zip(column, column[1:]):
+                assert above.at[1] - below.at[1] >= below.height

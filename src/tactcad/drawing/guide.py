@@ -237,8 +237,13 @@ def numbers(scene: Scene, f: float, half: float, arms: bool = False) -> list[Tex
     height = fitting[0] if fitting else NUMBERS[-1]
     texts = []
     for row, sign in zip(rows, (1.0, -1.0)):
-        for p in _spaced(row, (height + BELOW_EACH_OTHER) / f):
-            at = (sign * (half + BESIDE), middle(p) * f - height / 2)
+        shown, least = _spaced(row, (height + BELOW_EACH_OTHER) / f), height + BELOW_EACH_OTHER
+        levels = [middle(p) * f for p in shown]
+        if len(levels) == 2 and levels[0] - levels[1] < least:  # a short row: its two names move apart
+            centre = sum(levels) / 2
+            levels = [centre + least / 2, centre - least / 2]
+        for p, level in zip(shown, levels):
+            at = (sign * (half + BESIDE), level - height / 2)
             arm = f", {p.part.name.rpartition(', ')[2]}" if pad(p) else " (blank)"
             name = f"{p.designator}{arm if arms else ''}"
             texts.append(Text(at, name, height, "start" if sign > 0 else "end"))

@@ -200,8 +200,8 @@ def measured(part: Part, c: Characteristic) -> Measured:
     groups = [pieces(part, feature) for feature in c.between]
     if len(groups) == 1:
         # of any size: a hole that a pin is pressed into is modelled as wide as the pin, not as its limits
-        sizes = {p.diameter for p in groups[0]}
-        if len(sizes) == 1 and None not in sizes:
+        sizes = [p.diameter or 0.0 for p in groups[0]]
+        if sizes and min(sizes) > 0.0 and _is(min(sizes), max(sizes)):
             return Measured("diameter", tuple(groups[0]))
     else:
         first, *others = groups
