@@ -84,15 +84,14 @@ def _columns(
 
     try:
         with open(folder / PARQUET, "rb") as stream:
-            same = hashlib.file_digest(stream, "sha256").hexdigest() == sha256
+            if hashlib.file_digest(stream, "sha256").hexdigest() != sha256:
+                legal = "the table as written, or the same sweep run again"
+                raise InputError(str(folder / PARQUET), "altered since the sweep wrote it", legal=legal)
         file = pq.ParquetFile(folder / PARQUET)
     except (OSError, pa.ArrowInvalid) as error:
         raise InputError(
             str(folder / PARQUET), f"cannot be read: {error}", legal="a finished study"
         ) from None
-    if not same:
-        legal = "the table as written, or the same sweep run again"
-        raise InputError(str(folder / PARQUET), "altered since the sweep wrote it", legal=legal)
     share = min(1.0, MOST_ROWS / max(1, file.metadata.num_rows))
     groups = (file.read_row_group(i) for i in range(file.num_row_groups))
     table = pa.concat_tables(group.take(_some(group.num_rows, share)) for group in groups)
