@@ -30,7 +30,6 @@ HEAVY = {
     "trimesh": "meshes",
     "manifold3d": "meshes",
 }
-KERNEL = frozenset(name for name, what in HEAVY.items() if what == "CAD kernel")
 
 
 @dataclass
