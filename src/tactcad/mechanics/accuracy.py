@@ -65,7 +65,7 @@ def accuracy_data() -> dict:
         raise InputError(
             f"rung {name} of mechanics/register.py",
             "its errors are not measured",
-            legal="mechanics/data as `tactcad fit --shipped-samples --out DIR` writes it",
+            legal="mechanics/data as `python benchmarks/ladder_fit.py src/tactcad/mechanics/data` writes it",
         )
     return data
 
