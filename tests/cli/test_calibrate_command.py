@@ -63,7 +63,7 @@ def test_limits_are_read_with_blanks_and_in_per_cent(capsys):
 
 
 NAMES = {  # a column's name and its wrong one: the first warning's end
-    (READINGS, "signal_V", "signal_mV"): "(signal_mV in V or force_N in mN?)",
+    (READINGS, "signal_V", "signal_mV"): "(signal_mV in V?)",
     (READINGS, "force_N", "force_mN"): "(force_mN in N?)",
     # 8 weights of 100 g are added to an array of ten elements, nine of which are read
     (GRASP, "signal_V", "signal_mV"): "expected about 7.06 N (load_N in mN or signal_mV in V?)",

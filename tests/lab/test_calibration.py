@@ -314,6 +314,9 @@ def test_elements_as_made_and_another_amplifier_are_no_other_unit_but_micrometre
     data = replace(data, displacement=data.displacement * 1e3)
     (warning,) = against_design(data, calibration.calibrate(data, EXACT), EXACT, "better-array")
     assert warning.endswith("(displacement in um?)")
+    data = replace(data, displacement=data.displacement / 1e3, element=data.element + 10)
+    (warning,) = against_design(data, calibration.calibrate(data, EXACT), EXACT, "better-array")
+    assert warning == "elements 11, 12, 13, 14, 15, 16, 17, 18, 19, 20: not in design better-array"
 
 
 @pytest.mark.parametrize("cell", [0.0, -3.0, np.nan])

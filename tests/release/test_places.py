@@ -11,7 +11,9 @@ import zipfile
 from pathlib import Path
 
 import pytest
+from variants import TINY_TEXT
 
+from tactcad.cli.main import main
 from tactcad.design.messages import CheckFailure, InputError
 from tactcad.release import places
 from tactcad.release.archive import MANIFEST, SEAL, archive_bytes
@@ -182,3 +184,18 @@ def test_a_full_disk_leaves_no_folder(tmp_path, folder):
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
     assert list(tmp_path.iterdir()) == []
+
+
+def test_two_designs_of_one_name_and_a_folder_that_is_no_folder_are_refused_before_any_work(tmp_path, capsys):
+    for folder in "AB":
+        (tmp_path / folder).mkdir()
+        (tmp_path / folder / "tiny.toml").write_text(TINY_TEXT)
+    (tmp_path / "gone").symlink_to(tmp_path / "nowhere")
+    a, b = (str(tmp_path / folder / "tiny.toml") for folder in "AB")
+    for words, said in (
+        ([a, b, "--out", str(tmp_path / "out")], "has the name and revision of"),
+        ([a, "--out", str(tmp_path / "gone")], "gone: is a link"),
+    ):
+        assert main(["release", *words, "--sample"]) == 2
+        assert said in capsys.readouterr().err
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["A", "B", "gone"]

@@ -15,6 +15,7 @@ from pathlib import Path
 import pytest
 
 from tactcad.cli.main import main
+from tactcad.design.messages import InputError
 from tactcad.export.golden_file import golden_bytes, golden_record
 from tactcad.parts.designs import load
 from tactcad.review.repository import repository_of
@@ -168,7 +169,7 @@ def test_what_is_not_committed_does_not_count_but_as_the_files_that_stand(work, 
                 [name, "HEAD", "small"],
                 rf"revision: none in .*; found {re.escape(repr(name))}; legal: a commit",
             )
-            for name in (":/a", "HEAD^{/a}", "HEAD^{commit}", "@{-1}", "HEAD@{1}", "main@{u}", "HEAD~1..main")
+            for name in (":/a", "HEAD^{/a}", "HEAD^{tree}", "@{-1}", "HEAD@{1}", "main@{u}", "HEAD~1..main")
         ),
         (["--", "--all", "HEAD", "small"], "revision: none in .*; found '--all'"),
         (["HEAD", "--their-code", "HEAD"], "--their-code: goes with revisions only"),
@@ -202,6 +203,8 @@ def test_every_way_to_name_and_to_keep_commits_is_read(tmp_path, monkeypatch, ha
             "@",
             "topic/a",
             "v1",
+            "v1^{}",
+            "origin/main~1^{commit}",
             "origin/main~1",
             "main^1",
             one,
@@ -228,6 +231,24 @@ def test_what_a_partial_clone_lacks_is_said_and_not_fetched(work, tmp_path, monk
     assert re.fullmatch(r"tactcad: .*small.toml: not in this partial clone; legal: a whole clone\n", said)
     assert main(["diff", "HEAD", ".", "gone"]) == 2
     assert "no such design in that revision" in capsys.readouterr().err
+
+
+def test_a_path_that_was_no_file_is_said_as_what_it_was(work):
+    """A link, a submodule; and a file whose name looks like a pattern of git's."""
+    odd = work.folder / "hardware" / ":(top)odd.toml"
+    odd.write_text(SHIPPED)
+    (work.folder / "hardware" / "link.toml").symlink_to("small.toml")
+    work.git("add", "hardware")
+    work.git(
+        "update-index", "--add", "--cacheinfo", f"160000,{work.git('rev-parse', 'HEAD').strip()},hardware/sub"
+    )
+    work.git("commit", "-q", "-m", "odd")
+    with repository_of(odd) as repository:
+        head = repository.commit("HEAD")
+        assert repository.file(head, "hardware/:(top)odd.toml", 10**6) == SHIPPED.encode()
+        assert repository.file(head, "hardware/sub", 10**6) is None
+        with pytest.raises(InputError, match="is a link in that revision"):
+            repository.file(head, "hardware/link.toml", 10**6)
 
 
 def test_without_git_it_is_one_line(work, capsys, monkeypatch):

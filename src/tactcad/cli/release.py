@@ -60,7 +60,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     from tactcad.checks.shop import DEFAULT, load_shop
     from tactcad.design.load import find
-    from tactcad.design.messages import CheckFailure
+    from tactcad.design.messages import CheckFailure, InputError
     from tactcad.parts.designs import load
     from tactcad.release.make import Terms, looked_up, release
     from tactcad.release.owner import owned
@@ -73,8 +73,12 @@ def run(args: argparse.Namespace) -> int:
         (owned(load(source), args.owner, args.contact, args.sample), find(source)) for source in args.design
     ]
     terms = Terms(args.draft, args.sample, args.sets, args.others)
+    known: dict[tuple[str, str], Path] = {}
     for design, path in designs:
         looked_up(design, path, args.out, shop, terms)
+        if (other := known.setdefault((design.name, design.design.revision), path)) is not path:
+            what = f"has the name and revision of {other}, so one's zips would replace the other's"
+            raise InputError(str(path), what, legal="another design.name, or releases one by one")
     say, records = progress(sys.stderr), []
     for design, path in designs:
         try:

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 
 from tactcad.design.messages import CheckFailure
 from tactcad.lab.calibration import ElementCalibration
 from tactcad.lab.load_cell import LoadCell
 from tactcad.lab.readings import CalibrationReadings
 
-FORCES = {"N": 1.0, "mN": 1e-3, "g": 9.80665e-3, "kg": 9.80665}  # N; of g and kg the weight
+FORCES = {"N": 1.0, "mN": 1e-3, "kN": 1e3, "g": 9.80665e-3, "kg": 9.80665}  # N; of g and kg the weight
 LENGTHS, VOLTAGES = {"mm": 1.0, "um": 1e-3, "m": 1e3, "inch": 25.4}, {"V": 1.0, "mV": 1e-3, "uV": 1e-6}
 UNITS = {"displacement": LENGTHS, "force": FORCES, "load": FORCES, "signal": VOLTAGES}
 # Factors from what is expected; chosen. A hinge 20 % too thick is 1.7 times as stiff; the amplifier in use
@@ -17,19 +17,29 @@ UNITS = {"displacement": LENGTHS, "force": FORCES, "load": FORCES, "signal": VOL
 STIFFNESS, SIGNAL, LOAD = 5.0, 30.0, 30.0
 
 
+Pairs = Sequence[tuple[float, float]]  # found and expected, of each element
+
+
+def _far(pairs: Pairs, factor: float) -> tuple[float, float] | None:
+    """The middle pair, if its ratio is beyond the factor."""
+    if not pairs:
+        return None
+    found, expected = sorted(pairs, key=lambda pair: pair[0] / pair[1])[len(pairs) // 2]
+    return None if 1 / factor < found / expected < factor else (found, expected)
+
+
 def unlikely(
-    what: str, powers: Mapping[str, int], pairs: Sequence[tuple[float, float]], unit: str, factor: float
+    what: str, powers: Mapping[str, int], pairs: Pairs, unit: str, factor: float, right: Collection[str] = ()
 ) -> list[str]:
     """A warning where a product of columns, each with its power, is by more than the factor from what is
-    expected, with the units that explain it; of the `pairs` of found and expected the middle one tells."""
-    if not pairs:
+    expected, with the units that explain it; columns that another product shows to be `right` explain
+    nothing. Of the `pairs` the middle one tells."""
+    if (far := _far(pairs, factor)) is None:
         return []
-    found, expected = sorted(pairs, key=lambda pair: pair[0] / pair[1])[len(pairs) // 2]
+    (found, expected), guesses = far, []
     ratio = found / expected
-    if 1 / factor < ratio < factor:
-        return []
-    guesses = []
-    for column, power in powers.items():
+    for column in (name for name in powers if name not in right):
+        power = powers[column]
         quantity, _, given = column.partition("_")
         own = UNITS[quantity].get(given, 1.0)
         left = {name: ratio * (size / own) ** power for name, size in UNITS[quantity].items()}
@@ -61,7 +71,13 @@ def against_design(
     soft = 1 / cell.stiffness  # the load cell's compliance in series: elements stiffer than it show little
     k = [(1 / (1 / r.stiffness.value + soft), 1 / (1 / e.stiffness + soft)) for r, e in own]
     v = [(abs(r.signal_per_force.value), volts * e.gauge_strain / e.force) for r, e in own if e.gauge_strain]
+    strange = [str(r.element) for r in rows if r.element not in estimates]
+    absent = [f"elements {', '.join(strange)}: not in design {design.name}"] if strange else []
+    # a force in another unit shows in both
+    k_right = () if _far(v, SIGNAL) or not v else (force,)
+    v_right = () if _far(k, STIFFNESS) or not k else (force,)
     return [
-        *unlikely("stiffness with the load cell", {force: 1, x: -1}, k, "N/mm", STIFFNESS),
-        *unlikely("sensitivity", {signal: 1, force: -1}, v, "V/N", SIGNAL),
+        *absent,
+        *unlikely("stiffness with the load cell", {force: 1, x: -1}, k, "N/mm", STIFFNESS, k_right),
+        *unlikely("sensitivity", {signal: 1, force: -1}, v, "V/N", SIGNAL, v_right),
     ]

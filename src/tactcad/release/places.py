@@ -13,7 +13,7 @@ from contextlib import contextmanager
 from itertools import count
 from pathlib import Path
 
-from tactcad.design.files import flush_entry, folder_for, in_one_line, no_signals
+from tactcad.design.files import flush_entry, folder_for, in_one_line, no_signals, refuse_link
 from tactcad.design.held import held_folder, sweep_folders
 from tactcad.design.messages import CheckFailure, InputError
 from tactcad.export.contents import PROTECTED
@@ -31,6 +31,7 @@ def looked_at(places: Sequence[Path], others: str) -> dict[str, Foreign]:
     Raises InputError where there is any and `others` is REFUSE, or any is no file that can be read.
     """
     out = places[0].parent
+    refuse_link(out)
     with in_one_line(out):
         foreign = {place.name: found for place in places if (found := _foreign(place))}
     odd = any(why in NO_FILE for why, *_ in foreign.values())

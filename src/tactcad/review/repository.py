@@ -24,9 +24,12 @@ KEPT = ("GIT_CONFIG", "GIT_CEILING_DIRECTORIES")
 # A partial clone names a command that fetches what is missing (core.sshCommand, ext::): none may start.
 NO_FETCH = {"GIT_ALLOW_PROTOCOL": "", "GIT_NO_LAZY_FETCH": "1"}
 LEGAL = "a design in a git work tree of your own"
+LINK, SUBMODULE = b"120000", b"160000"  # modes of git's tree entries
 # A name, as git check-ref-format takes it, and steps to parents. What searches (:/text, ^{/text}) or looks
 # into the reflog (@{-1}) is none.
-REVISION = re.compile(r"(?!-)((?:(?!@\{|\.\.)[^\0-\x20\x7f~^:?*\[\\])+)((?:[~^][0-9]*)*)")
+REVISION = re.compile(
+    r"(?!-)((?:(?!@\{|\.\.)[^\0-\x20\x7f~^:?*\[\\])+)((?:[~^][0-9]*)*)(?:\^\{(?:commit)?\})?"
+)
 
 
 @contextmanager
@@ -79,8 +82,12 @@ class Repository:
         """A committed file's content; None where the commit has no such file, or a larger one. Raises
         InputError where the clone lacks it."""
         listed = self._run("ls-tree", "--full-tree", commit, "--", path)
-        if not listed.returncode and not listed.stdout:
+        mode = listed.stdout.split(b" ", 1)[0]
+        if not listed.returncode and mode in (b"", SUBMODULE):
             return None
+        if mode == LINK:
+            legal = "a revision in which it is a file"
+            raise InputError(f"{commit[:12]}:{path}", "is a link in that revision", legal=legal)
         size = self._run("cat-file", "-s", f"{commit}:{path}")
         if size.returncode:
             raise InputError(f"{commit[:12]}:{path}", "not in this partial clone", legal="a whole clone")
@@ -103,6 +110,7 @@ class Repository:
     def _run(self, *arguments: str, **places: str) -> subprocess.CompletedProcess[bytes]:
         ours = {"GIT_DIR": str(self.scratch / "git"), "GIT_OBJECT_DIRECTORY": str(self.objects)}
         no_settings = {"GIT_CONFIG_NOSYSTEM": "1", "GIT_CONFIG_GLOBAL": os.devnull, "GIT_ATTR_NOSYSTEM": "1"}
+        no_settings["GIT_LITERAL_PATHSPECS"] = "1"  # a file may be named :x.toml
         return _git(self.scratch, *arguments, **ours, **no_settings, **places)
 
 
