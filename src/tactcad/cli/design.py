@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import importlib.util
 import json
 import sys
 from typing import TYPE_CHECKING
@@ -79,7 +78,9 @@ def run(args: argparse.Namespace) -> int:
 
 def _next(out: str) -> str:
     """The command that can run here on the design."""
-    if importlib.util.find_spec("build123d") is not None:
+    from tactcad.design.extras import missing
+
+    if not missing("cad"):
         return f"tactcad check {out}/design.toml"
     return (
         f"tactcad estimate {out}/design.toml (`tactcad check` needs the CAD kernel, which is not installed)"

@@ -6,7 +6,6 @@ import argparse
 import json
 import sys
 from dataclasses import asdict
-from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -136,8 +135,6 @@ def _sides(args: argparse.Namespace) -> tuple[Side, Side]:
         refuse_no_document(args.freecad)
     if args.review:
         viewer_library()
-    if (args.freecad or args.review) and find_spec("build123d") is None:
-        raise ModuleNotFoundError(name="build123d")  # said as for every command that needs the kernel
     if args.design is None:
         return read_side(args.old), read_side(args.new)
     return revision_sides(args.old, args.new, args.design, _say_code if args.their_code else None)
