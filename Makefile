@@ -19,9 +19,7 @@ environment:
 	@packaging/environment.sh
 
 export: environment ## write the files of every design in hardware/ to exports/<design>/
-	@status=0; \
-	for design in $(DESIGNS); do $(BIN)/tactcad export $$design --guide --drawings || status=1; done; \
-	exit $$status
+	$(BIN)/tactcad export $(DESIGNS) --guide --drawings
 
 test: environment ## every test but the slow and the nightly ones
 	$(BIN)/python -m pytest -m "not slow and not nightly" -n $(WORKERS) --dist worksteal

@@ -28,12 +28,10 @@ from tables import efficient, goal, table, told
 
 from tactcad.design.messages import CheckFailure
 from tactcad.fem import elasticity
-from tactcad.fem.convergence import RATE, richardson
-from tactcad.fem.fem_ladder import stiffness
+from tactcad.fem.elements import solve_plane, solve_solid
+from tactcad.fem.fem_ladder import RATE, richardson, stiffness
 from tactcad.fem.mapped_mesh import plane_mesh
-from tactcad.fem.plane_elements import solve_plane
 from tactcad.fem.shape import ElementShape, reference_shape
-from tactcad.fem.solid_elements import solve_solid
 from tactcad.mechanics import ladder
 from tactcad.mechanics.register import BY_NAME
 from tactcad.mechanics.section import REFERENCE, HingeSection

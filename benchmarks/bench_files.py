@@ -42,12 +42,11 @@ from tables import exponent, goal, table
 
 from tactcad.contour import Arc, Contour
 from tactcad.export.step_text import Header
-from tactcad.fem.plane_elements import solve_plane
+from tactcad.fem.elements import solve_plane
 from tactcad.fem.shape import reference_shape
 from tactcad.mechanics import ladder
-from tactcad.parts.description import Part
 from tactcad.parts.designs import load
-from tactcad.parts.envelope import DETAILS
+from tactcad.parts.language.description import DETAILS, Part
 from tactcad.scenes import make_scene, scene_names
 from tactcad.scenes.scene import Scene
 
@@ -89,7 +88,7 @@ def kernel() -> dict:
 
 def assembly(scene: str, detail: str, path: str) -> dict:
     """Parts of one scene of the published design built, and its STEP assembly written and read back."""
-    from tactcad.scenes.detail import at_detail
+    from tactcad.scenes.scene import at_detail
 
     kernel()
     clock = Clock()
@@ -115,7 +114,7 @@ def step(elements: int, shared: bool) -> dict:
 
 def stages(elements: int) -> dict:
     """What an export and a check of the array consist of, each stage's time."""
-    from tactcad.checks.interference import check_interference
+    from tactcad.checks.on_solids.interference import check_interference
     from tactcad.parts.rules import refuse_broken
 
     kernel()
@@ -135,7 +134,7 @@ def element(designator: str, repeats: int, files: dict[str, str]) -> dict:
     volume (mm3) of the one solid in each file."""
     from tactcad.export.step_file import part_step
     from tactcad.solids.build import build
-    from tactcad.solids.step_models import model_file
+    from tactcad.solids.step import model_file
 
     part = placed_part(designator)
     times: dict[str, Any] = {"build": [], "write": []}
@@ -167,7 +166,7 @@ def _step(scene: Scene, shapes: dict) -> bytes:
 
 def _picture(scene: Scene, shapes: dict, name: str) -> bytes:
     from tactcad.drawing.engine import picture
-    from tactcad.solids.place import placed_shape
+    from tactcad.solids.occt import placed_shape
 
     shown = [p for p in scene.placements if name == "above" or p.designator not in scene.cover]
     drawn = picture.drawing(
@@ -180,7 +179,7 @@ def _picture(scene: Scene, shapes: dict, name: str) -> bytes:
 
 def unshared(scene: Scene, shapes: Mapping[str, TopoDS_Shape]) -> tuple[Scene, dict[str, TopoDS_Shape]]:
     """The scene with a part number and a shape, copied, for every placement."""
-    from tactcad.solids.bytes import from_bytes, to_bytes
+    from tactcad.solids.step import from_bytes, to_bytes
 
     placements = tuple(
         replace(p, part=replace(p.part, part_no=f"{p.part.part_no}_{p.designator}")) for p in scene.placements

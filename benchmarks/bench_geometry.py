@@ -15,8 +15,8 @@ from known_pairs import known_pairs
 from measuring import RunPlan, array_of, benchmark, interleaved, published
 from tables import efficient, table
 
-from tactcad.costs.command_costs import ANGULAR
-from tactcad.parts.description import Part
+from tactcad.costs.grades import ANGULAR
+from tactcad.parts.language.description import Part
 from tactcad.scenes import make_scene
 from tactcad.scenes.scene import Placement, Scene
 
@@ -164,7 +164,7 @@ def interference(plan: RunPlan) -> dict:
 
 def near(scene: Scene) -> list[Placed]:
     """Pairs of the scene whose boxes meet."""
-    from tactcad.checks.interference import near_pairs, placed_box
+    from tactcad.checks.on_solids.interference import near_pairs, placed_box
     from tactcad.solids.build import build
     from tactcad.solids.measure import bounding_box
 
@@ -195,8 +195,7 @@ class Prepared:
 
     def add(self, part: Part, angular: tuple[float, ...], meshing: dict[float, list[float]]) -> None:
         from tactcad.solids.build import build
-        from tactcad.solids.measure import bounding_box
-        from tactcad.solids.near import Faces
+        from tactcad.solids.measure import Faces, bounding_box
 
         number = part.part_no
         if number in self.shapes:
@@ -216,7 +215,7 @@ def _closed_mesh(shape: TopoDS_Shape, angular: float) -> Manifold:
 
 def kernel_verdict(pair: Placed, made: Prepared) -> str:
     """As `tactcad check` decides: by the kernel's distance, and by its common solid where that is 0."""
-    from tactcad.checks.interference import meeting, placed_box
+    from tactcad.checks.on_solids.interference import meeting, placed_box
 
     a, b = (placed_box(p, made.boxes[p.part.part_no]) for p in pair)
     met = meeting(pair, (a, b), made.shapes, made.faces)
@@ -225,7 +224,7 @@ def kernel_verdict(pair: Placed, made: Prepared) -> str:
 
 def mesh_verdict(pair: Placed, made: Prepared, angular: float) -> str:
     """By the same limits, from the triangles' common volume and distance."""
-    from tactcad.checks.interference import TOUCH_MM
+    from tactcad.checks.on_solids.interference import TOUCH_MM
 
     a, b = (
         made.meshes[p.part.part_no, angular].transform(np.column_stack([p.rotation, p.origin])) for p in pair
@@ -234,7 +233,7 @@ def mesh_verdict(pair: Placed, made: Prepared, angular: float) -> str:
 
 
 def _verdict(overlap: float, gap: float) -> str:
-    from tactcad.checks.interference import OVERLAP_MM3, TOUCH_MM
+    from tactcad.checks.on_solids.interference import OVERLAP_MM3, TOUCH_MM
 
     return "overlap" if overlap > OVERLAP_MM3 else "touch" if gap < TOUCH_MM else "clear"
 
@@ -287,11 +286,11 @@ class _Forgetful(dict):
 
 
 def _situations(plan: RunPlan) -> list[dict]:
-    from tactcad.checks.interference import check_interference
+    from tactcad.checks.on_solids.interference import check_interference
     from tactcad.solids.build import build
 
     def said(findings: list) -> list[tuple[str, str]]:
-        return sorted((f.check, f.message.split(" by ")[0]) for f in findings)
+        return sorted((f.check, f.part) for f in findings)
 
     rows = []
     for elements in plan.of((2,), (10,), (10, 100, 1000)):

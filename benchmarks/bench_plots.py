@@ -13,7 +13,7 @@ from tables import efficient, exponent
 
 from tactcad.report import plots as drawing
 from tactcad.report.plots import GREY, MARKERS, SERIES, drawn, log_ticks, note, panels
-from tactcad.report.report import Figure
+from tactcad.report.report import Picture
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -66,7 +66,7 @@ class Panel:
     none: float | None = None
 
 
-def figures(result: dict) -> dict[str, list[Figure]]:
+def figures(result: dict) -> dict[str, list[Picture]]:
     """Every plot that the run's benchmarks allow, by benchmark."""
     makers = {
         "rungs": _rungs,
@@ -86,7 +86,7 @@ def _rows(result: dict, name: str) -> list[dict]:
     return result["benchmarks"].get(name, {}).get("tables", {}).get(name, {}).get("rows", [])
 
 
-def choose(result: dict) -> Figure:
+def choose(result: dict) -> Picture:
     """What to take for stiffness and for triangles."""
     meshes = [
         Point(f"mesh {r['density']}", "solid elements", r["seconds"], r["worst"], r["mean"])
@@ -131,7 +131,7 @@ def _rung_points(rows: list[dict], against: str) -> list[Point]:
     ]
 
 
-def _rungs(rows: list[dict]) -> Figure:
+def _rungs(rows: list[dict]) -> Picture:
     shown = [
         Panel(
             _rung_points(rows, against), title, "time per element", f"error against converged {kind} elements"
@@ -150,7 +150,7 @@ def _rungs(rows: list[dict]) -> Figure:
         )
 
 
-def _meshes(rows: list[dict]) -> Figure:
+def _meshes(rows: list[dict]) -> Picture:
     names = {"plane": "plane elements", "plane, two meshes": "two meshes", "solid": "solid elements"}
 
     def series(row: dict) -> str:
@@ -184,7 +184,7 @@ def _triangle_points(rows: list[dict]) -> list[Point]:
     return [Point(label(r), "triangles", r["seconds"], r["worst"], r["volume error"]) for r in same]
 
 
-def _tessellation(rows: list[dict]) -> Figure:
+def _tessellation(rows: list[dict]) -> Picture:
     across, up = "time for all parts of the array", "volume error: worst part, and all"
     with panels(1, 1, SMALL) as (figure, ax):
         return _drawn(
@@ -195,7 +195,7 @@ def _tessellation(rows: list[dict]) -> Figure:
         )
 
 
-def _interference(rows: list[dict]) -> Figure:
+def _interference(rows: list[dict]) -> Picture:
     known = [r for r in rows if r["pairs"] == rows[0]["pairs"]]
     count = known[0]["count"]
     none = 0.5 / count  # where a logarithmic axis shows "none wrong"
@@ -224,7 +224,7 @@ def _interference(rows: list[dict]) -> Figure:
         )
 
 
-def _scaling(rows: list[dict]) -> Figure:
+def _scaling(rows: list[dict]) -> Picture:
     names = list(dict.fromkeys(r["what"] for r in rows))
     estimates = [n for n in names if n.startswith(("estimate", "plane"))]
     with panels(1, 2, (12.4, 6.2)) as (figure, axes):
@@ -255,7 +255,7 @@ def _scaling(rows: list[dict]) -> Figure:
         return drawn(figure, "bench-scaling", "Cost against the number of elements, with fitted exponents")
 
 
-def _drawn(figure: MplFigure, shown: dict[Axes, Panel], name: str, caption: str) -> Figure:
+def _drawn(figure: MplFigure, shown: dict[Axes, Panel], name: str, caption: str) -> Picture:
     for ax, panel in shown.items():
         error_against_time(ax, panel)
     for ax, panel in shown.items():

@@ -26,11 +26,10 @@ from measuring import ROOT, child_seconds, tactcad
 from samples import draw_box, draw_edges, draw_range, section
 from tables import filled, lines
 
-from tactcad.costs.command_costs import check_grades, export_grades
-from tactcad.costs.rung_costs import mesh_sizes, row_grades
+from tactcad.costs.grades import check_grades, export_grades, mesh_sizes, row_grades
 from tactcad.design.allowance import Allowance, pick
 from tactcad.design.messages import CheckFailure, InputError
-from tactcad.fem.convergence import converged_solid
+from tactcad.fem.fem_ladder import converged_solid
 from tactcad.fem.shape import reference_shape
 from tactcad.mechanics import validity
 from tactcad.mechanics.accuracy import MEASURED_FOR
@@ -187,7 +186,8 @@ def main() -> int:
     asked = parser.parse_args()
     rows = [r for r in run(estimates(asked.designs)) if "refused" not in r]
     others = [r for r in run(commands(asked.commands)) if "refused" not in r]
-    named = {"estimate": ([r["stated"] for r in rows], [r["took"] for r in rows])}
+    stated = [r for r in rows if r["stated"] is not None]  # by elements
+    named = {"estimate": ([r["stated"] for r in stated], [r["took"] for r in stated])}
     for i, name in enumerate(("check", "export")):
         named[name] = [r["stated"][i] for r in others], [r["took"][i] for r in others]
     text = asked.document.read_text(encoding="utf-8")

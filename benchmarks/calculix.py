@@ -14,9 +14,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from tactcad.fem.elements import SolidSolution, parabola
 from tactcad.fem.mapped_mesh import PlaneMesh, merged
-from tactcad.fem.plane_elements import parabola
-from tactcad.fem.solid_elements import SolidSolution
 from tactcad.fem.space import AcrossSpace, PlaneSpace, line_load
 
 Array = NDArray[np.float64]

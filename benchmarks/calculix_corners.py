@@ -21,7 +21,7 @@ from tactcad.fem import fem_ladder
 from tactcad.fem.face_strain import readings
 from tactcad.fem.mapped_mesh import layers, plane_mesh
 from tactcad.fem.shape import reference_shape
-from tactcad.mechanics import accuracy, ladder, strain, strain_errors
+from tactcad.mechanics import accuracy, ladder, strain
 from tactcad.mechanics.section import REQUIRED, HingeSection
 
 TABLE = "corners by CalculiX"
@@ -83,7 +83,7 @@ def compared(s: HingeSection) -> Iterator[Compared]:
 
 def stated(s: HingeSection, rung: str, grid: float) -> tuple[float, ...]:
     """Relative errors that the program states of a rung, in the order of QUANTITIES."""
-    errors = strain_errors.stated(s, grid, rung)
+    errors = strain.stated(s, grid, rung)
     every = accuracy.expected_error_of(s, rung), errors.gauge, errors.fillet_strain, errors.fillet_stress
     return tuple(map(float, every))
 

@@ -3,7 +3,7 @@
     python benchmarks/costs.py                    all of it, some 20 minutes of one core
     python benchmarks/costs.py elements meshes    these parts alone, the others kept
 
-Processor seconds of one core, with this machine's calibration beside them (costs/this_machine.py), so that
+Processor seconds of one core, with this machine's calibration beside them (costs/grades.py), so that
 other load moves them little. Costs are fitted on counts (a mesh's elements, parts, candidates) by least
 squares of the relative error, none negative.
 """
@@ -26,9 +26,7 @@ from measuring import ROOT, array_of, array_text, child_seconds, processor_secon
 from samples import draw_box, draw_edges, draw_range, joined, section
 from scipy.optimize import nnls
 
-from tactcad.costs.command_costs import ANGULAR, counts
-from tactcad.costs.rung_costs import mesh_sizes
-from tactcad.costs.this_machine import DATA, calibration, processor
+from tactcad.costs.grades import ANGULAR, DATA, calibration, counts, mesh_sizes, processor
 from tactcad.mechanics.accuracy import CANDIDATES
 from tactcad.parts.designs import load
 from tactcad.scenes import make_scene, scene_names
@@ -99,21 +97,12 @@ def power(sizes: np.ndarray, values: np.ndarray) -> list[float]:
 
 
 def starts() -> dict[str, Any]:
-    """Whole processes: an estimate by a closed form, what finite elements add, and the CAD kernel; and a row
-    of `estimate --batch` read and written."""
+    """Whole processes: an estimate by a closed form, what finite elements add, and the CAD kernel."""
     run = tactcad("estimate", "soft-tissue")
     numpy = min(child_seconds(run) for _ in range(5))
     elements = min(child_seconds([*run, "--model", "fem-plane"]) for _ in range(3)) - numpy
     kernel = min(child_seconds(python("-c", "import build123d")) for _ in range(3))
-    head = "hinge_thickness,hinge_length,fillet_radius,load_arm,arm_height,body_height,body_length,poisson"
-    row, many = "0.25,0.75,0.15,6,2,4,4,0.33,69000,3\n", 20_000
-    with tempfile.TemporaryDirectory() as folder:
-        source, took = Path(folder) / "in.csv", []
-        for count in (1, many):
-            source.write_text(f"{head},youngs_modulus,width\n{row * count}", "utf-8")
-            took.append(child_seconds(tactcad("estimate", "--batch", source, "--out", f"{folder}/o")))
-    start = {"numpy": numpy, "elements": elements, "kernel": kernel}
-    return {"start": start, "row": (took[1] - took[0]) / many}
+    return {"start": {"numpy": numpy, "elements": elements, "kernel": kernel}}
 
 
 def elements() -> dict[str, Any]:
@@ -209,12 +198,12 @@ def _extra(source: str, chosen: list[str], option: str, folder: str, without: fl
 
 def builds() -> dict[str, Any]:
     """`build`: what is done once, and an array of each distribution."""
-    from tactcad.assembly.virtual_build import sensor
+    from tactcad.stacks.virtual_build import sensor
 
     sizes, once, each = [], [], []
     for design in [*map(load, DESIGNS), array_of(40), array_of(100)]:
         sizes.append({"element": float(sum(map(len, design.array.row_arms)))})
-        made, loading = sensor(design), child_seconds(python("-c", "import tactcad.assembly.virtual_build"))
+        made, loading = sensor(design), child_seconds(python("-c", "import tactcad.stacks.virtual_build"))
         once.append(loading + processor_seconds(lambda: sensor(design).stack()))
         few, many = (processor_seconds(lambda n=n: made.built(n)) for n in (200, 1200))
         each.append((many - few) / 1000)

@@ -18,13 +18,12 @@ import numpy as np
 from measuring import ROOT, array_of, processor_seconds
 from tables import lines, write_tables
 
-from tactcad.assembly.virtual_build import sensor
 from tactcad.lab.array_estimate import estimate
 from tactcad.mechanics.section import Array
-from tactcad.parts.layout import Layout
-from tactcad.synthesis.candidates import Candidates, stands
+from tactcad.parts.array.layout import Layout
+from tactcad.stacks.virtual_build import sensor
+from tactcad.synthesis.candidates import Candidates, realised, stands
 from tactcad.synthesis.made_arrays import MadeSensor
-from tactcad.synthesis.realise import realised
 from tactcad.synthesis.search import search
 from tactcad.synthesis.target import Target, read_target
 

@@ -15,9 +15,9 @@ from samples import draw_range, section
 from scipy.sparse.linalg import LinearOperator, onenormest
 
 from tactcad.fem import elasticity
-from tactcad.fem.convergence import RATE, richardson
+from tactcad.fem.elements import end_load, fixed_unknowns, solve_plane
+from tactcad.fem.fem_ladder import RATE, richardson
 from tactcad.fem.mapped_mesh import PlaneMesh, plane_mesh
-from tactcad.fem.plane_elements import end_load, fixed_unknowns, solve_plane
 from tactcad.fem.shape import ElementShape, reference_shape
 from tactcad.mechanics import beams
 from tactcad.mechanics.section import REFERENCE, HingeSection

@@ -14,7 +14,7 @@ from math import acos, hypot, pi, sqrt
 import numpy as np
 
 from tactcad.contour import circle, rectangle
-from tactcad.parts.description import Extrusion, Material, Part, vector
+from tactcad.parts.language.description import Extrusion, Material, Part, vector
 from tactcad.scenes.scene import Placement, Rotation, Scene, rotation
 
 STEEL = Material("steel", 7850.0)

@@ -11,12 +11,12 @@ import numpy as np
 from tactcad.design.load import DEFAULT_DESIGN
 from tactcad.lab import pads, simulate
 from tactcad.lab.calibration import ElementCalibration, calibrate
+from tactcad.lab.calibration_file import Sensitivity
 from tactcad.lab.combine import DISAGREE, Interval, Slopes, combine
 from tactcad.lab.grasp import common_slopes, evaluate
 from tactcad.lab.load_cell import LoadCell, series_removed
 from tactcad.lab.readings import CalibrationReadings, GraspReadings
 from tactcad.lab.regression import KNOWN, t_quantile
-from tactcad.lab.sensitivity import Sensitivity
 from tactcad.lab.simulate import Noise, Truth
 from tactcad.paper.examples import READING_NOISE, SAMPLES
 

@@ -27,7 +27,7 @@ from typing import Any, Literal, TypeVar
 import calculix
 
 from tactcad import __version__
-from tactcad.costs.this_machine import processor
+from tactcad.costs.grades import processor
 from tactcad.design.load import DEFAULT_DESIGN, find, parse
 from tactcad.design.messages import CheckFailure
 from tactcad.design.tree import Design

@@ -155,12 +155,10 @@ def handed(side: str) -> float:
 
     from tactcad.export.cache import Cache
     from tactcad.export.shapes import Shapes
-    from tactcad.review.live_record import live_record
-    from tactcad.review.review_page import review_page
-    from tactcad.review.scene_facts import scene_facts
-    from tactcad.review.viewer_library import viewer_library
+    from tactcad.review.facts import scene_facts
+    from tactcad.review.live import live_record
+    from tactcad.review.review_page import review_page, viewer_library
     from tactcad.scenes import make_scene
-    from tactcad.solids import facets  # noqa: F401  loaded before the clock runs
     from tactcad.solids.assembly_tree import assembly_tree
 
     design = published()

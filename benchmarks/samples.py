@@ -20,8 +20,8 @@ from numpy.typing import NDArray
 
 from tactcad.design.files import write_whole
 from tactcad.design.messages import InputError
-from tactcad.fem.convergence import converged_plane, converged_solid
 from tactcad.fem.face_strain import face_strain, readings, solid_readings
+from tactcad.fem.fem_ladder import converged_plane, converged_solid
 from tactcad.fem.mapped_mesh import plane_mesh
 from tactcad.fem.shape import reference_shape
 from tactcad.mechanics import validity

@@ -17,13 +17,12 @@ import numpy as np
 import samples
 from samples import Columns, Row, joined, section, taken
 
-from tactcad.fem.convergence import ACROSS, ORDER
+from tactcad.fem.elements import solve_plane, solve_solid
 from tactcad.fem.face_strain import SurfaceReadings, readings
+from tactcad.fem.fem_ladder import ACROSS, ORDER
 from tactcad.fem.mapped_mesh import layers, plane_mesh
-from tactcad.fem.plane_elements import solve_plane
 from tactcad.fem.shape import reference_shape
-from tactcad.fem.solid_elements import solve_solid
-from tactcad.mechanics import strain, strain_errors, validity
+from tactcad.mechanics import strain, validity
 from tactcad.mechanics.section import HingeSection
 
 Array = np.ndarray
@@ -110,7 +109,7 @@ def fit(tables: dict[str, Columns]) -> dict:
     measured on all."""
     known = {kind: _known(columns) for kind, columns in tables.items()}
     s, share = section(known["fitted"]), {}
-    for side, flag in strain_errors.SIDES.items():
+    for side, flag in strain.SIDES.items():
         own = np.flatnonzero(s.two_sided == flag)
         measured = (known["fitted"]["solid_fillet_stress"] / strain.mean_stress(s, 1.0))[own]
         share[side] = _fitted(s.rows(own), measured)
@@ -118,9 +117,9 @@ def fit(tables: dict[str, Columns]) -> dict:
     s = section(rows)
     errors = _errors(rows, s, share)
     zones = []
-    for side, flag in strain_errors.SIDES.items():
+    for side, flag in strain.SIDES.items():
         for bounds in ZONES:
-            own = strain_errors.in_zone(bounds, s) & (s.two_sided == flag)
+            own = strain.in_zone(bounds, s) & (s.two_sided == flag)
             zones.append({"sides": side, "bounds": bounds} | _measured(errors, own))
     return {"seed": SEED, "designs": len(s.two_sided), "mid-width share": share, "zones": zones}
 
@@ -154,7 +153,7 @@ def _errors(rows: Columns, s: HingeSection, share: dict) -> dict[str, list[Array
         lengths = grid * slot[known] * (1.0 - 1e-9)
         mean = strain.gauge(s.rows(known), 1.0, lengths, "solid")
         error[known] = mean / rows[f"solid_gauge_{grid:g}"][known] - 1.0
-        gauges["gauge" if grid <= strain_errors.LONG_GRID else "long gauge"].append(error)
+        gauges["gauge" if grid <= strain.LONG_GRID else "long gauge"].append(error)
     stress = strain.mean_stress(s, 1.0) * np.maximum(strain.mid_width_share(s, share), 1.0)
     return gauges | {
         "fillet strain": [strain.peak(s, 1.0, "solid") / rows["solid_fillet_strain"] - 1.0],

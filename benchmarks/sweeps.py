@@ -31,11 +31,12 @@ from tactcad.design.design_text import design_text
 from tactcad.design.load import read
 from tactcad.mechanics import ladder
 from tactcad.mechanics.accuracy import expected_error_of
+from tactcad.parts.array.hinge_section import element_section
 from tactcad.sweep import measured as one_task
 from tactcad.sweep import run_sweep
+from tactcad.sweep.closed_forms import Refused, alike
 from tactcad.sweep.designs_taken import designs_taken
 from tactcad.sweep.study import Study, read_study
-from tactcad.sweep.vector_sections import VectorDesigns
 
 HEAD = '[study]\nname = "speed"\nsampling = "sobol"\ncount = {count}\nseed = 0\n'
 VARY = (
@@ -93,7 +94,8 @@ def bare(study: Study) -> float:
 def vector_call(study: Study) -> float:
     """Designs a second of processor time of the closed form and its promised error alone, in one call."""
     columns = designs_taken(study, 0, study.count)
-    section = VectorDesigns(study.design, columns).section(4)
+    ((_, many),) = alike(study, columns, Refused(study.count))
+    section = element_section(many, many.elements[3])
 
     def call() -> None:
         ladder.evaluate(section, "solid")

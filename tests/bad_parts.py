@@ -14,7 +14,7 @@ from pathlib import Path
 
 from variants import variant
 
-from tactcad.parts.finding import Finding
+from tactcad.parts.language.finding import Finding
 
 # the bad parts stand where they are tested
 sys.path += [str(Path(__file__).parent / folder) for folder in ("checks", "rigs")]
@@ -32,13 +32,13 @@ class Bad:
 
 
 def strength(**changes) -> list[Finding]:
-    from tactcad.checks.hinge_strength import check_strength
+    from tactcad.checks.facing_rows.overload_stop import check_strength
 
     return check_strength(variant({path.replace("__", "."): value for path, value in changes.items()}))
 
 
 def clearance(**changes) -> list[Finding]:
-    from tactcad.checks.clearance import check_clearance
+    from tactcad.checks.facing_rows.overload_stop import check_clearance
 
     return check_clearance(variant({path.replace("__", "."): value for path, value in changes.items()}))
 
@@ -56,19 +56,19 @@ def calibration() -> list[Finding]:
 
 
 def rigidity() -> list[Finding]:
-    from tactcad.checks.rigidity import check_rigidity
+    from tactcad.checks.described.rigidity import check_rigidity
 
     return check_rigidity(variant({"holder.lid_thickness": 2.0}), ["grasping"], [])
 
 
 def circuit(**changes) -> list[Finding]:
-    from tactcad.checks.wired import check_circuit
+    from tactcad.checks.facing_rows.circuit import check_circuit
 
     return list(check_circuit(variant({path.replace("__", "."): v for path, v in changes.items()})))
 
 
 def signals(**changes) -> list[Finding]:
-    from tactcad.checks.signals import check_signals
+    from tactcad.checks.facing_rows.circuit import check_signals
 
     return list(check_signals(variant({path.replace("__", "."): v for path, v in changes.items()})))
 
@@ -76,7 +76,7 @@ def signals(**changes) -> list[Finding]:
 def cut_off() -> list[Finding]:
     from test_circuit_checks import moved
 
-    from tactcad.checks.wired import check_inputs
+    from tactcad.checks.facing_rows.circuit import check_inputs
 
     return list(check_inputs(moved("U12", "enable", "ENABLE1")))
 
@@ -84,13 +84,13 @@ def cut_off() -> list[Finding]:
 def missoldered() -> list[Finding]:
     from test_circuit_checks import moved
 
-    from tactcad.checks.wired import check_bridges
+    from tactcad.checks.facing_rows.circuit import check_bridges
 
     return list(check_bridges(moved("W31", "2", "E2_RED")))
 
 
 def assembly() -> list[Finding]:
-    from tactcad.checks.goes_together import check_assembly
+    from tactcad.checks.described.goes_together import check_assembly
 
     return check_assembly(variant({"tolerance.tip": 0.2}))
 
@@ -98,7 +98,7 @@ def assembly() -> list[Finding]:
 def brep(shape: Callable, part=None) -> list[Finding]:
     from test_brep_and_mesh import BLOCK
 
-    from tactcad.checks.brep import check_brep
+    from tactcad.checks.on_solids.soundness import check_brep
 
     return check_brep(part or BLOCK, shape().wrapped)
 
@@ -126,7 +126,7 @@ def stepped(step: float, thickness: float) -> list[Finding]:
     from test_brep_and_mesh import BLOCK
 
     from tactcad.contour import chain
-    from tactcad.parts.description import Extrusion
+    from tactcad.parts.language.description import Extrusion
     from tactcad.solids.build import build
 
     contour = chain([(0, 0), (10, 0), (10, 4), (10 + step, 4), (10 + step, 8), (0, 8)])
@@ -144,7 +144,7 @@ def bent_tube() -> list[Finding]:
 def too_thick() -> list[Finding]:
     from test_brep_and_mesh import BLOCK
 
-    from tactcad.parts.description import Extrusion
+    from tactcad.parts.language.description import Extrusion
     from tactcad.solids.build import build
 
     return brep(
@@ -155,15 +155,15 @@ def too_thick() -> list[Finding]:
 def step_file(spoil: str) -> list[Finding]:
     import test_brep_and_mesh as t
 
-    from tactcad.checks import brep
+    from tactcad.checks.on_solids import soundness
     from tactcad.solids.build import build
 
-    kept = brep.write_step
-    brep.write_step = lambda shape: getattr(t, spoil)(kept(shape))
+    kept = soundness.write_step
+    soundness.write_step = lambda shape: getattr(t, spoil)(kept(shape))
     try:
-        return brep.check_step(t.BLOCK, build(t.BLOCK).wrapped)
+        return soundness.check_step(t.BLOCK, build(t.BLOCK).wrapped)
     finally:
-        brep.write_step = kept
+        soundness.write_step = kept
 
 
 def thread() -> list[Finding]:
@@ -176,7 +176,7 @@ def triangles(spoil: Callable) -> list[Finding]:
     import trimesh
     from test_brep_and_mesh import BLOCK, soup
 
-    from tactcad.checks.mesh import check_triangles
+    from tactcad.checks.on_solids.soundness import check_triangles
     from tactcad.solids.build import build
 
     vertices, faces = soup(build(BLOCK).wrapped)
@@ -186,21 +186,21 @@ def triangles(spoil: Callable) -> list[Finding]:
 def scaled() -> list[Finding]:
     from test_brep_and_mesh import BLOCK, soup
 
-    from tactcad.checks import mesh
+    from tactcad.checks.on_solids import soundness
     from tactcad.solids.build import build
 
-    kept = mesh.triangles
-    mesh.triangles = lambda s, a, b: (soup(s)[0] * 1.02, soup(s)[1])
+    kept = soundness.triangles
+    soundness.triangles = lambda s, a, b: (soup(s)[0] * 1.02, soup(s)[1])
     try:
-        return mesh.check_mesh(BLOCK, build(BLOCK).wrapped)
+        return soundness.check_mesh(BLOCK, build(BLOCK).wrapped)
     finally:
-        mesh.triangles = kept
+        soundness.triangles = kept
 
 
 def wirecut(case: str) -> list[Finding]:
     import test_wirecut as t
 
-    from tactcad.checks.wirecut import check_wirecut
+    from tactcad.checks.described.wirecut import check_wirecut
 
     bad = t.CASES[case][0] if case in t.CASES else t.part(t.block(web=0.25, kind="slot"))
     return check_wirecut(bad, t.SHOP)
@@ -209,7 +209,7 @@ def wirecut(case: str) -> list[Finding]:
 def machining(rule: str) -> list[Finding]:
     import test_machining as t
 
-    from tactcad.checks.machining import check_machining
+    from tactcad.checks.described.machining import check_machining
 
     return check_machining(t.CASES[rule][0][0], t.USUAL)
 
@@ -345,10 +345,7 @@ BAD: dict[str, Bad] = {
         CLEARANCE,
     ),
     "assembly": Bad(
-        "assembly",
-        "arms' tips within 0.2 mm of their place",
-        assembly,
-        "tests/assembly/test_virtual_build.py",
+        "assembly", "arms' tips within 0.2 mm of their place", assembly, "tests/stacks/test_virtual_build.py"
     ),
     "one-bridge": Bad("circuit", "a lead of E3 soldered to E2's pin", missoldered, CIRCUIT),
     "floating-input": Bad("circuit", "a multiplexer that ENABLE1 switches off", cut_off, CIRCUIT),

@@ -26,7 +26,7 @@ import mutants  # noqa: E402
 from night_items import KILLS, ROOT, Item, Night  # noqa: E402
 from random_designs import Counts, Judged  # noqa: E402
 
-from tactcad.cli.progress import slow_work  # noqa: E402
+from tactcad.cli.streams import slow_work
 from tactcad.design.files import scratch_folder, write_whole  # noqa: E402
 from tactcad.export.contents import sha256_of  # noqa: E402
 from tactcad.export.inputs import digest  # noqa: E402

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tactcad.mechanics.fieller import RatioInterval, ratio_interval
+from tactcad.mechanics.lumped import RatioInterval, ratio_interval
 
 
 def object_stiffness_interval(

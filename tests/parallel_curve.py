@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from math import dist
 
 from tactcad.contour.contour import Contour
-from tactcad.contour.intersect import self_intersections
+from tactcad.contour.inside import self_intersections
 from tactcad.contour.nearest import meeting_points
 from tactcad.contour.necks import direction
 from tactcad.contour.rounded import ROUNDING_MM

@@ -149,7 +149,7 @@ def verdict(tree: dict[str, Any]) -> tuple[str, tuple[str, ...], list[str]]:
             assert error.legal, f"refused without saying what is legal: {error}"
             return _rule(error), (), []
     names = scene_names(design)
-    # tolerances drawn over their whole ranges mostly do not add up; tests/assembly draws usual ones
+    # tolerances drawn over their whole ranges mostly do not add up; tests/stacks draws usual ones
     failures = [f for f in run_checks(design, names).failures if f.check != "assembly"]
     shop = [f for f in failures if f.check in SHOP_RULES | WISHES]
     if shop and len(shop) == len(failures):

@@ -19,7 +19,8 @@ from tactcad.design.fields import Number
 from tactcad.design.load import SECTION_TYPES, from_table
 from tactcad.design.materials import PLATE_ALLOYS
 from tactcad.design.tree import Design
-from tactcad.parts.library.screws import METRIC, SET_SCREW_LENGTHS
+from tactcad.parts.bought.screws import SET_SCREW_LENGTHS
+from tactcad.parts.language.metric import METRIC
 
 CAP_LENGTHS = (2, 2.5, 3, 4, 5, 6, 8, 10, 12, 16, 20, 25, 30)
 M6_UPPER = {"2": 0.008, "2.5": 0.008, "3": 0.008, "4": 0.012, "5": 0.012}  # ISO 286-2

@@ -8,11 +8,11 @@ from math import ceil, cos, pi
 from sound_designs import DRILL_REACH, TAP_REACH, WALL, Draw, as_table, bends
 
 from tactcad.design.load import from_table
-from tactcad.parts.library.bearings import BEARINGS
-from tactcad.parts.library.orings import GROOVE_DEPTH, GROOVE_WIDTH, INSIDE
-from tactcad.parts.library.screws import CAP_SCREW_LENGTHS, METRIC
-from tactcad.parts.rigs.guide_layout import guide_layout
-from tactcad.scenes.moving_axis import ballast_range
+from tactcad.parts.bought.screws import CAP_SCREW_LENGTHS
+from tactcad.parts.bought.standard_parts import BEARINGS, GROOVE_DEPTH, GROOVE_WIDTH, INSIDE
+from tactcad.parts.language.metric import METRIC
+from tactcad.parts.rigs.linear_guide import guide_layout
+from tactcad.scenes.rigs.grasping import ballast_range
 
 M3, M5 = METRIC["M3"], METRIC["M5"]
 # mm/N of the stand's softest part: a post of 52 x 20 mm, up to 250 mm high, turned by its load's lever of 68

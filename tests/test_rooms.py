@@ -15,10 +15,11 @@ ROOMS = (
     "contour",
     "mechanics",
     "report",
+    "contact",
     "fem",
     "parts",
     "scenes",
-    "assembly",
+    "stacks",
     "circuit",
     "solids",
     "checks",
@@ -31,25 +32,25 @@ ROOMS = (
     "synthesis",
     "review",
     "sweep",
+    "families",
     "cli",
 )
 # Inner rooms, the lowest first: a folder or a module of the room each.
-INNER_ROOMS = {"drawing": ("engine", "guide", "circuit", "parts", "assemblies")}
+INNER_ROOMS = {
+    "parts": ("language", "bought", "array", "rigs", "rules", "designs"),
+    "drawing": ("engine", "guide", "circuit_sheets", "parts", "assemblies"),
+}
 KERNEL = {"build123d", "OCP", "cadquery", "bd_warehouse", "trimesh", "manifold3d", "vtkmodules", "vtk"}
 # Modules above `solids` that work on solids themselves. Adding one here is a decision: whatever imports it
 # at its top waits seconds for the kernel.
 NEED_SOLIDS = {
-    "tactcad.checks.brep",
-    "tactcad.checks.interference",
-    "tactcad.checks.mesh",
-    "tactcad.checks.motion",
+    *(f"tactcad.checks.on_solids.{p.stem}" for p in (SOURCE / "tactcad/checks/on_solids").glob("[a-z]*.py")),
     "tactcad.checks.run",
-    "tactcad.checks.tools",
     "tactcad.drawing.engine.picture",
     "tactcad.drawing.parts.solid_views",
+    "tactcad.export.part_formats.stl",  # loads trimesh when it runs
     "tactcad.export.step_file",
     "tactcad.export.step_pmi",
-    "tactcad.export.stl",
 }
 
 # Scripts that other programs run, or that show what they do without tactcad: no module, never imported.

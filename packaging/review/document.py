@@ -11,7 +11,7 @@ from pathlib import Path
 
 import window
 
-from tactcad.review.freecad_file import profile, program
+from tactcad.review.freecad import profile, program
 
 INSIDE = Path(__file__).with_name("colours_in_freecad.py")
 AGREES = 1e-6  # share of a volume

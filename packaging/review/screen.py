@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 from PIL import Image
 
-from tactcad.review.freecad_file import environment, profile
+from tactcad.review.freecad import environment, profile
 
 INSIDE = Path(__file__).with_name("in_freecad_screen.py")
 SCREEN = "-screen 0 1400x900x24"

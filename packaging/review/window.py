@@ -11,7 +11,7 @@ import tempfile
 from pathlib import Path
 
 from tactcad.design.messages import CheckFailure
-from tactcad.review.freecad_file import environment, profile, program
+from tactcad.review.freecad import environment, profile, program
 
 INSIDE = Path(__file__).with_name("in_freecad_window.py")
 SECONDS = 300

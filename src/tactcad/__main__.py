@@ -3,7 +3,7 @@ loaded."""
 
 import sys
 
-from tactcad.ending import end_on_signals
+from tactcad.shutdown import end_on_signals
 
 end_on_signals()
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 import calculix
 import pytest
 
-from tactcad.fem.convergence import converged_plane, converged_solid
+from tactcad.fem.elements import solve_plane
+from tactcad.fem.fem_ladder import converged_plane, converged_solid
 from tactcad.fem.mapped_mesh import plane_mesh
-from tactcad.fem.plane_elements import solve_plane
 from tactcad.fem.shape import reference_shape
 from tactcad.mechanics.section import REFERENCE
 

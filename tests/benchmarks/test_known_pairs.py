@@ -12,7 +12,7 @@ from bench_geometry import Prepared, count_wrong, kernel_verdict, mesh_verdict, 
 from known_pairs import GAPS, KINDS, known_pairs, lens
 from scipy.integrate import quad
 
-from tactcad.parts.description import Extrusion
+from tactcad.parts.language.description import Extrusion
 
 PAIRS = list(known_pairs(2, seed=5))
 
@@ -105,7 +105,7 @@ def prepared(pair, *angular) -> Prepared:
 
 @pytest.mark.cad
 def test_the_kernel_knows_them_all_and_its_volume_is_the_closed_form():
-    from tactcad.checks.interference import meeting, placed_box
+    from tactcad.checks.on_solids.interference import meeting, placed_box
 
     for pair in PAIRS[::7]:  # every kind, every gap at some kind
         made = prepared(pair)

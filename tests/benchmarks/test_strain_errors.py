@@ -15,7 +15,7 @@ import strain_fit
 from samples import section
 
 from tactcad.fem import fem_ladder
-from tactcad.mechanics import strain, strain_errors
+from tactcad.mechanics import strain
 from tactcad.mechanics.constants import strain_data
 from tactcad.mechanics.section import REFERENCE
 
@@ -39,7 +39,7 @@ def errors(s, grids):
     with each of the grids, of strain and stress at the fillet."""
     read = fem_ladder.solve(s, "fem-solid", grids).readings
     for grid, gauge in zip(grids, read.gauge, strict=True):
-        stated = strain_errors.stated(s, grid, "solid")
+        stated = strain.stated(s, grid, "solid")
         yield float(strain.gauge(s, 1.0, grid)) / gauge - 1.0, float(stated.gauge)
     yield float(strain.peak(s, 1.0)) / read.fillet_strain - 1.0, float(stated.fillet_strain)
     yield float(strain.peak_stress(s, 1.0)) / read.fillet_stress - 1.0, float(stated.fillet_stress)
@@ -66,7 +66,7 @@ def test_what_is_stated_of_elements_is_at_most_three_times_what_a_finer_mesh_cha
     """At the corner where it changes most."""
     s = calculix_corners.CORNERS[1]
     coarse, fine = (fem_ladder.solve(s, "fem-solid", 0.65, mesh=mesh).readings for mesh in (2, 4))
-    of_elements = strain_errors.stated(s, 0.65, "fem-solid")
+    of_elements = strain.stated(s, 0.65, "fem-solid")
     for name in ("fillet_strain", "fillet_stress"):
         moved = abs(getattr(coarse, name) / getattr(fine, name) - 1.0)
         assert moved < getattr(of_elements, name) <= 3.0 * moved
@@ -80,7 +80,7 @@ def test_what_is_stated_under_a_grid_is_at_most_three_times_what_a_finer_mesh_ch
     grids = strain_fit.grid_lengths(s) * (1.0 - 1e-9)
     coarse, fine = (fem_ladder.solve(s, "fem-solid", grids, mesh=mesh).readings.gauge for mesh in (2, 3))
     worst = float(np.abs(np.asarray(coarse) / np.asarray(fine) - 1.0).max())
-    assert worst < float(strain_errors.stated(s, 0.1, "fem-solid").gauge) <= 3.0 * worst
+    assert worst < float(strain.stated(s, 0.1, "fem-solid").gauge) <= 3.0 * worst
 
 
 def test_shipped_data_are_the_fits():

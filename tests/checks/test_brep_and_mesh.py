@@ -9,13 +9,17 @@ import numpy as np
 import pytest
 import trimesh
 
-from tactcad.checks import brep as brep_check
-from tactcad.checks import mesh as mesh_check
-from tactcad.checks.brep import check_brep, check_step, check_step_file
-from tactcad.checks.mesh import check_mesh, check_triangles
+from tactcad.checks.on_solids import soundness
+from tactcad.checks.on_solids.soundness import (
+    check_brep,
+    check_mesh,
+    check_step,
+    check_step_file,
+    check_triangles,
+)
 from tactcad.checks.run import run_checks
 from tactcad.contour import chain, circle, rectangle
-from tactcad.parts.description import Extrusion, Material, Part
+from tactcad.parts.language.description import Extrusion, Material, Part
 from tactcad.solids import build as builder
 from tactcad.solids.step import write_step
 from tactcad.solids.triangles import triangles
@@ -170,7 +174,7 @@ def test_a_shape_that_was_moved_before_it_was_written_is_seen(shape):
 def test_a_step_file_that_ends_early_cannot_be_read(shape, monkeypatch):
     with pytest.raises(ValueError, match="STEP"):
         check_step_file(BLOCK, shape, cut_off(write_step(shape)))
-    monkeypatch.setattr(brep_check, "write_step", lambda s: cut_off(write_step(s)))
+    monkeypatch.setattr(soundness, "write_step", lambda s: cut_off(write_step(s)))
     (finding,) = check_step(BLOCK, shape)
     assert (finding.check, finding.severity, finding.part) == ("step-file", "fail", "BLOCK")
 
@@ -209,7 +213,7 @@ def test_the_mesh_is_the_solid_within_its_tessellation(shape):
 
 def test_a_mesh_of_another_size_is_seen(shape, monkeypatch):
     larger = lambda s, a, b: (soup(s)[0] * 1.02, soup(s)[1])  # noqa: E731
-    monkeypatch.setattr(mesh_check, "triangles", larger)
+    monkeypatch.setattr(soundness, "triangles", larger)
     assert [f.check for f in check_mesh(BLOCK, shape)] == ["mesh-volume", "mesh-area"]
 
 

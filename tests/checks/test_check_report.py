@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from types import SimpleNamespace
 from xml.etree import ElementTree
 
@@ -11,7 +12,7 @@ import pytest
 from tactcad.checks.check_report import Report, failure_table, json_bytes, junit_bytes
 from tactcad.cli.main import main
 from tactcad.design.messages import CheckFailure
-from tactcad.parts.finding import Finding
+from tactcad.parts.language.finding import Finding
 
 
 def report() -> Report:
@@ -88,22 +89,25 @@ def test_one_design_alone_that_is_refused_is_bad_input(tmp_path, capsys):
 def test_every_check_runs_on_every_part_and_scene_that_it_is_for(macro, monkeypatch):
     """Which checks `tactcad check` calls, and on what, with every check and the kernel's work replaced by a
     note of the call; what a search for designs is limited by is those of them that need no solid."""
-    from tactcad.checks import run, without_solids
+    from tactcad.checks import check, run
     from tactcad.scenes import make_scene, scene_names
     from tactcad.scenes.poses import poses
 
     calls = set()
 
-    def note(name):
-        def check(*args):
-            calls.update((name, getattr(a, "part_no", None) or getattr(a, "name", "")) for a in args[:1])
+    def noted(c):
+        def find(subject, _):
+            calls.add((c.name, getattr(subject, "part_no", None) or subject.name))
             return []
 
-        return check
+        return replace(c, run=find)
 
-    for module in (run, without_solids):
-        for name in [n for n in vars(module) if n.startswith("check_") and n != "check_rigs"]:
-            monkeypatch.setattr(module, name, note(name))
+    known = {
+        folder: tuple(map(noted, check.declared(folder)))
+        for folder in ("described", "tactcad.checks.facing_rows", "on_solids")
+    }
+    for module in (check, run):
+        monkeypatch.setattr(module, "declared", known.__getitem__)
     monkeypatch.setattr(run, "build", lambda part: SimpleNamespace(wrapped=part))
     names = scene_names(macro)
     report = run.run_checks(macro, names)
@@ -112,27 +116,21 @@ def test_every_check_runs_on_every_part_and_scene_that_it_is_for(macro, monkeypa
     parts = {p.part_no: p for s in scenes for p in s.parts}
     assert len(scenes) == 5 and len(posed) > 10
     expected = {
-        (check, macro.name)
-        for check in (
-            "check_strength",
-            "check_clearance",
-            "check_rigidity",
-            "check_assembly",
-            "check_circuit",
-            "check_signals",
-        )
+        (name, macro.name) for name in ("strength", "clearance", "rigidity", "assembly", "circuit", "signals")
     }
     for number, part in parts.items():
-        expected |= {("check_brep", number), ("check_step", number), ("check_mesh", number)}
-        expected |= {("check_wirecut", number)} if part.process == "wire-cut" else set()
-        expected |= {("check_machining", number)} if part.process in ("milled", "turned", "ground") else set()
-    expected |= {(check, s.name) for check in ("check_interference", "check_tools") for s in scenes}
-    expected |= {("check_motions", s.name) for s in scenes if s.motions}
+        expected |= {("brep", number), ("step", number), ("mesh", number)}
+        expected |= {("wire-cut", number)} if part.process == "wire-cut" else set()
+        expected |= {("machining", number)} if part.process in ("milled", "turned", "ground") else set()
+    expected |= {(name, s.name) for name in ("interference", "tools") for s in scenes}
+    expected |= {("motion", s.name) for s in scenes if s.motions}
+    expected |= {("configurations", s.name) for s in posed}
     assert report.runs["calibration travel"] == report.runs["moving weight"] == 1
     assert calls == expected
     calls.clear()
-    assert without_solids.quick_failures(macro) == without_solids.slow_failures(macro) == []
-    assert calls == {(name, subject) for name, subject in expected if name in vars(without_solids)}
+    assert check.quick_failures(macro) == check.slow_failures(macro) == []
+    quick = {c.name for c in (*known["described"], *known["tactcad.checks.facing_rows"])}
+    assert calls == {(name, subject) for name, subject in expected if name in quick}
     assert report.runs["configurations"] == len(posed) and report.runs["interference"] == len(scenes)
     assert report.runs["build"] == len(parts | {p.part_no: p for s in posed for p in s.parts})
     assert report.runs["scenes left out"] == 1

@@ -8,12 +8,11 @@ import pytest
 from bad_parts import BAD
 from variants import variant
 
-from tactcad.checks.signals import check_signals
-from tactcad.checks.wired import check_bridges, check_circuit, check_inputs
+from tactcad.checks.facing_rows.circuit import check_bridges, check_circuit, check_inputs, check_signals
 from tactcad.circuit.bridges import netlist
 from tactcad.circuit.netlist import Netlist
 from tactcad.design.load import names, read
-from tactcad.parts.layout import Layout
+from tactcad.parts.array.layout import Layout
 
 OURS = [name for name, bad in BAD.items() if bad.run in ("circuit", "signals")]
 SHIPPED = netlist(Layout(read("macro-array")))
@@ -80,7 +79,7 @@ def test_the_resolution_by_hand():
 
 def test_two_wires_drift_more():
     """Their whole resistance lies in the gauge's arm, and warms with the room."""
-    from tactcad.parts.bridge_figures import drift
+    from tactcad.parts.array.bridge_figures import drift
 
     wires = {c: drift(Layout(variant({"readout.connection": c}))) for c in ("two-wire", "three-wire")}
     by_hand = 67.5 * 2 * 0.210 * 1.361 / 120 * 0.0039

@@ -8,13 +8,13 @@ from math import asin, cos, sin
 import pytest
 from variants import variant
 
-from tactcad.checks.clearance import _Arms, _mirrored, _nearest, check_clearance
+from tactcad.checks.facing_rows.overload_stop import _Arms, _mirrored, _nearest, check_clearance
 from tactcad.design.load import names
+from tactcad.parts.array.layout import Layout
+from tactcad.parts.array.stop_gap import seat, stop_gap
 from tactcad.parts.designs import load
-from tactcad.parts.layout import Layout
-from tactcad.parts.rigs.calibration_loads import calibration_loads
+from tactcad.parts.rigs.stiffness import calibration_loads
 from tactcad.parts.rules.pressed_rules import turns
-from tactcad.parts.stop_gap import seat, stop_gap
 
 
 @pytest.mark.parametrize("name", names())

@@ -13,13 +13,13 @@ from hypothesis import Phase, given, settings
 from hypothesis import strategies as st
 from variants import IN_SLOT, variant
 
-from tactcad.checks.brep import check_brep
+from tactcad.checks.on_solids.soundness import check_brep
 from tactcad.contour import LEAST_EDGE
 from tactcad.design.messages import CheckFailure, InputError
-from tactcad.parts.element import element, outline
-from tactcad.parts.layout import Layout
+from tactcad.parts.array.element import element, outline
+from tactcad.parts.array.layout import Layout
+from tactcad.parts.array.stop_gap import stop_gap
 from tactcad.parts.rules import broken_rules
-from tactcad.parts.stop_gap import stop_gap
 from tactcad.scenes import left_out, scene_names
 from tactcad.solids.build import build
 

@@ -9,10 +9,10 @@ from math import pi
 import numpy as np
 import pytest
 
-from tactcad.checks.interference import TOUCH_MM, check_interference, near_pairs, relative
+from tactcad.checks.on_solids.interference import TOUCH_MM, check_interference, near_pairs, relative
 from tactcad.contour import circle, rectangle
-from tactcad.parts.description import Extrusion, Hole, Material, Part
-from tactcad.parts.finding import Finding
+from tactcad.parts.language.description import Extrusion, Hole, Material, Part
+from tactcad.parts.language.finding import Finding
 from tactcad.scenes.scene import UPRIGHT, Contact, Placement, Scene
 from tactcad.solids.build import build
 

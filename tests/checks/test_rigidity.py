@@ -17,17 +17,17 @@ from random_designs import raw_table
 from variants import variant
 
 from tactcad.checks.check_report import Report, as_record
-from tactcad.checks.rigidity import check_rigidity, deflections
+from tactcad.checks.described.rigidity import check_rigidity, deflections
 from tactcad.design.load import from_table, names
 from tactcad.design.messages import InputError
-from tactcad.parts import seating
+from tactcad.parts.array import seating
+from tactcad.parts.array.layout import Layout
+from tactcad.parts.array.seating import carrier_beam, carrier_opens
+from tactcad.parts.bought.screws import seating_force
 from tactcad.parts.designs import load
-from tactcad.parts.layout import Layout
-from tactcad.parts.library.screws import seating_force
-from tactcad.parts.rigs.calibration_loads import calibration_loads
+from tactcad.parts.rigs.stiffness import calibration_loads
 from tactcad.parts.rules import broken_rules
-from tactcad.parts.stiffness_remedy import remedy
-from tactcad.parts.stop_give import carrier_beam, carrier_opens
+from tactcad.parts.rules.stiffness_remedy import remedy
 from tactcad.scenes import make_scene, scene_names
 from tactcad.scenes.rig import all_rigs
 

@@ -5,10 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tactcad.checks.interference import check_interference
-from tactcad.checks.sliding import stretch, zones
+from tactcad.checks.on_solids.interference import check_interference, stretch, zones
 from tactcad.contour import Contour, Line, chain, circle, rectangle
-from tactcad.parts.description import Extrusion, Hole, Material, ModelFile, Part, Pocket, Revolution
+from tactcad.parts.language.description import Extrusion, Hole, Material, ModelFile, Part, Pocket, Revolution
 from tactcad.scenes.scene import Placement, Scene
 
 STEEL = Material("steel", 7850.0)

@@ -8,11 +8,11 @@ from dataclasses import replace
 import pytest
 from variants import variant
 
-from tactcad.checks.tools import check_tools
+from tactcad.checks.on_solids.tools import check_tools
 from tactcad.contour import rectangle
-from tactcad.parts.description import Extrusion, Hole, Material, Part
+from tactcad.parts.bought.screws import cap_screw, nut, set_screw, threaded_rod
 from tactcad.parts.designs import load
-from tactcad.parts.library.screws import cap_screw, nut, set_screw, threaded_rod
+from tactcad.parts.language.description import Extrusion, Hole, Material, Part
 from tactcad.scenes import make_scene, scene_names
 from tactcad.scenes.scene import DOWN, Placement, Scene, Step
 from tactcad.solids.build import build

@@ -8,12 +8,12 @@ from pathlib import Path
 import pytest
 from parallel_curve import offset
 
+from tactcad.checks.described.wirecut import check_wirecut
 from tactcad.checks.shop import DEFAULT, load_shop
-from tactcad.checks.wirecut import check_wirecut
 from tactcad.cli.main import main
 from tactcad.contour import Arc, Contour, Corner, Line, chain, circle, rectangle, rounded_polygon
 from tactcad.design.messages import InputError
-from tactcad.parts.description import Extrusion, Hole, Material, Part
+from tactcad.parts.language.description import Extrusion, Hole, Material, Part
 
 SHOP = load_shop()
 ALUMINIUM, STEEL = Material("7075-T6", 2810.0), Material("1.4301", 7900.0)

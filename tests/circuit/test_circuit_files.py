@@ -16,12 +16,12 @@ import pytest
 from variants import variant
 
 from tactcad.circuit.bridges import netlist
-from tactcad.circuit.wiring_list import wiring
+from tactcad.circuit.netlist_files import wiring
 from tactcad.design.load import names, read
 from tactcad.design.messages import CheckFailure
 from tactcad.export import circuit_files
-from tactcad.parts.layout import Layout
-from tactcad.parts.lead_route import lead_routes
+from tactcad.parts.array.layout import Layout
+from tactcad.parts.array.leads import lead_routes
 from tactcad.scenes import make_scene
 
 WORD = re.compile(r'[()]|"(?:\\.|[^"\\])*"|[^\s()"]+')
@@ -131,7 +131,7 @@ def test_equal_bytes_under_any_hash_seed():
     script = (
         "import hashlib\nfrom tactcad.design.load import read\n"
         "from tactcad.export import circuit_files as f\n"
-        "from tactcad.circuit.bridges import netlist\nfrom tactcad.parts.layout import Layout\n"
+        "from tactcad.circuit.bridges import netlist\nfrom tactcad.parts.array.layout import Layout\n"
         "d = read('macro-array')\nfor make in (f.kicad_file, f.table_file, f.deck_file, f.wiring_file):\n"
         "    print(hashlib.sha256(make(d, netlist(Layout(d)))).hexdigest())"
     )
@@ -273,13 +273,13 @@ def test_what_is_verified_of_a_part_stands_in_the_bill(monkeypatch):
     """Of every part by its own row: an amplifier whose figures were read says so, and no other line."""
     from dataclasses import replace
 
-    from tactcad.design import electronics
+    from tactcad.design import sensing
 
     kinds = (
-        (electronics.AMPLIFIERS, "AD621"),
-        (electronics.SWITCHES, "IRLML6244"),
-        (electronics.MULTIPLEXERS, "ADG1407"),
-        (electronics.COMPLETIONS, "foil-0.01"),
+        (sensing.AMPLIFIERS, "AD621"),
+        (sensing.SWITCHES, "IRLML6244"),
+        (sensing.MULTIPLEXERS, "ADG1407"),
+        (sensing.COMPLETIONS, "foil-0.01"),
     )
     lines = ("AD621ARZ", "IRLML6244TRPBF", "ADG1407BRUZ", "BRIDGE-RESISTOR")
     for (table, name), line in zip(kinds, lines, strict=True):

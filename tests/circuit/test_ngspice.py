@@ -11,14 +11,14 @@ from variants import variant
 
 from tactcad.circuit.bridges import netlist
 from tactcad.circuit.netlist import Netlist
-from tactcad.circuit.spice_deck import closed, deck, deck_bytes, reading
+from tactcad.circuit.netlist_files import closed, deck, deck_bytes, reading
 from tactcad.design.load import read
 from tactcad.mechanics import readout
 from tactcad.paper import gain, published
 from tactcad.paper.array_model import from_design
-from tactcad.parts.hinge_section import design_readout
-from tactcad.parts.layout import Layout
-from tactcad.parts.lead_route import lead_routes
+from tactcad.parts.array.hinge_section import design_readout
+from tactcad.parts.array.layout import Layout
+from tactcad.parts.array.leads import lead_routes
 
 SWITCHES = {"IRLML6244": 0.021, "BSS138": 3.5, "2N7002": 7.5}
 FULL_SCALE = 0.035  # V at a bridge: the converter's 3.5 V over a gain of 100

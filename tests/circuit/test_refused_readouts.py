@@ -10,7 +10,7 @@ from variants import BARE_TEXT, variant
 
 from tactcad.cli.main import main
 from tactcad.design.messages import InputError
-from tactcad.parts.layout import Layout
+from tactcad.parts.array.layout import Layout
 from tactcad.parts.rules import broken_rules, refuse_broken
 
 REFUSED = {

@@ -29,7 +29,7 @@ def test_one_per_cent_takes_a_closed_form_and_says_what_it_promises(capsys):
     assert chosen["model"] == "solid" and chosen["mesh"] is None
     assert 0 < chosen["expected_error"] <= 0.01 == chosen["budget"]["within"]
     assert chosen["expected_error"] == chosen["budget"]["chosen"]["error"]
-    assert 0 < chosen["budget"]["chosen"]["seconds"] < 5
+    assert chosen["budget"]["chosen"]["seconds"] is None  # no time is foretold of a closed form
     assert chosen["reference"] == accuracy_data()["reference"] and "solid elements" in chosen["reference"]
     assert chosen["elements"] == named["elements"]
     assert (named["expected_error"], named["reference"]) == (chosen["expected_error"], chosen["reference"])

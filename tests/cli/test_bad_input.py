@@ -15,7 +15,7 @@ from variants import DROP, HARDWARE, ORIGIN, table
 
 from tactcad.cli.main import COMMANDS, main
 from tactcad.export.manifest import SCHEMA
-from tactcad.export.publication import turn
+from tactcad.export.publication import replacing
 
 GOOD = (HARDWARE / "macro-array.toml").read_text()
 
@@ -47,40 +47,40 @@ def bad(**changes) -> bytes:
 
 # the issue's own list, and what else a file can be
 BAD_FILES = {
-    "unknown field": (bad(element__hinge_thicknes=0.25), "element.hinge_thicknes"),
-    "missing field": (bad(element__hinge_thickness=DROP), "element.hinge_thickness"),
-    "wrong type": (bad(element__hinge_thickness="0.25"), "element.hinge_thickness"),
-    "truth value": (bad(element__hinge_thickness=True), "element.hinge_thickness"),
-    "NaN": (bad(element__hinge_thickness=float("nan")), "element.hinge_thickness"),
-    "infinity": (bad(array__pitch=float("inf")), "array.pitch"),
-    "zero": (bad(sheet__thickness=0), "sheet.thickness"),
-    "negative": (bad(sheet__thickness=-3), "sheet.thickness"),
-    "1e300": (bad(element__arm_height=1e300), "element.arm_height"),
-    "hinge thicker than the arm": (bad(element__hinge_thickness=3.0), "element.hinge_thickness"),
-    "fillets that do not fit the slot": (bad(element__fillet_radius=0.45), "element.fillet_radius"),
-    "arms that reach the opposite row": (bad(array__row_pitch=2.0), "array.row_pitch"),
-    "holes outside the body": (bad(holes__screw_offsets=[4.1, 30.0]), "holes.screw_offsets"),
-    "third row": (bad(array__row_arms=[[4], [4], [4]]), "array.row_arms"),
-    "name with a path in it": (bad(design__name="../../evil"), "design.name"),
-    "name with a line end": (bad(design__name="macro\nall is well"), "design.name"),
-    "not TOML": (b"solid cube {", None),
-    "a picture": (b"\x89PNG\r\n\x1a\n" + bytes(range(256)), None),
-    "latin-1": (GOOD.replace('title = "', 'title = "J\xf6rg ').encode("latin-1"), None),
-    "utf-16": (GOOD.encode("utf-16"), None),
-    "empty": (b"", "design"),
-    "10 MB": (b"#" * 10_000_000, None),
-    "deep nesting": (b"a = " + b"[" * 50_000, None),
-    "duplicate key": (GOOD.replace("thickness = 3.0", "thickness = 3.0\nthickness = 4.0", 1).encode(), None),
+    "unknown field": bad(element__hinge_thicknes=0.25),
+    "missing field": bad(element__hinge_thickness=DROP),
+    "wrong type": bad(element__hinge_thickness="0.25"),
+    "truth value": bad(element__hinge_thickness=True),
+    "NaN": bad(element__hinge_thickness=float("nan")),
+    "infinity": bad(array__pitch=float("inf")),
+    "zero": bad(sheet__thickness=0),
+    "negative": bad(sheet__thickness=-3),
+    "1e300": bad(element__arm_height=1e300),
+    "hinge thicker than the arm": bad(element__hinge_thickness=3.0),
+    "fillets that do not fit the slot": bad(element__fillet_radius=0.45),
+    "arms that reach the opposite row": bad(array__row_pitch=2.0),
+    "holes outside the body": bad(holes__screw_offsets=[4.1, 30.0]),
+    "third row": bad(array__row_arms=[[4], [4], [4]]),
+    "name with a path in it": bad(design__name="../../evil"),
+    "name with a line end": bad(design__name="macro\nall is well"),
+    "not TOML": b"solid cube {",
+    "a picture": b"\x89PNG\r\n\x1a\n" + bytes(range(256)),
+    "latin-1": GOOD.replace('title = "', 'title = "J\xf6rg ').encode("latin-1"),
+    "utf-16": GOOD.encode("utf-16"),
+    "empty": b"",
+    "10 MB": b"#" * 10_000_000,
+    "deep nesting": b"a = " + b"[" * 50_000,
+    "duplicate key": GOOD.replace("thickness = 3.0", "thickness = 3.0\nthickness = 4.0", 1).encode(),
 }
 
 
-def snapshot(folder: Path) -> dict[str, tuple]:
+def state(folder: Path) -> dict[str, tuple]:
     """Every path below the folder with what it is and when it changed last."""
     found = {}
     for path in sorted(folder.rglob("*")):
-        state = path.lstat()
+        stat = path.lstat()
         kind = os.readlink(path) if path.is_symlink() else path.read_bytes() if path.is_file() else "folder"
-        found[str(path.relative_to(folder))] = (kind, state.st_mtime_ns)
+        found[str(path.relative_to(folder))] = (kind, stat.st_mtime_ns)
     return found
 
 
@@ -88,25 +88,19 @@ def snapshot(folder: Path) -> dict[str, tuple]:
 def workplace(tmp_path, monkeypatch) -> Path:
     """A folder with an earlier export in it."""
     monkeypatch.chdir(tmp_path)
-    with turn("exports/macro-array", SCHEMA) as work:
+    with replacing("exports/macro-array", SCHEMA) as work:
         work.write({"bom.csv": b"the earlier export"})
     return tmp_path
 
 
 @pytest.mark.parametrize("name", BAD_FILES)
-@pytest.mark.parametrize("command", ["export", "check"])
-def test_bad_file_exits_2_with_one_line_and_touches_nothing(workplace, capsys, name, command):
-    data, path = BAD_FILES[name]
-    design = workplace / "bad.toml"
-    design.write_bytes(data)
-    before = snapshot(workplace)
-    out = ["--out", "exports/macro-array"] if command == "export" else []
-    assert main([command, "bad.toml", *out]) == 2
-    assert snapshot(workplace) == before
-    said = capsys.readouterr()
-    assert said.out == ""
-    assert re.fullmatch(r"tactcad: [^\n]+\n", said.err)
-    assert said.err.startswith(f"tactcad: {path}" if path else "tactcad: bad.toml")
+def test_bad_file_exits_2_with_one_line_and_touches_nothing(workplace, capsys, name, snapshot):
+    (workplace / "bad.toml").write_bytes(BAD_FILES[name])
+    before = state(workplace)
+    for command in (["check"], ["export", "--out", "exports/macro-array"]):
+        assert main([*command, "bad.toml"]) == 2
+        assert state(workplace) == before
+        assert capsys.readouterr() == ("", snapshot(name="of either command"))
 
 
 @pytest.mark.parametrize(
@@ -126,31 +120,29 @@ def test_bad_file_exits_2_with_one_line_and_touches_nothing(workplace, capsys, n
     ],
     ids=lambda a: " ".join(a).replace("\n", "-"),
 )
-def test_what_is_not_there_exits_2(workplace, capsys, arguments):
-    before = snapshot(workplace)
+def test_what_is_not_there_exits_2(workplace, capsys, arguments, snapshot):
+    before = state(workplace)
     try:
         status = main(arguments)
     except SystemExit as stopped:  # the parser's own refusals
         status = stopped.code
     assert status == 2
-    assert snapshot(workplace) == before
-    said = capsys.readouterr()
-    assert said.out == ""
-    assert re.fullmatch(r"tactcad: [^\n]+\n", said.err)
+    assert state(workplace) == before
+    assert capsys.readouterr() == ("", snapshot)
 
 
 def test_a_folder_that_is_not_ours_is_not_replaced(workplace, capsys):
     (workplace / "mine").mkdir()
     (workplace / "mine" / "thesis.txt").write_text("three years")
-    before = snapshot(workplace / "mine")
+    before = state(workplace / "mine")
     assert main(["export", "macro-array", "--out", "mine"]) == 2
-    assert snapshot(workplace / "mine") == before
+    assert state(workplace / "mine") == before
     assert re.fullmatch(r"tactcad: [^\n]+\n", capsys.readouterr().err)
 
 
-def test_a_process_ends_without_traceback(tmp_path):
+def test_a_process_ends_without_traceback(tmp_path, snapshot):
     """The same from outside, where nothing of pytest's can hide a traceback or a second line."""
-    (tmp_path / "bad.toml").write_bytes(BAD_FILES["hinge thicker than the arm"][0])
+    (tmp_path / "bad.toml").write_bytes(BAD_FILES["hinge thicker than the arm"])
     run = subprocess.run(
         [sys.executable, "-m", "tactcad", "export", "bad.toml"],
         cwd=tmp_path,
@@ -159,10 +151,7 @@ def test_a_process_ends_without_traceback(tmp_path):
         check=False,
     )
     assert run.returncode == 2
-    assert run.stdout == ""
-    assert run.stderr.count("\n") == 1 and "Traceback" not in run.stderr
-    for expected in ("element.hinge_thickness", "found 3.0", "legal: less than arm_height = 2.6 mm"):
-        assert expected in run.stderr
+    assert (run.stdout, run.stderr) == ("", snapshot(name="hinge thicker than the arm"))
     assert [p.name for p in tmp_path.rglob("*")] == ["bad.toml"]
 
 
@@ -175,12 +164,12 @@ def test_help_has_examples(command, capsys):
     assert "examples:" in said and f"  tactcad {command}" in said
 
 
-def test_unknown_commands_and_options_exit_2(capsys):
+def test_unknown_commands_and_options_exit_2(capsys, snapshot):
     for arguments in ([], ["explode"], ["export", "--no-such-option"], ["schema", "extra"]):
         with pytest.raises(SystemExit) as ended:
             main(arguments)
         assert ended.value.code == 2
-        assert capsys.readouterr().out == ""
+        assert capsys.readouterr() == ("", snapshot)
 
 
 def test_version():

@@ -38,9 +38,9 @@ def refused(place: Path, capsys, *arguments: str) -> tuple[int, str]:
 
 @pytest.mark.parametrize("command", [("export", "--drawings"), ("release", "--sample")], ids=" ".join)
 def test_a_missing_font(command, place, capsys, monkeypatch):
-    from tactcad.drawing.engine import fonts
+    from tactcad.drawing.engine import ink
 
-    monkeypatch.setattr(fonts, "_FILE", Path("mpl-data", "fonts", "ttf", "Gone.ttf"))
+    monkeypatch.setattr(ink, "_FILE", Path("mpl-data", "fonts", "ttf", "Gone.ttf"))
     status, said = refused(place, capsys, *command)
     assert (
         status == 1

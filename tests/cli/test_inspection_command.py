@@ -15,9 +15,9 @@ from tactcad.cli.main import main
 from tactcad.export.inspection import inspection_bytes
 from tactcad.mechanics import ladder
 from tactcad.mechanics.as_built import in_clamp, without_layer
+from tactcad.parts.array.hinge_section import hinge_section
+from tactcad.parts.array.layout import Layout
 from tactcad.parts.designs import load
-from tactcad.parts.hinge_section import hinge_section
-from tactcad.parts.layout import Layout
 
 LAYOUT = Layout(load("macro-array"))
 BLANK = inspection_bytes(LAYOUT).decode()

@@ -13,7 +13,7 @@ import pytest
 from variants import HARDWARE, variant
 
 import tactcad
-from tactcad.account import HEAVY, account, making, text
+from tactcad.profiling import HEAVY, making, profiled, text
 from tactcad.scenes import make_scene, scene_names
 
 DESIGN = HARDWARE / "double-sample.toml"  # two elements, and every rig
@@ -22,7 +22,7 @@ KERNEL = {name for name, what in HEAVY.items() if what == "CAD kernel"}
 
 
 def run(*arguments, cwd, script="-m"):
-    """A fresh process: its exit status, standard output, and the account on standard error."""
+    """A fresh process: its exit status, standard output, and the profile on standard error."""
     environment = {k: v for k, v in os.environ.items() if k in ("PATH", "LD_LIBRARY_PATH", "HOME")}
     environment |= {"PYTHONPATH": str(Path(tactcad.__file__).parents[1]), "TACTCAD_CACHE": str(cwd / "cache")}
     command = [sys.executable, "-m", "tactcad"] if script == "-m" else [sys.executable, "-c", script]
@@ -109,10 +109,10 @@ def test_finite_element_estimates_load_no_kernel_and_solve_each_distinct_element
 def test_cut_files_and_inspection_load_no_kernel(tmp_path):
     script = """
 import sys
-from tactcad.account import HEAVY
+from tactcad.profiling import HEAVY
 from tactcad.export.dxf import check_dxf, dxf_bytes
 from tactcad.parts.designs import load
-from tactcad.parts.layout import Layout
+from tactcad.parts.array.layout import Layout
 from tactcad.scenes import make_scene, scene_names
 from tactcad.lab.inspection_sheet import read_sheet
 import tactcad.lab.as_made, tactcad.export.strength_table, tactcad.scenes.bom
@@ -160,7 +160,7 @@ def test_check_builds_and_meshes_every_part_once(tmp_path):
 
 
 def parsed(stderr: str) -> dict[str, dict[str, int]]:
-    """How often each thing was made, by kind, from the account's text."""
+    """How often each thing was made, by kind, from the profile's text."""
     lines = stderr[stderr.index("profile: ") :].splitlines()[2:]
     made, kind = {}, ""
     for line in lines:
@@ -174,7 +174,7 @@ def parsed(stderr: str) -> dict[str, dict[str, int]]:
     return made
 
 
-def test_the_account_is_printed_when_a_command_fails_too(tmp_path):
+def test_the_profile_is_printed_when_a_command_fails_too(tmp_path):
     done = run("estimate", str(DESIGN), "--accuracy", "0.0001%", "--profile", cwd=tmp_path)
     assert done.returncode == 1 and "profile: " in done.stderr and "no rung is known" in done.stderr
 
@@ -182,14 +182,14 @@ def test_the_account_is_printed_when_a_command_fails_too(tmp_path):
 def test_nothing_is_put_down_where_nobody_asks():
     with making("solid", "a"):
         pass
-    with account() as outer:
-        with making("solid", "b"), account() as inner, making("mesh", "c"):
+    with profiled() as outer:
+        with making("solid", "b"), profiled() as inner, making("mesh", "c"):
             pass
         with pytest.raises(ValueError, match="torn"), making("solid", "d"):
             raise ValueError("torn")
     assert [(m.kind, m.name) for m in inner.made] == [("mesh", "c")]
     assert [(m.kind, m.name) for m in outer.made] == [("solid", "b")]
-    with account() as own:
+    with profiled() as own:
         for _ in range(3):
             with making("solid", "e"):
                 sum(range(1000))

@@ -7,7 +7,7 @@ from math import cos, pi, sin, sqrt
 import pytest
 
 from tactcad.contour import Arc, Contour, Line, chain, circle, rectangle
-from tactcad.contour.intersect import crossings, self_intersections, smallest_distance
+from tactcad.contour.inside import crossings, self_intersections, smallest_distance
 from tactcad.contour.nearest import distance, distance_to, meeting_points
 
 UNIT = Arc((1.0, 0.0), (-1.0, 0.0), (0.0, 0.0), True)  # the upper half of the unit circle

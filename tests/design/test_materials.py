@@ -7,17 +7,17 @@ import json
 import pytest
 from variants import DROP, HARDWARE, table, variant
 
+from tactcad.checks.described.wirecut import check_wirecut
 from tactcad.checks.shop import load_shop
-from tactcad.checks.wirecut import check_wirecut
 from tactcad.cli.main import main
 from tactcad.design.load import from_table
 from tactcad.design.materials import ALLOYS, MOST_DIFFERENCE, PROPERTIES, family, modulus_per_kelvin
 from tactcad.design.messages import InputError
 from tactcad.drawing.parts.part_sheet import notes_of
 from tactcad.paper import array_model
-from tactcad.parts.consumables import array_supplies
-from tactcad.parts.element import element
-from tactcad.parts.layout import Layout
+from tactcad.parts.array.element import element
+from tactcad.parts.array.layout import Layout
+from tactcad.parts.array.supplies import array_supplies
 from tactcad.release.readme import readme_bytes
 from tactcad.release.release_contents import ReleaseContents
 from tactcad.scenes import make_scene
@@ -265,8 +265,8 @@ STEEL = "maraging-300-aged"
     ],
 )
 def test_what_its_magnetism_and_metal_ask_of_the_shop_stands_in_the_notes(alloy, chuck, harm):
-    from tactcad.parts.spacer import spacer
-    from tactcad.parts.stop_plate import stop_plate
+    from tactcad.parts.array.clamp import stop_plate
+    from tactcad.parts.array.element import spacer
 
     row = ALLOYS[alloy]
     own = ("youngs_modulus", "poisson", "density", "yield_strength", "fatigue_strength")
@@ -278,7 +278,7 @@ def test_what_its_magnetism_and_metal_ask_of_the_shop_stands_in_the_notes(alloy,
 
 
 def test_of_a_sheet_of_unknown_magnetism_the_note_promises_nothing():
-    from tactcad.parts.description import Material
-    from tactcad.parts.part_materials import held_for_grinding
+    from tactcad.parts.language.description import Material
+    from tactcad.parts.language.part_materials import held_for_grinding
 
     assert held_for_grinding(Material("own", 5000.0)) == "on a magnetic chuck only if a magnet draws it"

@@ -3,7 +3,7 @@
 import pytest
 
 from tactcad.design.load import read
-from tactcad.design.stock import OTHER_SHEET, sheet_tolerance
+from tactcad.design.materials import OTHER_SHEET, sheet_tolerance
 
 ALUMINIUM, STEEL = 2800, 7850
 

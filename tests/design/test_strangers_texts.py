@@ -11,7 +11,7 @@ from tactcad.checks.shop import DEFAULT, load_shop
 from tactcad.design import load
 from tactcad.design.files import read_json
 from tactcad.design.messages import InputError
-from tactcad.design.toml_text import parse_toml
+from tactcad.design.text_values import parse_toml
 from tactcad.paper import published
 
 LONG = ".".join("abcdefghijklmnopq")  # 17 names

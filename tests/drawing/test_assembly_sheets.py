@@ -14,14 +14,14 @@ from variants import variant
 
 from tactcad.design.messages import CheckFailure
 from tactcad.drawing.assemblies import assembly_sheets as assembly_file
-from tactcad.drawing.assemblies import parts_list
 from tactcad.drawing.assemblies.assembly_sheets import assembly_faults, assembly_sheets
+from tactcad.drawing.assemblies.balloons import laid, laid_columns, list_drawn
 from tactcad.drawing.engine.extent import placed
 from tactcad.drawing.engine.ink import DrawnArc, Fill, Stroke, Text, preliminary
 from tactcad.drawing.engine.layout_check import layout_faults
+from tactcad.drawing.engine.paper import MOST_DRAWN, fewer
 from tactcad.drawing.engine.sheet_files import pdf_bytes, pdf_runs, stacked_svg
-from tactcad.drawing.engine.title import MOST_DRAWN, fewer
-from tactcad.parts.library.screws import METRIC
+from tactcad.parts.bought.screws import METRIC
 from tactcad.scenes import make_scene
 from tactcad.scenes.bom import bom_rows
 
@@ -127,7 +127,7 @@ def test_every_leader_ends_on_a_part_with_that_number(assembly):
     """Around the end of the leader lie the lines of the part's own picture, drawn alone from the same eye and
     at the sheet's scale."""
     from tactcad.drawing.engine.picture import ABOVE, drawing
-    from tactcad.solids.place import placed_shape
+    from tactcad.solids.occt import placed_shape
 
     _, scene, rows, shapes, sheets = assembly
     item = {row.part_no: row.item for row in rows}
@@ -265,7 +265,7 @@ def test_overall_dimensions_are_the_solids(assembly):
     from OCP.Bnd import Bnd_Box
     from OCP.BRepBndLib import BRepBndLib
 
-    from tactcad.solids.place import placed_shape
+    from tactcad.solids.occt import placed_shape
 
     _, scene, _, shapes, sheets = assembly
     box = Bnd_Box()
@@ -389,12 +389,12 @@ def test_one_svg_holds_all_sheets_below_each_other(assembly):
 def test_long_lists_go_over_several_columns_whole():
     scene = make_scene(variant(), "array")
     rows = bom_rows(scene, "A", {}) * 7
-    list_ = parts_list.laid(rows, 1.8)
+    list_ = laid(rows, 1.8)
     rooms = [200.0, 150.0]
-    columns = parts_list.columns(list_, rooms)
+    columns = laid_columns(list_, rooms)
     assert [n for rows_ in columns for n in rows_] == list(range(len(rows))) and len(columns) > 2
     for c, rows_ in enumerate(columns):
-        items, height = parts_list.drawn(list_, rows_, (0.0, 0.0))
+        items, height = list_drawn(list_, rows_, (0.0, 0.0))
         assert height <= rooms[c % 2]
         lowest = min(p[1] for i in items if isinstance(i, Stroke) for p in i.points)
         assert lowest == pytest.approx(-height)

@@ -14,7 +14,7 @@ from tactcad.drawing.engine.paper import A0, A1, A2, A3, A4, frame
 from tactcad.drawing.engine.sheet_files import pdf_bytes, pdf_runs
 from tactcad.drawing.parts.part_sheet import MadeFrom, Order, drawing_faults, part_sheet
 from tactcad.drawing.parts.sheet_plan import Breaks
-from tactcad.parts.description import Extrusion, Hole, Material, Part
+from tactcad.parts.language.description import Extrusion, Hole, Material, Part
 from tactcad.scenes import make_scene
 
 pytestmark = pytest.mark.cad
@@ -37,7 +37,7 @@ def long_parts(design):
 def sheet_of(design, part):
     """Its finished sheet, and the texts that another library reads in its PDF."""
     from tactcad.solids.build import build
-    from tactcad.solids.bytes import to_bytes
+    from tactcad.solids.step import to_bytes
 
     sheet = part_sheet(Order(design, part, to_bytes(build(part).wrapped), (FILE,)))
     pdf = pdf_bytes([sheet], "title", "author", design.design.date)

@@ -12,13 +12,13 @@ from variants import variant
 from tactcad.circuit.bridges import netlist
 from tactcad.design.load import names, read
 from tactcad.design.messages import CheckFailure
-from tactcad.drawing.circuit import circuit_sheets as sheets
-from tactcad.drawing.circuit.circuit_sheets import CircuitOrder, circuit_written
+from tactcad.drawing import circuit_sheets as sheets
+from tactcad.drawing.circuit_sheets import CircuitOrder, circuit_written
 from tactcad.drawing.engine.layout_check import layout_faults
 from tactcad.drawing.engine.sheet_files import pdf_runs
 from tactcad.export.circuit_files import table_file, wiring_file
-from tactcad.parts.bridge_figures import settling_time
-from tactcad.parts.layout import Layout
+from tactcad.parts.array.bridge_figures import settling_time
+from tactcad.parts.array.layout import Layout
 
 OTHERS = {
     "two wires": {"readout.connection": "two-wire"},

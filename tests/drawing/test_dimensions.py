@@ -16,13 +16,25 @@ from variants import IN_SLOT, variant
 
 from tactcad.contour import circle, rectangle
 from tactcad.design.messages import CheckFailure
-from tactcad.drawing.parts.measures import Radius, Slope, Span, level
+from tactcad.drawing.parts.measures import (
+    OUTER,
+    PLACES,
+    THICKNESS,
+    Owner,
+    Quantity,
+    Radius,
+    Slope,
+    Span,
+    Spot,
+    level,
+    variables,
+)
 from tactcad.drawing.parts.part_sheet import MadeFrom, part_plan
-from tactcad.drawing.parts.part_variables import OUTER, PLACES, THICKNESS, Owner, Quantity, Spot, variables
 from tactcad.drawing.parts.prism import prism_plan
 from tactcad.drawing.parts.sheet_plan import Dimension, number
-from tactcad.parts.description import Extrusion, Hole, Material, Part
-from tactcad.parts.limits import FACES, Characteristic
+from tactcad.families.facing_rows import FAMILY
+from tactcad.parts.language.description import Extrusion, Hole, Material, Part
+from tactcad.parts.language.limits import FACES, Characteristic
 from tactcad.parts.rules import refuse_broken
 from tactcad.scenes import make_scene, scene_names
 
@@ -61,7 +73,7 @@ def plans(changes, base="macro-array", shortened=False):
     names = ("array",) if changes else scene_names(design)
     parts = {p.part_no: p for name in names for p in make_scene(design, name).parts}
     made = [p for p in parts.values() if p.process not in ("bought", "reference")]
-    return [plan for p in made if (plan := part_plan(p, (FILE,), shortened=shortened))]
+    return [plan for p in made if (plan := part_plan(p, (FILE,), FAMILY.plans, shortened=shortened))]
 
 
 def stated(plan):

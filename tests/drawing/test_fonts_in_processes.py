@@ -5,7 +5,7 @@ from __future__ import annotations
 import multiprocessing
 from concurrent.futures import ProcessPoolExecutor
 
-from tactcad.drawing.engine import fonts
+from tactcad.drawing.engine import ink
 
 LETTERS = [
     chr(code)
@@ -15,8 +15,8 @@ LETTERS = [
 
 
 def measured(_round: int) -> list[tuple]:
-    fonts._glyph.cache_clear()
-    return [fonts._glyph(letter) for letter in LETTERS]
+    ink._glyph.cache_clear()
+    return [ink._glyph(letter) for letter in LETTERS]
 
 
 def test_forked_processes_do_not_share_a_place_in_the_file():

@@ -11,6 +11,7 @@ import re
 import subprocess
 import sys
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -20,12 +21,11 @@ import tactcad
 from tactcad.cli.main import main
 from tactcad.contour import rectangle
 from tactcad.design.messages import CheckFailure
-from tactcad.drawing.engine import fonts
+from tactcad.drawing.engine import ink
 from tactcad.drawing.engine.ink import DrawnArc, Stroke, Text
 from tactcad.drawing.engine.layout_check import layout_faults
 from tactcad.drawing.engine.paper import A3, A4, SERIES
 from tactcad.drawing.engine.sheet_files import pdf_bytes, pdf_runs
-from tactcad.drawing.engine.workers import all_written
 from tactcad.drawing.parts import part_sheet as sheets
 from tactcad.drawing.parts.compose import compose
 from tactcad.drawing.parts.part_sheet import (
@@ -38,9 +38,11 @@ from tactcad.drawing.parts.part_sheet import (
     written,
 )
 from tactcad.drawing.parts.prism import prism_plan
+from tactcad.export.formats import ExportOptions
 from tactcad.export.manifest import check_manifest, read_manifest, sha256_of
-from tactcad.export.pipeline import ExportOptions, export
-from tactcad.parts.description import Characteristic, Extrusion, Material, Part
+from tactcad.export.pipeline import export
+from tactcad.export.workers import Task, side_by_side
+from tactcad.parts.language.description import Characteristic, Extrusion, Material, Part
 from tactcad.scenes import make_scene, scene_names
 
 pytestmark = pytest.mark.cad
@@ -49,9 +51,15 @@ DXF = MadeFrom("dxf/some_B.dxf", "f" * 64)
 ELEMENT = "macro-array-element-a8mm"
 
 
+def sheets_of(orders: list[Order]) -> list:
+    """Made by processes, in the orders' order."""
+    made = dict(side_by_side([Task(order.name, partial(written, order)) for order in orders]))
+    return [made[n] for n in range(len(orders))]
+
+
 @pytest.fixture(scope="module")
 def orders(macro, macro_scene, macro_shapes):
-    from tactcad.solids.bytes import to_bytes
+    from tactcad.solids.step import to_bytes
 
     return {
         p.part_no: Order(macro, p, to_bytes(macro_shapes[p.part_no]), (DXF,))
@@ -194,8 +202,8 @@ def test_side_by_side_or_one_by_one_the_bytes_are_the_same(orders, tmp_path):
     """Three sheets from two processes of this one, and two of them from a fresh process with another hash
     seed."""
     some = list(orders.values())[:3]
-    side_by_side = all_written(some, written)
-    assert [written(order) for order in some[:2]] == side_by_side[:2]
+    beside = sheets_of(some)
+    assert [written(order) for order in some[:2]] == beside[:2]
     (tmp_path / "orders").write_bytes(pickle.dumps(some[:2]))
     script = (
         "import hashlib, pickle, sys\nfrom tactcad.drawing.parts.part_sheet import written\n"
@@ -209,7 +217,7 @@ def test_side_by_side_or_one_by_one_the_bytes_are_the_same(orders, tmp_path):
         check=True,
         env={**os.environ, "PYTHONHASHSEED": "99", "PYTHONPATH": str(Path(tactcad.__file__).parents[1])},
     )
-    assert run.stdout.split() == [hashlib.sha256(d.pdf + d.svg).hexdigest() for d in side_by_side[:2]]
+    assert run.stdout.split() == [hashlib.sha256(d.pdf + d.svg).hexdigest() for d in beside[:2]]
 
 
 def test_a_draft_says_preliminary_and_is_no_final(orders):
@@ -248,7 +256,7 @@ SMALL = {"array.row_arms": [[4.0, 6.0]]}
 
 
 def test_a_missing_font_stops_the_export_before_anything_is_written(monkeypatch, tmp_path):
-    monkeypatch.setattr(fonts, "_FILE", Path("nowhere.ttf"))
+    monkeypatch.setattr(ink, "_FILE", Path("nowhere.ttf"))
     with pytest.raises(CheckFailure, match="nowhere.ttf"):
         export(variant(SMALL), ExportOptions(("array",), drawings=True), tmp_path / "out", Silent())
     assert not (tmp_path / "out").exists()
@@ -257,7 +265,7 @@ def test_a_missing_font_stops_the_export_before_anything_is_written(monkeypatch,
 def test_a_killed_process_stops_the_export(monkeypatch, orders):
     monkeypatch.setattr(sheets, "part_sheet", lambda order: os._exit(9))
     with pytest.raises(CheckFailure, match="killed"):
-        all_written(list(orders.values()), written)
+        sheets_of(list(orders.values()))
 
 
 CHILD = """
@@ -333,7 +341,7 @@ VARIANTS = {
 @pytest.mark.parametrize("name", [*VARIANTS, "soft-tissue", "double-sample", "smallest-bearing"])
 def test_sheets_of_other_designs_are_clean(name):
     from tactcad.solids.build import build
-    from tactcad.solids.bytes import to_bytes
+    from tactcad.solids.step import to_bytes
 
     design = variant(VARIANTS[name]) if name in VARIANTS else variant({}, name)
     scenes = ("array",) if VARIANTS.get(name) else scene_names(design)
@@ -343,7 +351,5 @@ def test_sheets_of_other_designs_are_clean(name):
         for p in make_scene(design, s).parts
         if p.process not in ("bought", "reference")
     }
-    made = all_written(
-        [Order(design, p, to_bytes(build(p).wrapped), (DXF,)) for p in parts.values()], written
-    )
+    made = sheets_of([Order(design, p, to_bytes(build(p).wrapped), (DXF,)) for p in parts.values()])
     assert len(made) == len(parts)

@@ -24,10 +24,10 @@ from tactcad.drawing.engine.ink import Fill, Hatch, Stroke, Text
 from tactcad.drawing.engine.layout_check import layout_faults
 from tactcad.drawing.engine.sheet_files import pdf_bytes, pdf_runs, svg_bytes
 from tactcad.drawing.parts import compose
+from tactcad.drawing.parts.measures import in_part
 from tactcad.drawing.parts.part_sheet import MadeFrom, Order, part_sheet, written
-from tactcad.drawing.parts.part_variables import in_part
 from tactcad.drawing.parts.prism import prism_plan
-from tactcad.parts.description import Extrusion, Hole, Material, Part, Pocket, drill_point_height
+from tactcad.parts.language.description import Extrusion, Hole, Material, Part, Pocket, drill_point_height
 from tactcad.scenes import make_scene
 
 pytestmark = pytest.mark.cad
@@ -118,7 +118,7 @@ def test_no_plane_cuts_another_hole_off_its_axis_or_runs_along_a_wall():
 @pytest.fixture(scope="module")
 def orders():
     from tactcad.solids.build import build
-    from tactcad.solids.bytes import to_bytes
+    from tactcad.solids.step import to_bytes
 
     design = variant()
     scenes = [make_scene(design, name) for name in ("array", "calibration", "sample-stiffness", "grasping")]
@@ -230,7 +230,7 @@ def test_the_hatching_lies_in_the_material_everywhere(orders, sheets):
     from OCP.gp import gp_Pnt
     from OCP.TopAbs import TopAbs_IN
 
-    from tactcad.solids.bytes import from_bytes
+    from tactcad.solids.step import from_bytes
 
     for number in ("holder-body", "cart-plate", "tip-flat"):
         order, sheet, f = orders[number], sheets[number], scale_of(sheets[number])

@@ -14,12 +14,11 @@ import pytest
 from pypdf import PdfReader
 
 from tactcad.design.messages import CheckFailure
-from tactcad.drawing.engine import fonts
+from tactcad.drawing.engine import ink
 from tactcad.drawing.engine.ink import DrawnArc, DrawnSheet, Stroke, Text, arrow, preliminary
 from tactcad.drawing.engine.layout_check import layout_faults
-from tactcad.drawing.engine.paper import A3, A4, frame
+from tactcad.drawing.engine.paper import A3, A4, TitleBlock, frame, notes, title_block, wrapped
 from tactcad.drawing.engine.sheet_files import pdf_bytes, svg_bytes
-from tactcad.drawing.engine.title import TitleBlock, notes, title_block, wrapped
 
 SIGNS = "0.25 ±0.005 ⌀3.4 ↧8 R0.3 Ra 0.8 µm 45° 4×"
 
@@ -76,12 +75,12 @@ def test_every_text_of_the_sheet_is_found_again_in_the_pdf():
 def test_widths_are_those_of_the_font_as_reportlab_reads_it():
     from reportlab.pdfbase.ttfonts import TTFont
 
-    read = TTFont("widths", str(fonts.font_file()))
-    assert fonts.width(SIGNS, 2.5) == pytest.approx(read.stringWidth(SIGNS, fonts.em(2.5)), rel=1e-3)
+    read = TTFont("widths", str(ink.font_file()))
+    assert ink.width(SIGNS, 2.5) == pytest.approx(read.stringWidth(SIGNS, ink.em(2.5)), rel=1e-3)
 
 
 def test_capitals_are_as_high_as_stated():
-    x0, y0, x1, y1 = fonts.ink_box("H", 3.5)
+    x0, y0, x1, y1 = ink.ink_box("H", 3.5)
     assert (y0, y1) == pytest.approx((0.0, 3.5))
 
 
@@ -178,8 +177,8 @@ def test_what_no_cell_can_hold_is_refused():
 
 def test_missing_font_or_letter_is_said(monkeypatch):
     with pytest.raises(CheckFailure, match="U\\+5F20"):
-        fonts.width("张", 2.5)
-    monkeypatch.setattr(fonts, "_FILE", Path("nowhere.ttf"))
+        ink.width("张", 2.5)
+    monkeypatch.setattr(ink, "_FILE", Path("nowhere.ttf"))
     with pytest.raises(CheckFailure, match="nowhere.ttf of the package matplotlib.* is missing"):
         pdf_bytes([sheet()], "t", "a", "2026-11-21")
 
@@ -197,5 +196,5 @@ def test_zones_are_those_of_iso_5457():
 def test_wrapped_lines_fit_and_lose_nothing():
     text = "wire-cut in at least three passes, " + "x" * 90
     lines = wrapped(text, 2.5, 60)
-    assert all(fonts.width(line, 2.5) <= 60 for line in lines)
+    assert all(ink.width(line, 2.5) <= 60 for line in lines)
     assert "".join(lines).replace(" ", "") == text.replace(" ", "")

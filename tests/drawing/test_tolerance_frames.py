@@ -17,8 +17,9 @@ from tactcad.drawing.engine.layout_check import layout_faults
 from tactcad.drawing.engine.sheet_files import pdf_bytes, pdf_runs
 from tactcad.drawing.parts.part_sheet import MadeFrom, Order, drawing_faults, part_plan, part_sheet
 from tactcad.drawing.parts.prism import prism_plan
-from tactcad.parts.description import Extrusion, Hole, Material, Part
-from tactcad.parts.limits import DatumFeature, Geometric
+from tactcad.families.facing_rows import FAMILY
+from tactcad.parts.language.description import Extrusion, Hole, Material, Part
+from tactcad.parts.language.limits import DatumFeature, Geometric
 from tactcad.scenes import make_scene
 
 DXF = MadeFrom("dxf/some_B.dxf", "f" * 64)
@@ -44,7 +45,7 @@ FRAMES = {
 
 def drawn(design, part):
     from tactcad.solids.build import build
-    from tactcad.solids.bytes import to_bytes
+    from tactcad.solids.step import to_bytes
 
     return part_sheet(Order(design, part, to_bytes(build(part).wrapped), (DXF,)))
 
@@ -261,7 +262,7 @@ def test_title_block_names_the_principle_and_the_general_tolerances(sheets):
 def test_the_ledge_of_a_blank_is_located_from_its_dowel_hole():
     design = variant({"array.row_arms": [[4, 7]]})
     part = next(p for p in make_scene(design, "array").parts if p.part_no.endswith("blank"))
-    plan = part_plan(part, (DXF,))
+    plan = part_plan(part, (DXF,), FAMILY.plans)
     basic = [(d.name, d.text(plan.values)) for d in plan.dimensions if d.basic]
     dowel = next(c for c in part.extrusion.openings if c.segments[0].name == "dowel_hole")
     high = part.extrusion.outer.named("ledge").start[1] - dowel.as_circle()[0][1]

@@ -30,7 +30,7 @@ CHANGES = {
 def main(directory: str, content: str, fatal: int, *how: str) -> None:
     others = next((word for word in how if word in (publish.KEEP, publish.DISCARD)), publish.REFUSE)
     if "two-renames" in how:
-        publish._rename = lambda old, new, flag: False
+        publish._exchange = lambda one, other: False
     seen = 0
 
     def count(event: str, args: tuple) -> None:
@@ -41,7 +41,7 @@ def main(directory: str, content: str, fatal: int, *how: str) -> None:
                 os.kill(os.getpid(), signal.SIGKILL)
 
     sys.addaudithook(count)
-    with publish.turn(directory, "tactcad-test-1", others) as work:
+    with publish.replacing(directory, "tactcad-test-1", others) as work:
         if "hanging" in how:
             print("hanging", flush=True)
             time.sleep(60)

@@ -10,8 +10,8 @@ from dataclasses import replace
 import pytest
 
 from tactcad.contour import circle, rectangle
-from tactcad.parts.description import Extrusion, Material, Part, Purchase
-from tactcad.parts.supply import Supply
+from tactcad.parts.bought.supply import Supply
+from tactcad.parts.language.description import Extrusion, Material, Part, Purchase
 from tactcad.scenes.bom import (
     COLUMNS,
     bom_rows,

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import os
 import subprocess
 import sys
@@ -116,7 +115,7 @@ for turn in range(300):
 def test_two_processes_at_once(tmp_path):
     runs = [subprocess.Popen([sys.executable, "-c", WRITER, str(tmp_path)]) for _ in range(2)]
     assert [run.wait() for run in runs] == [0, 0]
-    assert not list(tmp_path.rglob(".new-*"))
+    assert not list(tmp_path.rglob("*.part"))
 
 
 def test_where_it_lies(monkeypatch, tmp_path):
@@ -168,7 +167,7 @@ def test_a_clock_that_was_set_back_costs_time_only(cache):
 
 def test_what_a_killed_run_left_half_written_goes(cache):
     cache.put("old", b"x")
-    left = entry(cache).with_name(".new-left")
+    left = entry(cache).with_name(f".{entry(cache).name}.tactcad-abcdefgh.part")
     left.write_bytes(b"half")
     cache.trim()
     assert not left.exists() and cache.get("old") == b"x"
@@ -176,7 +175,7 @@ def test_what_a_killed_run_left_half_written_goes(cache):
 
 def test_what_a_running_process_writes_stays(cache):
     cache.put("old", b"x")
-    writing = entry(cache).with_name(".new-writing")
+    writing = entry(cache).with_name(f".{entry(cache).name}.tactcad-abcdefgh.part")
     script = (
         "import fcntl, sys; file = open(sys.argv[1], 'wb'); fcntl.flock(file, fcntl.LOCK_EX)\n"
         "print(1, flush=True); sys.stdin.read()"
@@ -274,12 +273,6 @@ def as_pipe(path: Path) -> None:
     os.mkfifo(path)
 
 
-def as_link(path: Path) -> None:
-    """To bytes that would do."""
-    path.rename(path.parents[2] / "kept")
-    path.symlink_to(path.parents[2] / "kept")
-
-
 def as_device(path: Path) -> None:
     path.unlink()
     path.symlink_to("/dev/zero")
@@ -290,71 +283,26 @@ def as_folder(path: Path) -> None:
     path.mkdir()
 
 
-def behind_a_link(path: Path) -> None:
-    path.parent.rename(path.parents[2] / "moved")
-    path.parent.symlink_to(path.parents[2] / "moved")
-
-
 def too_large(path: Path) -> None:
     os.truncate(path, 10**12)
 
 
-@pytest.mark.parametrize("change", [as_pipe, as_link, as_device, as_folder, behind_a_link, too_large])
+@pytest.mark.parametrize("change", [as_pipe, as_device, as_folder, too_large])
 def test_what_is_no_file_is_no_entry(cache, said, change):
     """And it is not waited for."""
     cache.put("key", DATA)
     change(entry(cache))
     assert cache.get_or_make("key", lambda: b"anew") == b"anew"
     assert "damaged" in said[0]
-    if change not in (as_folder, behind_a_link):
+    if change is not as_folder:
         assert cache.get("key") == b"anew"
 
 
-# --- who made an entry ---
-
-
-def test_whoever_knows_no_secret_makes_no_entry(cache, tmp_path, said):
-    """Another installation's entry, and one with its name and a header made without the secret."""
-    cache.put("key", DATA)
-    own, other = entry(cache), Cache(tmp_path / "other", said.append)
-    other.put("key", b"forged")
-    forged = entry(other).read_bytes()
-    entry(other).replace(own)
-    assert cache.get("key") is None
-    bare = hashlib.sha256(b"key\0forged").hexdigest().encode()
-    own.write_bytes(b" ".join([forged.split()[0], bare]) + b"\nforged")
-    assert cache.get("key") is None
-    assert len(said) == 2 and all("damaged" in line for line in said)
-
-
-def test_the_secret_is_its_owners(cache, said):
-    """Nobody else reads it; one that others could read, or that a killed run left short, is drawn anew."""
-    secret = cache.root / "secret"
-    assert secret.stat().st_mode & 0o777 == 0o600 and len(secret.read_bytes()) == 32
-    cache.put("key", DATA)
-    assert Cache(cache.root).get("key") == DATA
-    before = secret.read_bytes()
-    secret.chmod(0o644)
-    assert Cache(cache.root).get("key") is None
-    assert secret.stat().st_mode & 0o777 == 0o600 and secret.read_bytes() != before
-    secret.write_bytes(b"short")
-    Cache(cache.root)
-    assert len(secret.read_bytes()) == 32
-    secret.unlink()
-    secret.symlink_to(cache.root / "CACHEDIR.TAG")
-    assert Cache(cache.root, said.append).get("key") is None
-    assert "going on without" in said[0]
-
-
 def test_the_cache_begins_at_once_in_several_processes(tmp_path):
-    """All of them agree on mark and secret."""
     script = (
         "import sys; from pathlib import Path; from tactcad.export.cache import Cache\n"
-        "cache = Cache(Path(sys.argv[1]), sys.exit); print(cache.root.joinpath('secret').read_bytes().hex())"
+        "cache = Cache(Path(sys.argv[1]), sys.exit); cache.put('key', b'1')\n"
+        "sys.exit(cache.get('key') != b'1')"
     )
-    runs = [
-        subprocess.Popen([sys.executable, "-c", script, tmp_path / "new"], stdout=subprocess.PIPE)
-        for _ in range(4)
-    ]
-    assert len({run.communicate()[0] for run in runs}) == 1
-    assert [run.returncode for run in runs] == [0] * 4
+    runs = [subprocess.Popen([sys.executable, "-c", script, tmp_path / "new"]) for _ in range(4)]
+    assert [run.wait() for run in runs] == [0] * 4

@@ -14,7 +14,7 @@ import pytest
 
 from tactcad.contour import Arc, Contour, Corner, Line, circle, rectangle, rounded_polygon
 from tactcad.export.dxf import check_dxf, dxf_bytes, read_dxf
-from tactcad.parts.description import Extrusion, Hole, Material, Part
+from tactcad.parts.language.description import Extrusion, Hole, Material, Part
 
 ALUMINIUM = Material("7075", 2810.0)
 

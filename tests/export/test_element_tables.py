@@ -12,9 +12,9 @@ from variants import HARDWARE, variant
 
 from tactcad.export.inspection import COLUMNS, inspection_bytes
 from tactcad.export.strength_table import strength_bytes
+from tactcad.parts.array.element import element
+from tactcad.parts.array.layout import Layout
 from tactcad.parts.designs import load
-from tactcad.parts.element import element
-from tactcad.parts.layout import Layout
 
 SHIPPED = sorted(path.stem for path in HARDWARE.glob("*.toml"))
 

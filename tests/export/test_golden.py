@@ -27,10 +27,10 @@ from tactcad.export.golden_file import (
     judge,
     read_golden,
 )
+from tactcad.parts.array.element import element
+from tactcad.parts.array.layout import Layout
 from tactcad.parts.designs import load
-from tactcad.parts.element import element
-from tactcad.parts.finding import Finding
-from tactcad.parts.layout import Layout
+from tactcad.parts.language.finding import Finding
 
 ROOT = Path(__file__).parents[2]
 # the letter that the shipped file has now, and one that it will not have soon

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from tactcad.export.golden_schema import faults
+from tactcad.export.golden_file import faults
 
 RECORD = json.loads((Path(__file__).parents[2] / "exports" / "golden" / "soft-tissue.json").read_text())
 PART = next(iter(RECORD["parts"]))

@@ -24,7 +24,7 @@ from tactcad.export.inputs import (
     reasons,
     source_digest,
 )
-from tactcad.parts.description import Extrusion, Hole, Material, Part
+from tactcad.parts.language.description import Extrusion, Hole, Material, Part
 from tactcad.scenes.scene import Placement, Scene
 
 PART = Part(

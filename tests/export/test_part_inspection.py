@@ -6,10 +6,10 @@ import re
 
 import pytest
 
-from tactcad.assembly.virtual_build import sensor
-from tactcad.export.part_inspection import COLUMNS, part_inspection_bytes
+from tactcad.export.inspection import PART_COLUMNS, part_inspection_bytes
 from tactcad.parts.designs import load
 from tactcad.scenes import make_scene, scene_names
+from tactcad.stacks.virtual_build import sensor
 
 
 @pytest.fixture(scope="module", params=["macro-array", "soft-tissue"])
@@ -25,7 +25,7 @@ def made(request):
 
 def test_rows_are_the_parts_own_limits_each_once(made):
     design, parts, _, rows = made
-    assert tuple(rows[0]) == COLUMNS
+    assert tuple(rows[0]) == PART_COLUMNS
     assert len({(r["part_no"], r["characteristic"]) for r in rows}) == len(rows)
     for r in rows:
         part = parts[r["part_no"]]

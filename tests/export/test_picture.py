@@ -15,11 +15,11 @@ from tactcad.contour import circle, rectangle
 from tactcad.design.messages import CheckFailure
 from tactcad.drawing.engine import picture
 from tactcad.drawing.engine.picture import VIEWS, Drawing, check_picture, drawing, svg
-from tactcad.parts.description import Extrusion, Hole, Material, Part
+from tactcad.parts.language.description import Extrusion, Hole, Material, Part
 from tactcad.scenes import make_scene
 from tactcad.scenes.scene import Placement
 from tactcad.solids.build import build
-from tactcad.solids.place import placed_shape
+from tactcad.solids.occt import placed_shape
 
 pytestmark = pytest.mark.cad
 

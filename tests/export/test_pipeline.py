@@ -20,10 +20,11 @@ import tactcad
 from tactcad.design.messages import CheckFailure, InputError
 from tactcad.export import inputs as export_inputs
 from tactcad.export import pipeline
+from tactcad.export.formats import ExportOptions
 from tactcad.export.manifest import check_manifest, read_manifest
-from tactcad.export.pipeline import ExportOptions, export
-from tactcad.parts.description import Part
-from tactcad.parts.layout import Layout
+from tactcad.export.pipeline import export
+from tactcad.parts.array.layout import Layout
+from tactcad.parts.language.description import Part
 
 pytestmark = pytest.mark.cad
 
@@ -121,9 +122,9 @@ def two_exports(tmp_path_factory):
         # whatever of the code a cold export runs, the manifest's inputs watch (the command line's own room
         # apart)
         assert "solids" in said["rooms"]
-        assert set(said["rooms"]) - {"cli", "account", "ending"} <= set(
+        assert set(said["rooms"]) - {"cli", "profiling", "shutdown"} <= set(
             pipeline.ROOMS
-        )  # account counts, ending puts away: neither shapes a file
+        )  # profiling counts, shutdown puts away: neither shapes a file
         folders.append(home)
     return folders
 
@@ -453,9 +454,7 @@ def test_a_damaged_export_is_noticed_and_made_whole(damage, mine):
 def test_a_damaged_cache_is_noticed_and_made_whole(mine):
     good = contents(mine)
     cache = Path(os.environ["TACTCAD_CACHE"])
-    entries = [
-        p for p in cache.rglob("*") if p.is_file() and len(p.name) == 64
-    ]  # the mark and the secret are none
+    entries = [p for p in cache.rglob("*") if p.is_file() and len(p.name) == 64]  # the mark is none
     for n, path in enumerate(entries):
         data = bytearray(path.read_bytes())
         data[(n * 7919) % len(data)] ^= 0x20

@@ -227,7 +227,7 @@ def test_a_part_of_other_volume_is_not_let_out(macro_scene, macro_shapes):
 
 def test_a_moved_part_is_still_one_product(macro_scene, macro_shapes):
     """A located shape would come out as an assembly of one, which is refused, or with its place baked in."""
-    from tactcad.solids.place import placed_shape
+    from tactcad.solids.occt import placed_shape
 
     part = macro_scene.parts[0]
     moved = placed_shape(macro_shapes[part.part_no], (10.0, 0.0, 0.0), ((1, 0, 0), (0, 1, 0), (0, 0, 1)))

@@ -7,6 +7,7 @@ import os
 import re
 import signal
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -17,11 +18,12 @@ from variants import variant
 from tactcad.contour import rectangle
 from tactcad.design.messages import CheckFailure
 from tactcad.export import step_pmi
-from tactcad.export.formats import PART_FORMATS, has_limits
+from tactcad.export.formats import has_limits, part_formats
 from tactcad.export.step_text import Header
-from tactcad.parts.description import Extrusion, Hole, Material, Part, Pocket
+from tactcad.export.workers import Task, side_by_side
 from tactcad.parts.designs import load
-from tactcad.parts.limits import FACES, DatumFeature, Geometric, within
+from tactcad.parts.language.description import Extrusion, Hole, Material, Part, Pocket
+from tactcad.parts.language.limits import FACES, DatumFeature, Geometric, within
 from tactcad.scenes import make_scene, scene_names
 
 pytestmark = pytest.mark.cad
@@ -207,7 +209,7 @@ def holds(part: Part, data: bytes) -> None:
 
 def model(part: Part) -> bytes:
     from tactcad.solids.build import build
-    from tactcad.solids.bytes import to_bytes
+    from tactcad.solids.step import to_bytes
 
     return step_pmi.part_step_pmi(part, to_bytes(build(part).wrapped), HEADER)
 
@@ -372,7 +374,7 @@ def crash(*_) -> bytes:
     return b""
 
 
-def test_a_crash_of_the_kernel_is_reported_with_the_part(monkeypatch):
+def test_a_crash_of_the_kernel_is_reported_with_the_file(monkeypatch):
     from tactcad.solids.build import build
 
     class Built:
@@ -380,8 +382,9 @@ def test_a_crash_of_the_kernel_is_reported_with_the_part(monkeypatch):
             return build(part).wrapped
 
     monkeypatch.setattr(step_pmi, "part_step_pmi", crash)
-    (form,) = (f for f in PART_FORMATS if f.kind == "step-pmi")
+    (form,) = (f for f in part_formats() if f.kind == "step-pmi")
     part = plate(datums=(DatumFeature("A", "bore"),))
-    with pytest.raises(CheckFailure, match=r"P-1: model with limits \(AP242\): the process .* crashed"):
-        form.make(part, Built(), HEADER)
+    task = Task("step/P-1_A-ap242.step", partial(form.make, part, Built(), HEADER, ()))
+    with pytest.raises(CheckFailure, match=r"step/P-1_A-ap242.step: the process .* crashed"):
+        list(side_by_side([task]))
     assert form.has(part) and not form.has(plate()) and not form.has(replace(part, process="bought"))

@@ -11,9 +11,9 @@ import trimesh
 from trimesh.exchange.stl import export_stl
 
 from tactcad.cli.main import main
-from tactcad.costs.command_costs import ANGULAR, promised
+from tactcad.costs.grades import ANGULAR, promised
 from tactcad.design.messages import CheckFailure
-from tactcad.export.stl import check_stl, part_stl
+from tactcad.export.part_formats.stl import check_stl, part_stl
 from tactcad.scenes import make_scene
 from tactcad.solids.build import build
 from tactcad.solids.measure import measure

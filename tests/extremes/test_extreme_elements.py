@@ -14,7 +14,7 @@ from samples import draw_range, section
 
 from tactcad.design.messages import CheckFailure
 from tactcad.fem import fem_ladder as elements
-from tactcad.fem.convergence import converged_plane, converged_solid
+from tactcad.fem.fem_ladder import converged_plane, converged_solid
 from tactcad.fem.mapped_mesh import plane_mesh
 from tactcad.fem.shape import reference_shape
 from tactcad.mechanics import ladder

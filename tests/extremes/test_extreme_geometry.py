@@ -16,11 +16,11 @@ from tactcad.design.fields import Number, NumberRows, Numbers
 from tactcad.design.messages import InputError
 from tactcad.design.tree import Design
 from tactcad.export.dxf import check_dxf, dxf_bytes
-from tactcad.fem.plane_elements import solve_plane
+from tactcad.fem.elements import solve_plane
 from tactcad.fem.shape import cut_element
-from tactcad.parts.description import Extrusion, Revolution
-from tactcad.parts.element import element
-from tactcad.parts.layout import Layout
+from tactcad.parts.array.element import element
+from tactcad.parts.array.layout import Layout
+from tactcad.parts.language.description import Extrusion, Revolution
 from tactcad.parts.rules import broken_rules, refuse_broken
 from tactcad.scenes import make_scene, scene_names
 

@@ -13,8 +13,8 @@ from hinges import CASES, FITTED, LENGTHS, scaled
 from tactcad.design.materials import ALLOYS
 from tactcad.design.messages import CheckFailure
 from tactcad.mechanics import ladder, strain, strength
+from tactcad.mechanics.ladder import size
 from tactcad.mechanics.section import REFERENCE
-from tactcad.mechanics.sizing import size
 
 EPS = np.finfo(float).eps
 ALLOY = next(iter(ALLOYS.values()))

@@ -9,7 +9,7 @@ import pytest
 from pair_interval import object_stiffness_interval
 
 from tactcad.mechanics import lumped
-from tactcad.mechanics.fieller import ratio_interval
+from tactcad.mechanics.lumped import ratio_interval
 
 RATIOS = {
     "one and a millionth of a millionth": 1 + 1e-12,

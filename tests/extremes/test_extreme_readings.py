@@ -14,7 +14,7 @@ from hinges import scaled
 from variants import variant
 
 from tactcad.design.messages import CheckFailure, InputError
-from tactcad.mechanics import gauge_signal, ladder, readout, rig_statics, self_heating, signal, stop, strain
+from tactcad.mechanics import gauge_signal, ladder, readout, statics, strain, strength
 from tactcad.mechanics.section import REFERENCE
 from tactcad.paper.array_model import from_design
 
@@ -107,10 +107,10 @@ def test_switched_gauge_warms_by_its_settled_cycle(change, on, period):
     """The settled cycle by letting it settle, against the code's closed form. The leaf has no heat of its
     own: it is as warm as with power on all the time."""
     gauge, power = replace(GAUGE, **change), replace(POWER, on_time=on, period=period)
-    found, steady = self_heating.switched(2.7, gauge, power), self_heating.continuous(2.7, gauge, power)
+    found, steady = gauge_signal.switched(2.7, gauge, power), gauge_signal.continuous(2.7, gauge, power)
     assert all(isfinite(v) for v in (found.power, found.power_density, found.rise, found.drift))
     assert 0.0 <= found.rise <= steady.rise * (1 + 1e-12)
-    tau = self_heating.time_constant(gauge, power)
+    tau = gauge_signal.time_constant(gauge, power)
     leaf = steady.power * power.leaf_resistance
     if tau == 0.0:
         assert found.rise == leaf
@@ -126,12 +126,12 @@ def test_switched_gauge_warms_by_its_settled_cycle(change, on, period):
 
 def test_a_reading_longer_than_its_period_is_refused():
     with pytest.raises(InputError, match="readout.on_time.*legal"):
-        self_heating.switched(2.7, GAUGE, replace(POWER, on_time=2.0, period=1.0))
+        gauge_signal.switched(2.7, GAUGE, replace(POWER, on_time=2.0, period=1.0))
 
 
 @pytest.mark.parametrize("factor", [1e-6, 1e-3, 1.0, 1e3])
 def test_signal_is_proportional_until_a_supply_holds_it(factor):
-    found = signal.predict(REFERENCE.with_(two_sided=False), GAUGE, READOUT, 0.01 * factor)
+    found = readout.predict(REFERENCE.with_(two_sided=False), GAUGE, READOUT, 0.01 * factor)
     assert np.isfinite(
         [found.per_deflection, found.per_force, found.strain, found.volts, found.resolution]
     ).all()
@@ -146,20 +146,20 @@ def test_stop_keeps_its_closing_force_over_size_squared(size):
     s, arm = REFERENCE.with_(**scaled(size)), 7.0 * size
     K = float(ladder.stiffness(s))
     base = float(
-        stop.largest_closing_force(REFERENCE, float(ladder.stiffness(REFERENCE)), 7.0, 1e-4, 13.0, 8.0)
+        strength.largest_closing_force(REFERENCE, float(ladder.stiffness(REFERENCE)), 7.0, 1e-4, 13.0, 8.0)
     )
     assert float(
-        stop.largest_closing_force(s, K, arm, 1e-4 / size, 13.0 * size**2, 8.0 * size**2)
+        strength.largest_closing_force(s, K, arm, 1e-4 / size, 13.0 * size**2, 8.0 * size**2)
     ) == pytest.approx(base * size**2, rel=1e-12)
 
 
 def test_stop_at_the_load_line_carries_all_that_is_beyond():
     """arm = L: nothing of the rest reaches the hinge, and the stop may close at the hinge's own limit."""
     K = float(ladder.stiffness(REFERENCE))
-    assert float(stop.stress_share(REFERENCE, K, REFERENCE.load_arm, 0.0)) == 0.0
-    assert float(stop.deflection_share(REFERENCE, K, REFERENCE.load_arm, 0.0)) == 0.0
+    assert float(strength.stress_share(REFERENCE, K, REFERENCE.load_arm, 0.0)) == 0.0
+    assert float(strength.deflection_share(REFERENCE, K, REFERENCE.load_arm, 0.0)) == 0.0
     assert float(
-        stop.largest_closing_force(REFERENCE, K, REFERENCE.load_arm, 0.0, 1e6, 8.0)
+        strength.largest_closing_force(REFERENCE, K, REFERENCE.load_arm, 0.0, 1e6, 8.0)
     ) == pytest.approx(8.0, rel=1e-12)
 
 
@@ -184,17 +184,17 @@ SQUARE = ((25.0, 25.0), (-25.0, 25.0), (-25.0, -25.0), (25.0, -25.0))
 @pytest.mark.parametrize("size", [1e-3, 1.0, 1e3])
 def test_rig_statics_go_with_size(size):
     contacts = tuple((x * size, y * size) for x, y in SQUARE)
-    assert rig_statics.tipping_margin(contacts, 10 * size) == pytest.approx(15 * size, rel=1e-12)
-    assert rig_statics.tipping_pull(contacts, 30 * size, 2.0, 3.0, (0, 0)) == pytest.approx(
+    assert statics.tipping_margin(contacts, 10 * size) == pytest.approx(15 * size, rel=1e-12)
+    assert statics.tipping_pull(contacts, 30 * size, 2.0, 3.0, (0, 0)) == pytest.approx(
         5.0 * 25 / 30, rel=1e-12
     )
 
 
 def test_rig_without_height_load_or_vacuum():
     assert (
-        rig_statics.tipping_pull(SQUARE, 0.0, 2.0, 3.0, (0, 0)) == inf
+        statics.tipping_pull(SQUARE, 0.0, 2.0, 3.0, (0, 0)) == inf
     )  # a pull at the wheels' own height tips nothing
-    assert rig_statics.tipping_pull(SQUARE, 30.0, 0.0, 0.0, (0, 0)) == 0.0
-    assert rig_statics.holding_force(0.0, 100.0) == 0.0
-    assert rig_statics.tipping_margin(SQUARE, 25.0) == pytest.approx(0.0, abs=1e-12)
-    assert rig_statics.tipping_margin(SQUARE, 1e6) < 0.0
+    assert statics.tipping_pull(SQUARE, 30.0, 0.0, 0.0, (0, 0)) == 0.0
+    assert statics.holding_force(0.0, 100.0) == 0.0
+    assert statics.tipping_margin(SQUARE, 25.0) == pytest.approx(0.0, abs=1e-12)
+    assert statics.tipping_margin(SQUARE, 1e6) < 0.0

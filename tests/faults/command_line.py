@@ -119,7 +119,7 @@ def assert_tidy(out: Path, work: Path) -> None:
     assert [p.name for p in out.parent.iterdir()] == [out.name]
     assert out.is_dir() and not out.is_symlink()
     assert not list((work / "tmp").iterdir()) and not list((work / "home").iterdir())
-    assert not list((work / "cache").rglob(".new-*"))
+    assert not list((work / "cache").rglob("*.part"))
 
 
 @dataclass(frozen=True)

@@ -15,8 +15,8 @@ from test_wheel import BASE, closure
 
 from tactcad.cli.main import COMMANDS, parser_of
 from tactcad.export.inspection import inspection_bytes
+from tactcad.parts.array.layout import Layout
 from tactcad.parts.designs import load
-from tactcad.parts.layout import Layout
 
 # Python runs it as it starts, in every process: what other distributions bring is not there.
 HIDE = """
@@ -50,14 +50,14 @@ size --stiffness 10 --load-arm 6 --hinge-length 1 --fillet-radius 0.2 --arm-heig
 size --stiffness 10 --load-arm 6 --width 3 --youngs-modulus 7e4 --poisson 0.3 --alloy 7075-T6 --force 0.1
 size --stiffness 10 --load-arm 6 --tolerance 0.01 --model beam --body-height 5 --body-length 4
 calibrate calibration.csv --load-cell 57+-1 --run-scatter 0.01 --drop-outliers --out cal.csv
-calibrate calibration.csv --design macro-array --level 0.9 --json --profile
+calibrate calibration.csv --design macro-array --level 0.9 --within 1% --in 1 --json --profile
 stiffness grasp.csv --calibration cal.csv --reference 8 --level 0.9 --json --profile
-stiffness grasp.csv --calibration cal.csv --design macro-array --coupling 1 --thickness 5
+stiffness grasp.csv --calibration cal.csv --design macro-array --coupling 1 --thickness 5 --within 1% --in 1
 schema --target --json --profile
 schema --study
 """
 LONG = """
-design target.toml --out designed --best --within 10% --in 60 --json --profile
+design target.toml --out designed --best --within 10% --in 120 --json --profile
 validate --out report --keep --json --profile --design macro-array --table1 table1.csv
 validate --out report --discard --table2 table2.csv
 """

@@ -33,22 +33,12 @@ from tactcad.export.difference_page import page
 from tactcad.export.dxf import dxf_bytes
 from tactcad.export.geometry import geometry
 from tactcad.export.inspection import inspection_bytes
-from tactcad.lab import (
-    as_made,
-    as_made_text,
-    batch,
-    calibration,
-    calibration_text,
-    grasp,
-    grasp_text,
-    pads,
-    readings,
-)
+from tactcad.lab import as_made, batch, calibration, calibration_file, grasp, pads, readings
 from tactcad.lab.inspection_sheet import read_sheet
 from tactcad.lab.load_cell import LoadCell
 from tactcad.paper import published
+from tactcad.parts.array.layout import Layout
 from tactcad.parts.designs import load
-from tactcad.parts.layout import Layout
 from tactcad.scenes import bom, make_scene, scene_names
 from tactcad.scenes.poses import pose_of
 
@@ -73,20 +63,20 @@ CELL = LoadCell.parse("57.04")
 
 def calibrate(path: Path) -> None:
     rows = calibration.calibrate(readings.calibration(path), CELL)
-    calibration_text.to_text(rows, CELL, 0.95), calibration_text.to_json(rows, CELL, 0.95)
+    calibration_file.to_text(rows, CELL, 0.95), calibration_file.to_json(rows, CELL, 0.95)
     try:
-        calibration_text.to_csv(rows, CELL)
+        calibration_file.to_csv(rows, CELL)
     except CheckFailure as refusal:  # of one element, after the file was read
         assert str(refusal).startswith("element ")
 
 
 def stiffness(known: Path, grasps: Path) -> None:
-    sensitivity = calibration_text.read(str(known))
+    sensitivity = calibration_file.read(str(known))
     found = [
         grasp.evaluate(g, sensitivity, coupling=pads.coupling("macro-array", g, 1.0))
         for g in readings.grasps(grasps)
     ]
-    grasp_text.to_text(found, 0.95), grasp_text.to_json(found, 0.95)
+    grasp.to_text(found, 0.95), grasp.to_json(found, 0.95)
 
 
 def difference(old: sides.Side, source: str) -> None:
@@ -161,7 +151,7 @@ def readers(tmp_path_factory) -> dict[str, Reader]:
     layout, old = Layout(design), sides.read_side(str(place / "A.toml"))
     rows = calibration.calibrate(readings.calibration(EXAMPLES / "calibration.csv"), CELL)
     known = place / "calibration.csv"
-    known.write_text(calibration_text.to_csv(rows, CELL))
+    known.write_text(calibration_file.to_csv(rows, CELL))
     one_grasp = place / "grasp.csv"  # its first sample: what is tried is the calibration
     one_grasp.write_bytes(b"".join((EXAMPLES / "grasp.csv").read_bytes().splitlines(True)[:93]))
     export = Export(design)
@@ -188,13 +178,13 @@ def readers(tmp_path_factory) -> dict[str, Reader]:
         Reader("calibration.csv", known.read_bytes(), lambda path: stiffness(path, one_grasp)),
         Reader(
             "calibration.json",
-            calibration_text.to_json(rows, CELL, 0.95).encode(),
+            calibration_file.to_json(rows, CELL, 0.95).encode(),
             lambda path: stiffness(path, one_grasp),
         ),
         Reader(
             "sheet.csv",
             inspection_bytes(layout),
-            lambda path: as_made_text.report(
+            lambda path: as_made.report(
                 design, "solid", as_made.as_made(layout, read_sheet(path, layout), "solid")
             ),
         ),

@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 from command_line import ROOT, environment, one_by_one
 
-from tactcad.review.repository import _git
+from tactcad.review.revisions import _git
 
 pytestmark = pytest.mark.slow  # nearly every command
 
@@ -35,7 +35,7 @@ export small --scene array --drawings --guide; review exports/macro-array
 check small; review small --scene array; build small --count 50
 golden small; release small --sample
 sweep study.toml --out swept; sweep plot swept
-design target.toml --out made --in 30
+design target.toml --out made --in 120
 validate --out validated; new mine.toml --from soft-tissue; estimate mine.toml"""
 # What git runs if it heeds them; PLACE is the folder around the clone.
 SETTINGS = """\

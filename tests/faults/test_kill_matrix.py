@@ -172,7 +172,7 @@ def run_after(case: Case, wanted: str, about: str) -> None:
     """The next run finishes, and leaves nothing of the others'."""
     case.run(wanted)
     assert lying(case.work) == case.whole[wanted], about
-    assert not list((case.work / "cache").rglob(".new-*")), about
+    assert not list((case.work / "cache").rglob("*.part")), about
 
 
 @pytest.mark.parametrize("command", BY_DAY)

@@ -167,7 +167,7 @@ def test_the_link_that_an_earlier_tactcad_wrote_is_refused_and_kept(bench, work)
     shutil.copytree(bench.folder / "A" / "out", exports / ".out.builds" / "1")
     (exports / "out").symlink_to(".out.builds/1")
     said = refused(export(work, "B"))
-    assert "earlier tactcad" in said and ".out.builds" in said
+    assert "is a link" in said
     assert contents(exports / "out") == bench.files["A"]
 
 

@@ -8,14 +8,14 @@ import pytest
 
 from tactcad.contour import Arc, Contour, Line, chain
 from tactcad.design.messages import CheckFailure
-from tactcad.fem.plane_elements import solve_plane
+from tactcad.fem.elements import solve_plane
 from tactcad.fem.shape import cut_element, outline, read, reference_contour, reference_shape
 from tactcad.mechanics import ladder
 from tactcad.mechanics.section import REFERENCE
+from tactcad.parts.array.element import element
+from tactcad.parts.array.hinge_section import hinge_section
+from tactcad.parts.array.layout import Layout
 from tactcad.parts.designs import load
-from tactcad.parts.element import element
-from tactcad.parts.hinge_section import hinge_section
-from tactcad.parts.layout import Layout
 
 SECTIONS = {
     "two": REFERENCE,

@@ -8,16 +8,16 @@ from skfem import Basis, ElementTriP2
 
 from tactcad.contour import circle, rectangle
 from tactcad.fem import elasticity
-from tactcad.fem.convergence import converged_plane
+from tactcad.fem.elements import fixed_unknowns, parabola
+from tactcad.fem.fem_ladder import converged_plane
 from tactcad.fem.free_mesh import Fine, triangle_mesh
 from tactcad.fem.mapped_mesh import plane_mesh
-from tactcad.fem.plane_elements import fixed_unknowns, parabola
 from tactcad.fem.shape import reference_contour, reference_shape
 from tactcad.fem.space import line_load
 from tactcad.lab.array_estimate import compare_uncut
 from tactcad.mechanics.section import REFERENCE
+from tactcad.parts.array.layout import Layout
 from tactcad.parts.designs import load
-from tactcad.parts.layout import Layout
 
 
 def test_area_of_a_plate_with_holes_is_exact_but_for_the_arcs_parabolas():

@@ -12,9 +12,9 @@ import numpy as np
 import pytest
 from samples import draw_box, draw_corners, few_elements, section
 
-from tactcad.fem.convergence import converged_plane, converged_solid
+from tactcad.fem.elements import solve_solid
+from tactcad.fem.fem_ladder import converged_plane, converged_solid
 from tactcad.fem.shape import reference_shape
-from tactcad.fem.solid_elements import solve_solid
 from tactcad.mechanics import ladder
 from tactcad.mechanics.accuracy import expected_error_of
 from tactcad.mechanics.section import REFERENCE, HingeSection

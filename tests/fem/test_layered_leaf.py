@@ -8,15 +8,15 @@ import numpy as np
 import pytest
 from variants import variant
 
-from tactcad.fem import layered_leaf
-from tactcad.fem.layered_leaf import Layer, stiffness
-from tactcad.fem.plane_elements import solve_plane
+from tactcad.fem import bonded_leaf
+from tactcad.fem.bonded_leaf import Layer, stiffness
+from tactcad.fem.elements import solve_plane
 from tactcad.fem.shape import reference_shape
 from tactcad.mechanics import gauge_signal, ladder
 from tactcad.mechanics.section import REFERENCE
 from tactcad.paper.array_model import gauge_layers
-from tactcad.parts.hinge_section import design_gauge, hinge_section
-from tactcad.parts.layout import Layout
+from tactcad.parts.array.hinge_section import design_gauge, hinge_section
+from tactcad.parts.array.layout import Layout
 
 REACH = (1.2, 2.8)
 
@@ -81,5 +81,5 @@ def test_without_a_bond_line_of_its_own_the_carrier_takes_all_of_the_height():
 def test_finer_meshes_agree(element, monkeypatch):
     s, layers = leaf(element), gauge_layers(variant())
     coarse = stiffness(s, layers) / stiffness(s, []) - 1
-    monkeypatch.setattr(layered_leaf, "DENSITY", 4)
+    monkeypatch.setattr(bonded_leaf, "DENSITY", 4)
     assert coarse == pytest.approx(stiffness(s, layers) / stiffness(s, []) - 1, rel=0.03)

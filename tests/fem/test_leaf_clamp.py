@@ -6,15 +6,15 @@ import numpy as np
 import pytest
 from variants import variant
 
-from tactcad.fem import leaf_clamp
-from tactcad.fem.leaf_clamp import clamped
+from tactcad.fem import bonded_leaf
+from tactcad.fem.bonded_leaf import clamped
 from tactcad.fem.mapped_mesh import plane_mesh
 from tactcad.fem.shape import reference_shape
 from tactcad.fem.space import PlaneSpace
 from tactcad.mechanics import strain
-from tactcad.parts.hinge_section import hinge_section
-from tactcad.parts.layout import Layout
-from tactcad.parts.rigs.bonding_layout import bonding_rigs
+from tactcad.parts.array.hinge_section import hinge_section
+from tactcad.parts.array.layout import Layout
+from tactcad.parts.rigs.bonding_fixture import bonding_rigs
 
 RUBBER, WIDTH, GRID = (1.2, 2.8), 1.5, 0.5
 
@@ -34,7 +34,7 @@ def lying(changes=None):
 def test_the_pressure_is_all_there_and_where_it_is():
     mesh = plane_mesh(reference_shape(leaf()), 2, whole=True, order=3)
     space = PlaneSpace.of(mesh)
-    f = leaf_clamp.pressed(space, mesh, (1.2, 1.5))
+    f = bonded_leaf.pressed(space, mesh, (1.2, 1.5))
     assert f.sum() == pytest.approx(2.7, rel=5e-3)
     assert f @ space.nodes[0] / f.sum() == pytest.approx((1.2 - 1.5) / 2, abs=0.01)
 
@@ -77,7 +77,7 @@ def test_finer_meshes_agree(tongue, monkeypatch):
     s, flat, _ = lying()
     s, flat = (s, flat) if tongue else (leaf(), None)
     coarse = clamped(s, RUBBER, WIDTH, GRID, flat)
-    monkeypatch.setattr(leaf_clamp, "DENSITY", 4)
+    monkeypatch.setattr(bonded_leaf, "DENSITY", 4)
     fine = clamped(s, RUBBER, WIDTH, GRID, flat)
     assert coarse.stress == pytest.approx(fine.stress, rel=0.04)
     assert coarse.gauge_strain == pytest.approx(fine.gauge_strain, rel=0.04)

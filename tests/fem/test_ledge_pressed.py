@@ -18,10 +18,10 @@ from skfem import Basis, ElementTriP2
 from tactcad.fem import elasticity
 from tactcad.fem.free_mesh import Fine, triangle_mesh
 from tactcad.fem.space import line_load
-from tactcad.parts import seating
+from tactcad.parts.array import seating
+from tactcad.parts.array.element import element
+from tactcad.parts.array.layout import ElementPlace, Layout
 from tactcad.parts.designs import load
-from tactcad.parts.element import element
-from tactcad.parts.layout import ElementPlace, Layout
 
 RIGS = Path(__file__).parents[2] / "docs" / "rigs.md"
 LAYOUT = Layout(load("macro-array"))

@@ -1,7 +1,7 @@
 """The overload stop by finite elements on the whole contour of every shipped element: load on the pad, tip
 held by a rigid stop plate once its gap is closed; stresses are the largest of the width, by solid elements.
-What holds uses only the ratio of two stiffnesses of the estimator; nothing of mechanics/stop.py, nor of the
-strain forms."""
+What holds uses only the ratio of two stiffnesses of the estimator; nothing of mechanics/strength.py, nor of
+the strain forms."""
 
 from __future__ import annotations
 
@@ -17,12 +17,11 @@ from tactcad.fem import elasticity, fem_ladder
 from tactcad.fem.free_mesh import Fine, triangle_mesh
 from tactcad.fem.space import line_load
 from tactcad.mechanics import ladder, strain
+from tactcad.parts.array.element import element
+from tactcad.parts.array.hinge_section import hinge_section
+from tactcad.parts.array.layout import ElementPlace, Layout
+from tactcad.parts.array.stop_gap import overloads, seat
 from tactcad.parts.designs import load
-from tactcad.parts.element import element
-from tactcad.parts.hinge_section import hinge_section
-from tactcad.parts.layout import ElementPlace, Layout
-from tactcad.parts.overload import overloads
-from tactcad.parts.stop_gap import seat
 
 # every different element of the shipped designs, under its design's overload force
 KINDS = sorted(

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from tactcad.fem import elasticity
-from tactcad.fem.convergence import RATE, converged_plane, richardson
+from tactcad.fem.elements import end_load, solve_plane
+from tactcad.fem.fem_ladder import RATE, converged_plane, richardson
 from tactcad.fem.mapped_mesh import plane_mesh
-from tactcad.fem.plane_elements import end_load, solve_plane
 from tactcad.fem.shape import outline, reference_shape
 from tactcad.fem.space import PlaneSpace
 from tactcad.mechanics.section import REFERENCE

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from tactcad.fem.convergence import converged_solid
-from tactcad.fem.plane_elements import solve_plane
+from tactcad.fem.elements import solve_plane, solve_solid
+from tactcad.fem.fem_ladder import converged_solid
 from tactcad.fem.shape import reference_shape
-from tactcad.fem.solid_elements import solve_solid
 from tactcad.mechanics.section import REFERENCE
 
 E, NU, B = 69000.0, 0.33, 3.0

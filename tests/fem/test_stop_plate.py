@@ -10,8 +10,8 @@ from skfem import Basis, ElementHex2, MeshHex
 from variants import variant
 
 from tactcad.fem import elasticity
-from tactcad.parts.layout import Layout
-from tactcad.parts.stop_give import STEEL_MODULUS, STEEL_POISSON, stop_plate_beams
+from tactcad.parts.array.layout import Layout
+from tactcad.parts.array.stop_give import STEEL_MODULUS, STEEL_POISSON
 
 HELD = 1e7  # N/mm that hold a set screw's point: a thousand times what the plate has
 LONG = {"array.row_arms": [[4, 7, 6, 8, 6] * 10, [8, 5, 4, 5, 7] * 10]}
@@ -80,7 +80,7 @@ def rise(layout: Layout, step: float = 2.0) -> float:
 )
 def test_the_beams_err_to_the_soft_side(changes, least, most):
     layout = Layout(variant(changes))
-    plate = stop_plate_beams(layout)
+    plate = layout.stop_plate_beams()
     of_elements = rise(layout)
     ratio = (plate.one - plate.screw) / of_elements
     print(f"{changes}: beams over elements {ratio:.3f}")

@@ -6,10 +6,9 @@ import numpy as np
 import pytest
 from samples import draw_box, section
 
+from tactcad.fem.elements import solve_plane, solve_solid
 from tactcad.fem.face_strain import face_strain
-from tactcad.fem.plane_elements import solve_plane
 from tactcad.fem.shape import reference_shape
-from tactcad.fem.solid_elements import solve_solid
 from tactcad.mechanics import strain
 from tactcad.mechanics.section import REFERENCE
 

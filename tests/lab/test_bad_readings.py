@@ -13,13 +13,13 @@ from tactcad.design import csv_table
 from tactcad.design.csv_table import Field
 from tactcad.design.messages import InputError
 from tactcad.export.inspection import COLUMNS
-from tactcad.lab import batch, calibration, calibration_text, noise, readings, regression
+from tactcad.lab import batch, calibration, calibration_file, readings, regression
 from tactcad.lab.inspection_sheet import read_sheet
 from tactcad.lab.load_cell import LoadCell
 from tactcad.lab.simulate import Noise, Truth, calibration_rows
 from tactcad.mechanics.section import REQUIRED
+from tactcad.parts.array.layout import Layout
 from tactcad.parts.designs import load
-from tactcad.parts.layout import Layout
 
 HEADER = "element,run,displacement,force,signal"
 STEPS = np.arange(1, 7) * 0.025
@@ -165,7 +165,7 @@ def test_one_bad_cell_of_many_is_named_with_line_and_column(tmp_path, bad):
 READERS = {
     readings.calibration: HEADER,
     readings.grasps: "load,element,signal",
-    calibration_text.read: "element,stiffness_N_per_mm,signal_per_deflection_V_per_mm",
+    calibration_file.read: "element,stiffness_N_per_mm,signal_per_deflection_V_per_mm",
     batch.read_table: ",".join(REQUIRED),
     lambda path: read_sheet(path, Layout(load("macro-array"))): ",".join(COLUMNS),
 }
@@ -206,7 +206,7 @@ def test_outliers_cost_no_fit_each(monkeypatch):
         y = 3 * x + run + 0.01 * rng.standard_normal(len(run))
         for i in rng.integers(0, len(run), rng.integers(0, 4)):
             y[i] += rng.choice([-1, 1]) * 10 ** rng.uniform(-1.5, 1)
-        weight = noise.weights([noise.Readings(x, x, y, run)])[0]
+        weight = regression.weights([regression.Readings(x, x, y, run)])[0]
         named = regression.extreme_deviates(x, y, run, weight)
         left = np.ones(len(x), bool)
         for i in named:  # by fits of what is left: each one named was the most extreme

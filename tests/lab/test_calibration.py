@@ -10,7 +10,7 @@ from scipy.stats import binom, norm
 from scipy.stats import t as t_distribution
 
 from tactcad.design.messages import CheckFailure, InputError
-from tactcad.lab import calibration, calibration_text, contact, noise, readings, regression, simulate
+from tactcad.lab import calibration, calibration_file, readings, regression, simulate
 from tactcad.lab.column_units import against_design
 from tactcad.lab.load_cell import LoadCell
 from tactcad.lab.readings import CalibrationReadings
@@ -143,7 +143,9 @@ def test_weights_help_where_noise_grows_with_the_reading():
     for _ in range(400):
         y = 20 * x * (1 + 0.05 * rng.standard_normal(21)) + 0.002 * rng.standard_normal(21)
         first = regression.fit_lines(x, y[:, None], run)
-        second = regression.fit_lines(x, y[:, None], run, noise.weights([noise.Readings(x, x, y, run)])[0])
+        second = regression.fit_lines(
+            x, y[:, None], run, regression.weights([regression.Readings(x, x, y, run)])[0]
+        )
         plain.append(first.slope[0])
         weighted.append(second.slope[0])
         half = regression.t_quantile(0.95, second.dof) * second.covariance[0, 0] ** 0.5
@@ -175,7 +177,7 @@ def test_two_outliers_do_not_hide_each_other():
     y = 40 * x + np.random.default_rng(1).normal(0, 0.003, 21)
     y[[5, 12]] += [0.2, 0.21]
     run = np.repeat([1, 2, 3], 7)
-    weight = noise.weights([noise.Readings(x, x, y, run)])[0]
+    weight = regression.weights([regression.Readings(x, x, y, run)])[0]
     assert set(regression.extreme_deviates(x, y, run, weight)) == {5, 12}
 
 
@@ -188,7 +190,7 @@ def test_the_interval_comes_from_the_runs_own_slopes():
     forces, x = [data.force[data.element == n].reshape(3, 7)[:, 1:] for n in (4, 8)], STEPS[1:]
     force, x3 = forces[0], np.tile(x, 3)
     run = np.repeat([1, 2, 3], 6)
-    w = noise.weights([noise.Readings(x3, x3, f.ravel(), run) for f in forces])[0].reshape(3, 6)
+    w = regression.weights([regression.Readings(x3, x3, f.ravel(), run) for f in forces])[0].reshape(3, 6)
     slope = np.array([np.polyfit(x, f, 1, w=np.sqrt(v))[0] for f, v in zip(force, w)])
     half = t_distribution.ppf(0.975, 2) * slope.std(ddof=1) / 3**0.5
     low, high = ((s * CELL / (CELL - s)) for s in (slope.mean() - half, slope.mean() + half))
@@ -264,15 +266,15 @@ def a_ramp(gap: float, seed: int) -> tuple[np.ndarray, ...]:
 def test_of_a_ramp_in_contact_hardly_more_than_a_step_is_left_out():
     """Stated: at most 16 steps are tried, each wrong in one of a thousand. 200 ramps: 3.2 expected, more than
     12 by a chance under 1e-4."""
-    late = [contact.first_in_contact(*a_ramp(0, seed)) for seed in range(200)]
+    late = [calibration.first_in_contact(*a_ramp(0, seed)) for seed in range(200)]
     assert sum(left_out > 1 for _, left_out in late) <= 12
-    assert min(first for first, _ in late) == pytest.approx(0.15 / contact.MOST, abs=1e-4)
+    assert min(first for first, _ in late) == pytest.approx(0.15 / calibration.MOST, abs=1e-4)
 
 
 @pytest.mark.parametrize("gap", [0.020, 0.060])
 def test_where_a_ramp_meets_the_pad_is_found(gap):
-    first, left_out = contact.first_in_contact(*a_ramp(gap, 1))
-    assert gap - 0.001 < first < gap + 2 * 0.15 / contact.MOST and left_out > 1
+    first, left_out = calibration.first_in_contact(*a_ramp(gap, 1))
+    assert gap - 0.001 < first < gap + 2 * 0.15 / calibration.MOST and left_out > 1
 
 
 @pytest.mark.parametrize(
@@ -370,9 +372,9 @@ def test_units_stand_in_the_columns_names(tmp_path):
 def test_a_calibration_is_read_back_as_written(tmp_path):
     rows = calibration.calibrate(simulated(Noise(), seed=2), EXACT)
     csv, js = tmp_path / "c.csv", tmp_path / "c.json"
-    csv.write_text(calibration_text.to_csv(rows, EXACT))
-    js.write_text(calibration_text.to_json(rows, EXACT, 0.95))
-    for known in (calibration_text.read(str(csv)), calibration_text.read(str(js))):
+    csv.write_text(calibration_file.to_csv(rows, EXACT))
+    js.write_text(calibration_file.to_json(rows, EXACT, 0.95))
+    for known in (calibration_file.read(str(csv)), calibration_file.read(str(js))):
         assert known.element.tolist() == [4, 8]
         assert known.stiffness == pytest.approx([r.stiffness.value for r in rows], rel=1e-8)
         assert known.stiffness_se == pytest.approx([r.stiffness.standard_error for r in rows], rel=1e-8)
@@ -390,7 +392,7 @@ def test_no_calibration_is_written_that_the_readings_do_not_give():
     )
     rows = calibration.calibrate(data, LoadCell(55.0))  # the slope is 55.8 N/mm, within noise of it
     with pytest.raises(CheckFailure, match="element 1"):
-        calibration_text.to_csv(rows, LoadCell(55.0))
+        calibration_file.to_csv(rows, LoadCell(55.0))
 
 
 @pytest.mark.parametrize(
@@ -405,5 +407,5 @@ def test_a_bad_calibration_is_refused(tmp_path, line, where, named):
     file = tmp_path / "cal.csv"
     file.write_text("# c\nelement,stiffness_N_per_mm,signal_per_deflection_V_per_mm\n" + line + "\n")
     with pytest.raises(InputError, match=named) as refused:
-        calibration_text.read(str(file))
+        calibration_file.read(str(file))
     assert str(refused.value).startswith(f"{file}{where}: ")

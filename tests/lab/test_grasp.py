@@ -12,11 +12,11 @@ from scipy.stats import binom
 
 from tactcad.design.messages import InputError
 from tactcad.lab import calibration, grasp, readings, simulate
+from tactcad.lab.calibration_file import Sensitivity
 from tactcad.lab.combine import combine, scatter
 from tactcad.lab.load_cell import LoadCell
 from tactcad.lab.readings import CalibrationReadings, GraspReadings
-from tactcad.lab.sensitivity import Sensitivity
-from tactcad.mechanics import fieller
+from tactcad.mechanics import lumped
 from tactcad.mechanics.sample_coupling import shares_between
 
 CELL = 57.04
@@ -107,7 +107,7 @@ def test_a_pair_has_fieller_s_interval():
     from tactcad.lab.regression import t_quantile
 
     _, dof = scatter(slopes, [3, 0], slopes.covariance[[3, 0]], found.estimate)
-    formula = fieller.ratio_interval(n, d, c[0, 0], c[1, 1], -c[0, 1], quantile=t_quantile(0.95, dof))
+    formula = lumped.ratio_interval(n, d, c[0, 0], c[1, 1], -c[0, 1], quantile=t_quantile(0.95, dof))
     assert formula.bounded
     assert found.estimate == pytest.approx(float(formula.estimate), rel=1e-6)
     assert found.low == pytest.approx(max(float(formula.lower), 0.0), rel=1e-6)

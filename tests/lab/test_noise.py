@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.stats import binom
 
-from tactcad.lab import noise
+from tactcad.lab import regression
 from tactcad.lab.regression import extreme_deviates
 
 STEPS = 0.025 * np.arange(1, 7)
@@ -24,7 +24,7 @@ def read(sd: tuple[float, float, float], slopes: np.ndarray, rng: np.random.Gene
 
 
 def weights(readings: list[np.ndarray]) -> list[np.ndarray]:
-    return noise.weights([noise.Readings(X, X, y, RUN) for y in readings])
+    return regression.weights([regression.Readings(X, X, y, RUN) for y in readings])
 
 
 @pytest.mark.parametrize(
@@ -55,8 +55,8 @@ def test_one_bad_reading_is_no_noise_that_grows():
 @pytest.mark.filterwarnings("error")
 def test_readings_without_noise_count_alike():
     x = np.array([1.0, 2.0, 3.0, 4.0])
-    w = noise.weights([noise.Readings(x, x, 2 * x, np.ones(4, int))])[0]
-    assert np.isfinite(w).all() and w.max() <= noise.RANGE * w.min()
+    w = regression.weights([regression.Readings(x, x, 2 * x, np.ones(4, int))])[0]
+    assert np.isfinite(w).all() and w.max() <= regression.RANGE * w.min()
 
 
 @pytest.mark.parametrize(

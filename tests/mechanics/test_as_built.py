@@ -25,7 +25,7 @@ from tactcad.mechanics.as_built import (
 from tactcad.mechanics.section import REFERENCE
 from tactcad.paper import budget, published, reference_stiffness, residuals
 from tactcad.paper.array_model import from_design
-from tactcad.paper.budget_effects import AS_BUILT
+from tactcad.paper.budget import AS_BUILT
 from tactcad.paper.prose import effect_text
 from tactcad.parts.designs import load
 

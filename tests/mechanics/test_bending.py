@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_bvp
 
-from tactcad.mechanics.bending import Beam, rod, round_plate
+from tactcad.mechanics.statics import Beam, rod, round_plate
 
 E, NU = 69000.0, 0.33
 BEAMS = [Beam(60.0, 23.0, 8.0, E, NU), Beam(20.0, 30.0, 12.0, E, NU), Beam(200.0, 3.0, 2.0, E, NU)]

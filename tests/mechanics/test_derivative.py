@@ -13,11 +13,11 @@ import pytest
 from tactcad.design.messages import CheckFailure
 from tactcad.fem.fem_ladder import stiffness as by_elements
 from tactcad.mechanics import ladder
-from tactcad.mechanics.derivative import elasticity
+from tactcad.mechanics.ladder import elasticity
 from tactcad.mechanics.section import REFERENCE
+from tactcad.parts.array.hinge_section import hinge_section, thickness_elasticity
+from tactcad.parts.array.layout import Layout
 from tactcad.parts.designs import load
-from tactcad.parts.hinge_section import hinge_section, thickness_elasticity
-from tactcad.parts.layout import Layout
 from tactcad.release.readme import ReleaseContents, readme_bytes
 from tactcad.scenes import make_scene
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from pair_interval import object_stiffness_interval
 
-from tactcad.mechanics.fieller import ratio_interval
+from tactcad.mechanics.lumped import ratio_interval
 
 
 @pytest.mark.parametrize("x", [2.0, 20.0, 300.0])

@@ -7,8 +7,8 @@ import pytest
 
 from tactcad.design.messages import CheckFailure
 from tactcad.mechanics import ladder
+from tactcad.mechanics.ladder import size
 from tactcad.mechanics.section import REFERENCE
-from tactcad.mechanics.sizing import size
 
 
 @pytest.mark.parametrize("rung", ladder.CLOSED_FORMS)

@@ -9,7 +9,7 @@ import pytest
 
 from tactcad.mechanics import ladder, strain
 from tactcad.mechanics.section import HingeSection
-from tactcad.mechanics.stop import (
+from tactcad.mechanics.strength import (
     back_share,
     deflection_share,
     largest_closing_force,

@@ -12,7 +12,7 @@ finding   a module of checks says everything but findings of one name
 rule      a rule between fields of a design finds nothing
 gate      one statement of a gate that reads a written file back, or holds a file against its model, says
           nothing
-call      a check or gate is not called where it should be
+call      a check or gate is not called where it should be, or a declared check does nothing
 """
 
 from __future__ import annotations
@@ -43,8 +43,8 @@ MOST_FILES = (
 
 # Names of findings that no literal in the source spells out, by module and expression.
 SPELT_OUT = {
-    ("checks/brep.py", "f'tiny-{name}'"): ("tiny-edge", "tiny-face"),
-    ("checks/brep.py", "f'step-{name}'"): ("step-volume", "step-area"),
+    ("checks/on_solids/soundness.py", "f'tiny-{name}'"): ("tiny-edge", "tiny-face"),
+    ("checks/on_solids/soundness.py", "f'step-{name}'"): ("step-volume", "step-area"),
 }
 # Functions that make findings under a name that they are given.
 PASS_ON = {"Finding", "fail", "flag", "at_least", "at_most", "_finding", "_pressed", "_thin"}
@@ -55,11 +55,10 @@ GATE = re.compile(
 NO_GATES = {
     "_own_folder",  # another export takes too long
     "replacing",  # somebody wrote to the zips meanwhile
-    "turn",  # somebody wrote to the earlier folder meanwhile
+    "settle",  # somebody wrote to the earlier folder meanwhile
     "changes_against",  # a golden file that cannot be read
     "written",  # the kernel says itself that it failed
-    "all_written",  # a process was killed
-    "made_apart",  # a process was killed
+    "side_by_side",  # a process was killed
     "_faces",  # a feature that other features have cut away
     "part_plan",  # a part that has no sheet
 }
@@ -120,7 +119,7 @@ for _name, _function in list(globals().items()):
 
 def findings() -> Iterator[Mutant]:
     for path in [
-        *sorted((SOURCE / "tactcad" / "checks").glob("*.py")),
+        *sorted((SOURCE / "tactcad" / "checks").rglob("*.py")),
         *sorted((SOURCE / "tactcad" / "scenes" / "rigs").glob("*.py")),  # rigs' own checks
         SOURCE / "tactcad" / "export" / "golden_file.py",
     ]:
@@ -312,8 +311,8 @@ def _without_statement(tree: ast.Module, name: str, n: int) -> ast.Module:
 # --- calls ---
 
 CALLERS = {
-    "checks/run.py": r"^report\.run$",
-    "checks/without_solids.py": r"^report\.run$",
+    "checks/run.py": r"^(report\.run|run_each)$",
+    "checks/check.py": r"^(report\.run|run_each)$",
     "cli/check.py": r"^report\.run$",
     "export/pipeline.py": r"^(manifests\.)?check_|^bom\.check_",
     "export/products.py": r"^_compare_box$",
@@ -347,6 +346,29 @@ def calls() -> Iterator[Mutant]:
         assert found, f"{module} calls no check: where have its calls gone?"
 
 
+def idle_checks() -> Iterator[Mutant]:
+    """Checks that are declared and do nothing."""
+    for path in sorted((SOURCE / "tactcad" / "checks").rglob("*.py")):
+        module = path.relative_to(SOURCE / "tactcad").as_posix()
+        for call in _declared(ast.parse(path.read_text(encoding="utf-8"))):
+            name = call.args[0].value
+            yield Mutant("call", module, f"CHECKS: {name}", lambda tree, name=name: _idle(tree, name))
+
+
+def _declared(tree: ast.Module) -> list[ast.Call]:
+    """The calls of Check in a module's CHECKS."""
+    tables = [n for n in tree.body if isinstance(n, ast.Assign) and ast.unparse(n.targets[0]) == "CHECKS"]
+    return [
+        n for t in tables for n in ast.walk(t) if isinstance(n, ast.Call) and ast.unparse(n.func) == "Check"
+    ]
+
+
+def _idle(tree: ast.Module, name: str) -> ast.Module:
+    (call,) = [call for call in _declared(tree) if call.args[0].value == name]
+    call.args[2] = ast.parse("lambda *_: ()", mode="eval").body
+    return tree
+
+
 def _uncalled(statement: ast.stmt, wanted: str) -> list[ast.stmt] | None:
     value = getattr(statement, "value", None)
     if not isinstance(value, ast.Call) or not re.search(wanted, ast.unparse(value.func)):
@@ -368,7 +390,7 @@ def _without_call(tree: ast.Module, name: str, n: int, wanted: str) -> ast.Modul
 def every() -> list[Mutant]:
     """All mutants, those of one label numbered."""
     found, seen = [], {}
-    for make in (findings, rules, gates, calls):
+    for make in (findings, rules, gates, calls, idle_checks):
         for m in make():
             seen[m.label] = seen.get(m.label, 0) + 1
             found.append(
@@ -382,7 +404,7 @@ def every() -> list[Mutant]:
 # Tests of what a module does that do not import it, because they go through the command or the whole export.
 ALSO = {
     "checks/run.py": ("tests/checks/test_check_report.py", "tests/checks/test_checks_table.py"),
-    "checks/without_solids.py": ("tests/checks/test_check_report.py",),
+    "checks/check.py": ("tests/checks/test_check_report.py",),
     "cli/check.py": ("tests/export/test_golden.py", "tests/checks/test_check_report.py"),
     "export/pipeline.py": ("tests/export/test_pipeline.py", "tests/faults/test_machine.py"),
     "export/products.py": ("tests/export/test_pipeline.py",),

@@ -23,17 +23,7 @@ from tactcad.paper import (
     reference_stiffness,
     residuals,
     table1_check,
-)
-from tactcad.paper.pages import (
-    budget_page,
-    gain_page,
-    grasp_page,
-    hinge_page,
-    inversion_page,
-    reference_page,
-    stiffness_page,
-    table1_page,
-    table2_page,
+    table2,
 )
 
 DATA = Path(tactcad.paper.__file__).parent / "data"
@@ -120,7 +110,7 @@ def test_implied_object_stiffnesses_are_the_known_ones(paper):
 def findings_5(paper, array):
     s = reference_stiffness.study(paper)
     r, e = residuals.residuals(paper, array, RNG()), reference_element.study(paper, array, s)
-    return " ".join(table2_page.findings(s, paper, table2_page.witnesses(s, r, e)))
+    return " ".join(table2.findings(s, paper, table2.witnesses(s, r, e)))
 
 
 def test_table_2_findings_follow_the_data(paper, array):
@@ -183,7 +173,7 @@ def test_series_spring_is_a_straight_line(paper):
 
 
 def test_table_1_findings_follow_the_data(paper):
-    as_printed = " ".join(table1_page.findings(table1_check.check(paper), paper))
+    as_printed = " ".join(table1_check.findings(table1_check.check(paper), paper))
     assert (
         "softer than the load cell alone" in as_printed
         and "stopped early" in as_printed
@@ -198,7 +188,7 @@ def test_table_1_findings_follow_the_data(paper):
         force=K * d * 1e-3,
         signal=np.abs(paper.table1.signal_per_deflection.value) * d * 1e-3,
     )
-    healed = " ".join(table1_page.findings(table1_check.check(exact), exact))
+    healed = " ".join(table1_check.findings(table1_check.check(exact), exact))
     assert (
         "K × deflection agrees with the printed force" in healed
         and "the printed load cell is compatible" in healed
@@ -207,7 +197,7 @@ def test_table_1_findings_follow_the_data(paper):
     wrong = with_table1(
         paper, signal_per_force=np.where(paper.table1.element == 3, -0.5, paper.table1.signal_per_force.value)
     )
-    assert "most for no. 3" in " ".join(table1_page.findings(table1_check.check(wrong), wrong))
+    assert "most for no. 3" in " ".join(table1_check.findings(table1_check.check(wrong), wrong))
 
 
 # --- 1: stiffness ---
@@ -241,7 +231,7 @@ def test_bands_are_what_the_tolerances_give(paper, array):
 
 
 def test_stiffness_findings_follow_the_data(paper, array):
-    as_printed = " ".join(stiffness_page.findings(residuals.residuals(paper, array, RNG()), array))
+    as_printed = " ".join(residuals.findings(residuals.residuals(paper, array, RNG()), array))
     assert (
         "Furthest off is no. 8" in as_printed
         and "still on the pad" in as_printed
@@ -255,15 +245,11 @@ def test_stiffness_findings_follow_the_data(paper, array):
     _, s = residuals.matched(paper, array)
     K = ladder.stiffness(s)
     healed = " ".join(
-        stiffness_page.findings(
-            residuals.residuals(with_table1(paper, stiffness=K * 1.001), array, RNG()), array
-        )
+        residuals.findings(residuals.residuals(with_table1(paper, stiffness=K * 1.001), array, RNG()), array)
     )
     assert "All 9 elements lie inside" in healed and "Furthest off" in healed and "off the pad" not in healed
     heavy = " ".join(
-        stiffness_page.findings(
-            residuals.residuals(with_table1(paper, stiffness=K * 1.5), array, RNG()), array
-        )
+        residuals.findings(residuals.residuals(with_table1(paper, stiffness=K * 1.5), array, RNG()), array)
     )
     assert "all of them together are +50 % off" in heavy
 
@@ -303,20 +289,20 @@ def test_best_length_against_a_minimiser(paper, array):
 
 
 def test_hinge_findings_follow_the_data(paper, array):
-    as_printed = " ".join(hinge_page.findings(hinge.fit(paper, array)))
+    as_printed = " ".join(hinge.findings(hinge.fit(paper, array)))
     assert (
         "cannot be told apart" in as_printed
         and "does not tell the notch form" in as_printed
         and "pad's centre (1 mm)" in as_printed
     )
     assert "lies inside it" in as_printed and "No single element decides" in as_printed
-    moved = " ".join(hinge_page.findings(hinge.fit(with_figures(paper, strain_short_arm=0.32), array)))
+    moved = " ".join(hinge.findings(hinge.fit(with_figures(paper, strain_short_arm=0.32), array)))
     assert "not the pad's centre" in moved
     longer = array.section.hinge_length * 2.2
     other = replace(
         array, section=array.section.with_(hinge_length=longer, body_length=array.section.body_length - 0.5)
     )
-    assert "lies OUTSIDE it" in " ".join(hinge_page.findings(hinge.fit(paper, other)))
+    assert "lies OUTSIDE it" in " ".join(hinge.findings(hinge.fit(paper, other)))
 
 
 # --- 3: gain ---
@@ -332,12 +318,12 @@ def test_one_gain_by_its_logarithmic_mean(paper, array):
 
 
 def test_gain_findings_follow_the_data(paper, array):
-    as_printed = " ".join(gain_page.findings(gain.fit(paper, array), array))
+    as_printed = " ".join(gain.findings(gain.fit(paper, array), array))
     assert "inside that interval" in as_printed and "No element lies more than two" in as_printed
     _, s = residuals.matched(paper, array)
     q = gauge_signal.foil_strain_per_deflection(s, array.gauge)
     odd = 300 * q * np.where(paper.table1.element == 6, 2.0, 1.0)
-    said = " ".join(gain_page.findings(gain.fit(with_table1(paper, signal_per_deflection=odd), array), array))
+    said = " ".join(gain.findings(gain.fit(with_table1(paper, signal_per_deflection=odd), array), array))
     assert "OUTSIDE that interval" in said and "no. 6 lies more than two" in said
 
 
@@ -358,7 +344,7 @@ def test_figure_findings_follow_the_data(paper, array):
     def said(d):
         s = reference_stiffness.study(d)
         six = grasp_figures.figure_6(d, array, s.supported.value[0], RNG())
-        return " ".join(grasp_page.findings(six, grasp_figures.figure_7(s), array))
+        return " ".join(grasp_figures.findings(six, grasp_figures.figure_7(s), array))
 
     assert "The supported one is closer" in said(paper) and "fit better than chance" in said(paper)
     noise = np.exp(0.1 * RNG().standard_normal((6, 8)))
@@ -406,7 +392,7 @@ def test_explanations_predict_what_their_geometry_gives(paper, array):
 def test_reference_findings_follow_the_data(paper, array):
     def said(d):
         return " ".join(
-            reference_page.findings(reference_element.study(d, array, reference_stiffness.study(d)))
+            reference_element.findings(reference_element.study(d, array, reference_stiffness.study(d)))
         )
 
     as_printed = said(paper)
@@ -482,11 +468,11 @@ def test_effects_of_the_budget_by_hand(paper, array):
 
 def test_budget_findings_follow_the_numbers(paper, array):
     study = reference_stiffness.study(paper)
-    said = " ".join(budget_page.findings(budget.budget(paper, array, study)))
+    said = " ".join(budget.findings(budget.budget(paper, array, study)))
     assert "Largest are reference stiffness, printed against supported" in said
     healed = reference_stiffness.study(with_ratio(paper, equation_2(paper, 80.38)))
     assert "Largest are load point anywhere on the pad" in " ".join(
-        budget_page.findings(budget.budget(paper, array, healed))
+        budget.findings(budget.budget(paper, array, healed))
     )
 
 
@@ -527,7 +513,7 @@ def test_what_the_inversion_is_worth_is_counted_again_by_hand(paper):
     ends = {int(near(inverted(K)).sum()) for K in (study.supported.low[0], study.supported.high[0])}
     mean = np.exp(np.log(x).mean())
     well = np.abs((best + x) * (k + x) / (x * (best - k))) < 5
-    said = " ".join(inversion_page.findings(inversion.invert(study)))
+    said = " ".join(inversion.findings(inversion.invert(study)))
     positive = inverted(best) > 0
     assert (near(inverted(best)).sum(), near(apart).sum(), ends, near(mean).sum()) == (29, 26, {19}, 36)
     for part in (
@@ -550,7 +536,7 @@ def test_the_scatter_is_said_with_and_without_the_element_that_is_furthest_off(p
     r = residuals.residuals(paper, array, RNG())
     off = np.log(r.measured / r.predicted["solid"])
     rest = off[r.element != 8]
-    said = stiffness_page.findings(r, array)[0]
+    said = residuals.findings(r, array)[0]
     assert abs(off[r.element == 8][0]) > np.abs(rest).max()
     assert (
         f"{100 * off.std(ddof=1):.0f} % (standard deviation of ln K; {100 * rest.std(ddof=1):.0f} % without "
@@ -559,14 +545,14 @@ def test_the_scatter_is_said_with_and_without_the_element_that_is_furthest_off(p
 
 
 def test_inversion_findings_follow_the_data(paper):
-    as_printed = " ".join(inversion_page.findings(inversion.invert(reference_stiffness.study(paper))))
+    as_printed = " ".join(inversion.findings(inversion.invert(reference_stiffness.study(paper))))
     assert (
         "80.38 N/mm 0 of 48 readings" in as_printed
         and "no positive K_obj at all (K_m = 40.12, 11.57, 9.05 N/mm)" in as_printed
     )
     noise = np.exp(0.01 * RNG().standard_normal((6, 8)))
     healed = " ".join(
-        inversion_page.findings(
+        inversion.findings(
             inversion.invert(reference_stiffness.study(with_ratio(paper, equation_2(paper, 80.38) * noise)))
         )
     )

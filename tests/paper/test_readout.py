@@ -8,11 +8,10 @@ import numpy as np
 import pytest
 from variants import variant
 
-from tactcad.mechanics import gauge_signal, ladder, readout, self_heating, strain
-from tactcad.mechanics.gauge_signal import Gauge
+from tactcad.mechanics import gauge_signal, ladder, readout, strain
+from tactcad.mechanics.gauge_signal import Gauge, Power
 from tactcad.mechanics.readout import ReadOut
 from tactcad.mechanics.section import REFERENCE
-from tactcad.mechanics.self_heating import Power
 
 GAUGE = Gauge(
     factor=2.1,
@@ -156,24 +155,24 @@ def test_short_hinge_strain_per_deflection_is_geometric():
 def test_self_heating_against_integration_of_the_cycle():
     """C dT/dt = P(t) - T/R through many periods, by small steps."""
     power = replace(POWER, on_time=0.004, period=0.02)
-    tau, resistance = self_heating.time_constant(GAUGE, power), self_heating.thermal_resistance(GAUGE, power)
+    tau, resistance = gauge_signal.time_constant(GAUGE, power), gauge_signal.thermal_resistance(GAUGE, power)
     watts = (2.7 / 2) ** 2 / 120
     dt, temperature, warmest = 2e-6, 0.0, 0.0
     for i in range(round(10 * power.period / dt)):
         on = (i * dt) % power.period < power.on_time
         temperature += dt / tau * ((watts if on else 0.0) * resistance - temperature)
         warmest = max(warmest, temperature) if i * dt > 8 * power.period else 0.0
-    assert self_heating.switched(2.7, GAUGE, power).rise == pytest.approx(warmest, rel=2e-3)
+    assert gauge_signal.switched(2.7, GAUGE, power).rise == pytest.approx(warmest, rel=2e-3)
 
 
 def test_power_always_on_is_the_limit_of_switching():
-    always = self_heating.continuous(2.7, GAUGE, POWER)
+    always = gauge_signal.continuous(2.7, GAUGE, POWER)
     assert always.power == pytest.approx(2.7**2 / 4 / 120)
     assert always.rise == pytest.approx(always.power * 0.03e-3 / (0.2 * 0.5e-3 * 0.65e-3))
-    assert self_heating.switched(2.7, GAUGE, replace(POWER, on_time=0.999999)).rise == pytest.approx(
+    assert gauge_signal.switched(2.7, GAUGE, replace(POWER, on_time=0.999999)).rise == pytest.approx(
         always.rise, rel=1e-3
     )
-    assert self_heating.switched(2.7, GAUGE, replace(POWER, on_time=1e-4)).rise < 0.05 * always.rise
+    assert gauge_signal.switched(2.7, GAUGE, replace(POWER, on_time=1e-4)).rise < 0.05 * always.rise
 
 
 def test_a_leaf_that_conducts_badly_warms_the_grid():
@@ -188,13 +187,13 @@ def test_a_leaf_that_conducts_badly_warms_the_grid():
         heat = np.zeros(n)
         heat[n // 2] = -dx / (conductivity * t * b * 1e-6)  # one watt
         middle = np.linalg.solve(matrix, heat)[n // 2]
-        leaf = self_heating.leaf_resistance(length, t, b, conductivity)
+        leaf = gauge_signal.leaf_resistance(length, t, b, conductivity)
         assert leaf == pytest.approx(middle, rel=1e-9)
-        warm = self_heating.continuous(2.7, GAUGE, replace(POWER, leaf_resistance=leaf))
-        bare = self_heating.continuous(2.7, GAUGE, POWER)
+        warm = gauge_signal.continuous(2.7, GAUGE, replace(POWER, leaf_resistance=leaf))
+        bare = gauge_signal.continuous(2.7, GAUGE, POWER)
         assert warm.rise - bare.rise == pytest.approx(leaf * bare.power)
-        on = self_heating.switched(2.7, GAUGE, replace(POWER, leaf_resistance=leaf)).rise
-        assert self_heating.switched(2.7, GAUGE, POWER).rise < on < warm.rise
+        on = gauge_signal.switched(2.7, GAUGE, replace(POWER, leaf_resistance=leaf)).rise
+        assert gauge_signal.switched(2.7, GAUGE, POWER).rise < on < warm.rise
 
 
 def test_the_design_s_own_sheet_conducts_the_heat():

@@ -11,10 +11,10 @@ from variants import variant
 
 from tactcad.contour import Arc, Contour, Line, Segment
 from tactcad.design.tree import Design
-from tactcad.parts.description import Part
-from tactcad.parts.element import element, element_number
-from tactcad.parts.layout import ElementPlace, Layout
-from tactcad.parts.stop_gap import seat
+from tactcad.parts.array.element import element, element_number
+from tactcad.parts.array.layout import ElementPlace, Layout
+from tactcad.parts.array.stop_gap import seat
+from tactcad.parts.language.description import Part
 
 ONE_SIDED = variant()
 TWO_SIDED = variant({"element.sides": "two", "element.body_height": 3.6, "array.row_arms": [[4, 6.25], [5]]})

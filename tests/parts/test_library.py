@@ -8,17 +8,17 @@ from math import pi, sqrt, tan
 
 import pytest
 
-from tactcad.parts.description import Extrusion, Hole, Material, Part, drill_point_height
-from tactcad.parts.library import dowels, screws
-from tactcad.parts.library.screws import (
+from tactcad.parts.bought import screws, standard_parts
+from tactcad.parts.bought.screws import (
     CAP_SCREW_LENGTHS,
-    METRIC,
     SET_SCREW_LENGTHS,
     cap_screw,
     nut,
     set_screw,
     threaded_rod,
 )
+from tactcad.parts.language.description import Extrusion, Hole, Material, Part, drill_point_height
+from tactcad.parts.language.metric import METRIC, counterbore_diameter, tapped_depth
 
 
 def published(name: str, key: str) -> dict[str, dict[str, str]]:
@@ -45,7 +45,7 @@ def test_sizes_are_the_published_ones(thread):
     assert (m.nut, m.nut_height) == (float(hexagon["iso4032:s"]), float(hexagon["iso4032:m"]))
     assert m.clearance == float(published("clearance_hole_sizes", "Size")[thread]["Normal"])
     assert m.tap_drill == float(published("tap_hole_sizes", "Size")[size]["Soft"])
-    assert screws.counterbore_diameter(thread) > float(cap["iso4762:dk"]), "a knurled head goes in too"
+    assert counterbore_diameter(thread) > float(cap["iso4762:dk"]), "a knurled head goes in too"
 
 
 def test_rows_that_every_workshop_knows():
@@ -59,7 +59,7 @@ def test_rows_that_every_workshop_knows():
     assert [METRIC[t].set_point for t in ("M2", "M2.5", "M3", "M4", "M5")] == [1.0, 1.5, 2.0, 2.5, 3.5]
     assert SET_SCREW_LENGTHS["M3"] == (3, 4, 5, 6, 8, 10, 12, 16)
     assert CAP_SCREW_LENGTHS["M3"] == (5, 6, 8, 10, 12, 16, 20, 25, 30)
-    assert dowels.dowel_lengths("3") == (6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30)
+    assert standard_parts.dowel_lengths("3") == (6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30)
 
 
 def hexagon_area(across_flats: float) -> float:
@@ -98,12 +98,14 @@ def test_lengths_that_no_standard_has_are_refused(thread):
 def test_dowels_are_m6(size):
     """ISO 286-2: m6 is +2 to +8 um up to 3 mm, +4 to +12 um above."""
     low, high = (0.002, 0.008) if float(size) <= 3 else (0.004, 0.012)
-    assert dowels.dowel_limits(size) == pytest.approx((float(size) + low, float(size) + high), abs=1e-12)
-    assert dowels.dowel_diameter(size) == pytest.approx(float(size) + (low + high) / 2, abs=1e-12)
-    pin = dowels.dowel(size, dowels.dowel_lengths(size)[-1])
+    assert standard_parts.dowel_limits(size) == pytest.approx(
+        (float(size) + low, float(size) + high), abs=1e-12
+    )
+    assert standard_parts.dowel_diameter(size) == pytest.approx(float(size) + (low + high) / 2, abs=1e-12)
+    pin = standard_parts.dowel(size, standard_parts.dowel_lengths(size)[-1])
     assert pin.purchase.designation.startswith(f"ISO 8734 {size} m6 x ")
-    assert pin.part_no != dowels.dowel(size, 55.0).part_no
-    assert "ground rod" in dowels.dowel(size, 55.0).purchase.designation
+    assert pin.part_no != standard_parts.dowel(size, 55.0).part_no
+    assert "ground rod" in standard_parts.dowel(size, 55.0).purchase.designation
 
 
 def test_designations_can_be_ordered():
@@ -115,7 +117,7 @@ def test_designations_can_be_ordered():
         set_screw("M3", 10),
         nut("M3"),
         threaded_rod("M3", 50),
-        dowels.dowel("3", 20),
+        standard_parts.dowel("3", 20),
     ):
         assert part.bought and part.purchase.source_verified is False
 
@@ -136,7 +138,7 @@ def test_holes_counted_by_hand():
     cone = m.tap_drill / 2 / tan(pi * 59 / 180)
     assert drill_point_height(m.tap_drill) == pytest.approx(cone, rel=1e-12)
     assert blind.volume == pytest.approx(pi / 4 * m.tap_drill**2 * (6.5 + cone / 3), rel=1e-12)
-    assert screws.tapped_depth("M3") == pytest.approx(1.5 * 3 + 1.5 + 2 * 0.5 + cone, rel=1e-12)
+    assert tapped_depth("M3") == pytest.approx(1.5 * 3 + 1.5 + 2 * 0.5 + cone, rel=1e-12)
     sunk = Hole("screw", (0, 0, 10), (0, 0, -1), 3.4, 10, True, counterbore=(6.0, 3.2))
     assert sunk.volume == pytest.approx(pi / 4 * (3.4**2 * 10 + (6.0**2 - 3.4**2) * 3.2), rel=1e-12)
 
@@ -152,7 +154,7 @@ def test_volumes_and_centres_against_the_kernel(macro_scene, macro_shapes):
         set_screw("M4", 12),
         nut("M2.5"),
         threaded_rod("M4", 60),
-        dowels.dowel("2.5", 8),
+        standard_parts.dowel("2.5", 8),
     ]
     shapes = {**macro_shapes, **{p.part_no: build(p).wrapped for p in extra}}
     for part in (*macro_scene.parts, *extra):
@@ -166,7 +168,7 @@ def test_every_kind_of_feature_against_the_kernel():
     """Holes from all sides, counterbored, blind, with drill points, and pockets with islands on a slanted x
     axis."""
     from tactcad.contour import circle, rectangle
-    from tactcad.parts.description import Pocket
+    from tactcad.parts.language.description import Pocket
     from tactcad.solids.build import build
     from tactcad.solids.measure import measure
 

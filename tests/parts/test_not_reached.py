@@ -12,10 +12,10 @@ from tactcad.cli.main import main
 from tactcad.design.design_text import design_text
 from tactcad.design.load import paths
 from tactcad.export.strength_table import strength_bytes
-from tactcad.parts.element import element
-from tactcad.parts.hinge_section import PATHS
-from tactcad.parts.layout import Layout
-from tactcad.parts.overload import overloads
+from tactcad.parts.array.element import element
+from tactcad.parts.array.hinge_section import PATHS
+from tactcad.parts.array.layout import Layout
+from tactcad.parts.array.stop_gap import overloads
 
 DEEP = variant({"element.body_height": 20.0})  # L/Hb of the short arms is beyond the fit
 OWN = variant({"element.override.3.fillet_radius": 0.02})

@@ -9,9 +9,9 @@ import pytest
 
 from tactcad.contour import Arc, Contour, Line, circle, rectangle
 from tactcad.design.load import names
-from tactcad.parts.description import Extrusion, Hole, Material, Part, Pocket, Revolution
 from tactcad.parts.designs import load
-from tactcad.parts.surface import surface_area
+from tactcad.parts.language.description import Extrusion, Hole, Material, Part, Pocket, Revolution
+from tactcad.parts.language.surface import surface_area
 from tactcad.scenes import make_scene, scene_names
 
 UP, DOWN, X = (0, 0, 1), (0, 0, -1), (1, 0, 0)

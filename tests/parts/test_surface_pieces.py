@@ -12,12 +12,12 @@ from variants import variant
 from tactcad.contour import circle, rectangle
 from tactcad.design.load import from_table
 from tactcad.design.messages import CheckFailure
-from tactcad.parts.description import Extrusion, Hole, Material, Part, Pocket
-from tactcad.parts.element import element
-from tactcad.parts.layout import Layout
-from tactcad.parts.limits import FACES, within
+from tactcad.parts.array.element import element
+from tactcad.parts.array.layout import Layout
+from tactcad.parts.language.description import Extrusion, Hole, Material, Part, Pocket
+from tactcad.parts.language.limits import FACES, within
+from tactcad.parts.language.surface import measured, pieces
 from tactcad.parts.rules import broken_rules
-from tactcad.parts.surface_pieces import measured, pieces
 from tactcad.scenes import make_scene
 
 SLANTED = (0.0, -sqrt(0.5), sqrt(0.5))

@@ -6,15 +6,15 @@ from collections.abc import Iterator
 
 from tactcad.contour import rectangle
 from tactcad.design.tree import Design
-from tactcad.mechanics.bending import Beam
+from tactcad.mechanics.statics import Beam
 
-from ..description import Extrusion, Part
-from ..finding import Finding
-from ..layout import Layout
-from ..part_materials import plate_material
-from ..plate import plate
+from ..array.layout import Layout
+from ..array.stiffness_table import TENTH, Deflection
+from ..language.description import Extrusion, Part
+from ..language.finding import Finding
+from ..language.part_materials import plate_material
+from ..language.plate import plate
 from ..rules.rule import at_least, fits
-from ..stiffness_table import TENTH, Deflection
 
 THICK = 2.0  # mm; chosen: under the gap between facing pads
 HIGH, LONG = 30.0, 60.0

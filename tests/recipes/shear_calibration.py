@@ -7,8 +7,8 @@ from math import inf
 from tactcad.parts.rigs.shear_bar import bar_enters_the_gap, shear_bar, shear_lines
 
 from tactcad.design.tree import Design
-from tactcad.parts.finding import Finding
-from tactcad.parts.layout import Layout
+from tactcad.parts.array.layout import Layout
+from tactcad.parts.language.finding import Finding
 
 from ..builder import Builder
 from ..requirement import DimensionLimits, Requirement, summed, variable

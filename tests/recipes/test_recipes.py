@@ -3,15 +3,19 @@ the commands then do."""
 
 from __future__ import annotations
 
+import dataclasses
 import json
 import os
 import shutil
 import subprocess
 import sys
+import zipfile
 from pathlib import Path
 
 import pytest
 from variants import TINY_TEXT
+
+from tactcad.design.family import Late, all_families
 
 HERE = Path(__file__).parent
 SOURCE = HERE.parents[1] / "src"
@@ -69,8 +73,8 @@ class Shear:
 
 
 @dataclass(frozen=True)
-class Design:
-    """A whole design file."""
+class Design(CommonTables):
+    """A whole design file of facing rows."""
 '''
 
 
@@ -78,7 +82,11 @@ class Design:
 def test_a_scene_takes_three_files(tree):
     tree.edit(
         "design/tree.py",
-        ('\n@dataclass(frozen=True)\nclass Design:\n    """A whole design file."""\n', SHEAR),
+        (
+            "\n@dataclass(frozen=True)\nclass Design(CommonTables):\n"
+            '    """A whole design file of facing rows."""\n',
+            SHEAR,
+        ),
         (
             "    bonding: Bonding | None = None\n",
             "    bonding: Bonding | None = None\n    shear: Shear | None = None\n",
@@ -140,3 +148,169 @@ def test_an_incomplete_rig_is_refused_at_import(tree, text, said):
         check=False,
     )
     assert done.returncode and said in done.stderr.splitlines()[-1]
+
+
+@pytest.mark.slow  # exports and releases a design by the kernel
+def test_a_format_takes_its_module_beside_its_test(tree):
+    tree.write("export/part_formats/threemf.py", (HERE / "threemf.py").read_text("utf-8"))
+    assert len(tree.changed) == 1
+
+    done = tree.run("export", sensor(tree, ""), "--scene", "array", "--out", "out")
+    assert done.returncode == 0, done.stderr
+    files = json.loads((tree.folder / "out" / "manifest.json").read_text("utf-8"))["files"]
+    written = {file["part_no"]: file["path"] for file in files if file["kind"] == "3mf"}
+    assert written and all((tree.folder / "out" / path).is_file() for path in written.values())
+    rows = json.loads((tree.folder / "out" / "bom.json").read_text("utf-8"))["rows"]
+    made = {row["part_no"]: row["file"] for row in rows if row["make_buy"] == "make" and row["has_solid"]}
+    assert made == written  # its rank is the highest
+    done = tree.run("export", "tiny.toml", "--scene", "array", "--out", "again")
+    assert ", 0 made, " in done.stderr
+
+    done = tree.run("release", "tiny.toml", "--sample", "--draft", "--out", "zips")
+    assert done.returncode == 0, done.stderr
+    (whole,) = (path for path in (tree.folder / "zips").glob("*PRELIMINARY.zip"))
+    with zipfile.ZipFile(whole) as archive:
+        assert set(written.values()) <= set(archive.namelist())
+        readme = archive.read("README.txt").decode()
+    assert "every part made as a mesh, for printers" in " ".join(readme.split())
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("A = 1\n", "no PartFormat is declared in tactcad.export.part_formats.lacking"),
+        (
+            "from ..formats import PartFormat\nF = PartFormat(kind='lacking', path='a/b')\n",
+            "missing 6 required",
+        ),
+        (
+            "from dataclasses import replace\nfrom .stl import STL\n"
+            "F = replace(STL, kind='flat', path='flat.stl')\n",
+            "format flat: 'flat.stl' has no folder, or no {part_no}",
+        ),
+        (
+            "import dataclasses as d\nfrom .stl import STL as S\nF = d.replace(S, place=7)\n",
+            "two formats are of one kind",
+        ),
+    ],
+)
+def test_an_incomplete_format_is_refused_at_import(tree, text, said):
+    tree.write("export/part_formats/lacking.py", text)
+    done = subprocess.run(
+        [sys.executable, "-c", "import tactcad.export.manifest"],
+        env=os.environ | {"PYTHONPATH": str(tree.src)},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode and said in done.stderr.splitlines()[-1]
+
+
+RULE = """
+
+@rule(after="override_names_element")
+def rows_stand_together(layout: Layout) -> Iterator[Finding]:
+    yield from at_most("array.row_pitch", "rows too far apart", layout.design.array.row_pitch, 8.0)
+"""
+
+
+def test_a_design_rule_takes_one_file(tree):
+    """It is found, refuses a design by its field, and its witness is asked for by name."""
+    file = "parts/rules/element_rules.py"
+    tree.write(file, (tree.src / "tactcad" / file).read_text("utf-8") + RULE)
+    assert len(tree.changed) == 1
+
+    design = TINY_TEXT.replace("row_pitch = 4.0", "row_pitch = 9.0")
+    assert design != TINY_TEXT
+    (tree.folder / "wide.toml").write_text(design, "utf-8")
+    done = tree.run("estimate", "wide.toml")
+    assert done.returncode == 2
+    assert "rule rows_stand_together" in done.stderr and "array.row_pitch" in done.stderr
+    assert "at most 8 mm" in done.stderr
+
+    tests = HERE.parent
+    asked = subprocess.run(
+        [sys.executable, "-c", "import test_rules; test_rules.test_every_rule_has_a_witness()"],
+        env=os.environ | {"PYTHONPATH": os.pathsep.join(map(str, (tree.src, tests, tests / "parts")))},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert asked.returncode and "rule rows_stand_together has no witness: add " in asked.stderr
+
+
+@pytest.mark.slow  # checks and releases a design by the kernel
+def test_a_second_family_takes_five_files(tree):
+    """Four modules and a design file; the commands are those of the first family."""
+    (tree.src / "tactcad" / "families" / "leaf").mkdir()
+    for path in sorted((HERE / "leaf").glob("*.py")):
+        tree.write(f"families/leaf/{path.name}", path.read_text("utf-8"))
+    design = (HERE / "leaf" / "leaf.toml").read_text("utf-8")
+    (tree.folder / "leaf.toml").write_text(design, "utf-8")
+    assert len(tree.changed) + 1 == 5
+
+    estimated = json.loads(tree.run("estimate", "leaf.toml", "--json").stdout)
+    assert estimated["elements"][0]["stiffness"] == pytest.approx(72000 * 10 * 1.0**3 / (4 * 20.0**3))
+    assert "[leaf]" in tree.run("schema").stdout
+    for command in (
+        ("build", "leaf.toml"),
+        ("check", "leaf.toml"),
+        ("review", "leaf.toml"),
+        ("release", "leaf.toml"),
+    ):
+        done = tree.run(*command)
+        assert done.returncode == 0, (command, done.stderr)
+    made = tree.run("export", "leaf.toml", "--drawings", "--guide", "--out", "out")
+    assert made.returncode == 0, made.stderr
+    kinds = {
+        f["kind"] for f in json.loads((tree.folder / "out" / "manifest.json").read_text("utf-8"))["files"]
+    }
+    assert {"step-part", "dxf", "drawing", "bom", "inspection", "picture"} <= kinds and "netlist" not in kinds
+
+    (tree.folder / "longer.toml").write_text(design.replace("length = 20.0", "length = 25.0"), "utf-8")
+    assert "stiffness_n_per_mm: 22.5 -> 11.52" in tree.run("diff", "leaf.toml", "longer.toml").stdout
+    (tree.folder / "short.toml").write_text(design.replace("length = 20.0", "length = 4.0"), "utf-8")
+    for said, command in (
+        ("rule leaf_is_slender", ("check", "short.toml")),
+        ("does not take designs of this family", ("calibrate", "x.csv", "--design", "leaf.toml")),
+        ("does not take designs of this family", ("estimate", "leaf.toml", "--model", "solid")),
+        ("no such scene", ("check", "leaf.toml", "--scene", "calibration")),
+    ):
+        refused = tree.run(*command)
+        assert refused.returncode == 2 and said in refused.stderr, command
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("A = 1\n", "no FAMILY is declared in tactcad.families.lacking"),
+        (
+            "from tactcad.design.family import Family\nFAMILY = Family(name='lacking', spec=dict)\n",
+            "missing 13 required",
+        ),
+        ("from .facing_rows import FAMILY\n", "two families have one name"),
+        (
+            "from dataclasses import replace\n"
+            "from . import facing_rows as f\nFAMILY = replace(f.FAMILY, spec=dict)\n",
+            "spec must have the tables of all families",
+        ),
+    ],
+)
+def test_an_incomplete_family_is_refused_at_import(tree, text, said):
+    tree.write("families/lacking.py", text)
+    done = tree.run("schema")
+    assert done.returncode and said in done.stderr.splitlines()[-1]
+
+
+def test_every_function_that_a_family_names_is_there():
+    def named(value):
+        if isinstance(value, Late):
+            yield value
+        elif dataclasses.is_dataclass(value) and not isinstance(value, type):
+            yield from named([getattr(value, f.name) for f in dataclasses.fields(value)])
+        elif isinstance(value, list | tuple | dict):
+            for each in value.values() if isinstance(value, dict) else value:
+                yield from named(each)
+
+    found = [late for family in all_families().values() for late in named(family)]
+    assert len(found) > 20 and all(callable(late.found) for late in found)

@@ -17,15 +17,13 @@ from variants import TINY_TEXT, variant
 
 from tactcad.checks.shop import DEFAULT, load_shop
 from tactcad.cli.main import main
-from tactcad.parts.layout import Layout
+from tactcad.parts.array.layout import Layout
 from tactcad.release import make
 from tactcad.release.archive import archive_bytes
-from tactcad.release.ordered import ordered
-from tactcad.release.packages import packed
+from tactcad.release.packages import packed, wire_time
 from tactcad.release.readme import DRAFT
-from tactcad.release.release_contents import ReleaseContents
-from tactcad.release.verify_packages import check_packages
-from tactcad.release.wire_time import wire_time
+from tactcad.release.release_contents import ReleaseContents, ordered
+from tactcad.release.verify import check_packages, read_back
 from tactcad.scenes import make_scene, scene_names
 
 pytestmark = [pytest.mark.cad, pytest.mark.slow]  # releases again and again
@@ -310,28 +308,29 @@ SAYS = {  # what is then among the faults
 @pytest.mark.parametrize("fault", [None, *FAULTS])
 def test_a_fault_in_a_package_is_found(fault, folder, zips, parts, tmp_path):
     contents, packages = parts
-    paths = []
+    paths, (whole, _) = [], read_back(folder / "out" / f"{STEM}.zip")
     for one in packages:
         files = {n: d for n, d in zips[one.package.name].items() if n != MANIFEST}
         if fault and FAULTS[fault][0] == one.package.name:
             files = FAULTS[fault][1](files)
         paths.append(tmp_path / f"{one.package.name}.zip")
         paths[-1].write_bytes(archive_bytes(files, "2026-11-21"))
-    faults = check_packages(paths, packages, folder / "out" / f"{STEM}.zip", contents)
+    faults = check_packages(paths, packages, whole, contents)
     assert any(SAYS[fault] in one for one in faults) if fault else faults == []
 
 
 def test_damage_of_a_package_is_found(folder, parts, tmp_path):
     contents, packages = parts
+    whole, _ = read_back(folder / "out" / f"{STEM}.zip")
     paths = [tmp_path / f"{one.package.name}.zip" for one in packages]
     for path in paths:
         path.write_bytes((folder / "out" / f"{STEM}-{path.name}").read_bytes())
     damaged = bytearray(paths[0].read_bytes())
     damaged[len(damaged) // 3] ^= 4
     paths[0].write_bytes(damaged)
-    assert check_packages(paths, packages, folder / "out" / f"{STEM}.zip", contents)
+    assert check_packages(paths, packages, whole, contents)
     paths[0].write_bytes(damaged[: len(damaged) // 2])
-    (found,) = check_packages(paths, packages, folder / "out" / f"{STEM}.zip", contents)
+    (found,) = check_packages(paths, packages, whole, contents)
     assert found.startswith(f"{packages[0].package.name}: not readable as a zip")
 
 

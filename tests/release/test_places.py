@@ -15,7 +15,7 @@ from variants import TINY_TEXT
 
 from tactcad.cli.main import main
 from tactcad.design.messages import CheckFailure, InputError
-from tactcad.release import places
+from tactcad.release import archive as places
 from tactcad.release.archive import MANIFEST, SEAL, archive_bytes
 
 NAMES = ("a-A.zip", "a-A-sheet.zip", "a-A-gone.zip")  # the last one has no new zip

@@ -20,14 +20,13 @@ from variants import TINY_TEXT
 
 import tactcad
 from tactcad.cli.main import main
+from tactcad.drawing.engine.paper import SAMPLE as STATUS
 from tactcad.drawing.engine.sheet_files import pdf_runs
-from tactcad.drawing.engine.title import SAMPLE as STATUS
 from tactcad.parts.designs import load
 from tactcad.release.archive import MODE, archive_bytes
-from tactcad.release.owner import owned
 from tactcad.release.readme import DRAFT, SAMPLE
-from tactcad.release.release_contents import ReleaseContents
-from tactcad.release.verify import check_archive
+from tactcad.release.release_contents import ReleaseContents, owned
+from tactcad.release.verify import check_archive, read_back
 from tactcad.scenes import make_scene
 
 pytestmark = [pytest.mark.cad, pytest.mark.slow]  # releases again and again
@@ -289,12 +288,17 @@ SAYS = {  # what is then among the faults; several gates may see one change
 }
 
 
+def faults_of(path: Path, contents: ReleaseContents) -> list[str]:
+    found, wrong = read_back(path)
+    return wrong or check_archive(found, contents)
+
+
 @pytest.mark.parametrize("fault", [None, *TAMPERED])
 def test_a_fault_in_the_zip_is_found(fault, files, contents, tmp_path):
     own = {n: d for n, d in files.items() if n != "MANIFEST.sha256"}
     path = tmp_path / "a.zip"
     path.write_bytes(archive_bytes(TAMPERED[fault](own) if fault else own, "2026-11-21"))
-    faults = check_archive(path, contents)
+    faults = faults_of(path, contents)
     assert any(SAYS[fault] in one for one in faults) if fault else faults == []
 
 
@@ -347,14 +351,14 @@ def test_a_fault_of_the_zip_itself_is_found(fault, files, contents, tmp_path):
     else:
         lines = BY_MANIFEST[fault](lines)
     _zipped(tmp_path / "a.zip", files, lines, entries)
-    (found,) = check_archive(tmp_path / "a.zip", contents)
+    (found,) = faults_of(tmp_path / "a.zip", contents)
     assert fault in found
 
 
 def test_a_zip_that_was_written_by_hand_is_whole(files, contents, tmp_path):
     """The faults above are found by what is wrong alone."""
     _zipped(tmp_path / "a.zip", files, files["MANIFEST.sha256"].decode().splitlines(), [])
-    assert check_archive(tmp_path / "a.zip", contents) == []
+    assert faults_of(tmp_path / "a.zip", contents) == []
 
 
 def test_damage_is_found_anywhere(released, contents, tmp_path):
@@ -369,12 +373,12 @@ def test_damage_is_found_anywhere(released, contents, tmp_path):
     named = 0
     for name, at in places:
         path.write_bytes(data[:at] + bytes([data[at] ^ 4]) + data[at + 1 :])
-        (found,) = check_archive(path, contents)
+        (found,) = faults_of(path, contents)
         assert found == f"{name}: damaged" or found.startswith("not readable as a zip"), name
         named += "damaged" in found
     assert named
     path.write_bytes(data[: len(data) // 2])
-    (found,) = check_archive(path, contents)
+    (found,) = faults_of(path, contents)
     assert found.startswith("not readable as a zip")
 
 
@@ -543,9 +547,13 @@ def test_the_design_s_own_owner_and_contact_stand_in_zip_and_title_blocks(tmp_pa
             assert OWNER in runs and "for manufacture" in runs and "tactcad" not in runs
 
 
+def test_a_file_that_is_not_as_it_was_exported_is_found(released):
+    assert read_back(released, {"bom.csv": DIGEST})[1] == ["bom.csv: not as it was exported"]
+
+
 def test_a_sheet_that_does_not_name_the_owner_is_found(released, contents):
     other = owned(contents.design, "Somebody else", CONTACT, False)
-    wrong = check_archive(released, ReleaseContents(other, contents.scenes, (), (), False))
+    wrong = faults_of(released, ReleaseContents(other, contents.scenes, (), (), False))
     assert wrong and all("does not name the legal owner" in fault for fault in wrong)
 
 

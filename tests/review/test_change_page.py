@@ -51,8 +51,7 @@ def written(files, path, cache, times: int = 1):
     from tactcad.export.sides import compare_sides, read_side
     from tactcad.review.change_record import change_record
     from tactcad.review.consequences import kept_designs, meaning
-    from tactcad.review.review_page import review_page
-    from tactcad.review.viewer_library import viewer_library
+    from tactcad.review.review_page import review_page, viewer_library
 
     old, new = (read_side(str(f)) for f in files)
     told, made = (compare_sides(old, new), meaning(old, new)), []

@@ -14,20 +14,19 @@ from pathlib import Path
 
 import pytest
 
-from tactcad.assembly.virtual_build import sensor
 from tactcad.cli.main import main, parser_of
 from tactcad.design.load import from_table
 from tactcad.design.tree import Design
 from tactcad.export.inputs import flattened, nested
 from tactcad.export.sides import Side, compare_sides, design_side
 from tactcad.lab.array_estimate import estimate
+from tactcad.parts.array.hinge_section import thickness_elasticity
+from tactcad.parts.array.layout import Layout
 from tactcad.parts.designs import load
-from tactcad.parts.hinge_section import thickness_elasticity
-from tactcad.parts.layout import Layout
 from tactcad.review.causes import causes
-from tactcad.review.consequences import meaning
-from tactcad.review.gating import KINDS
+from tactcad.review.consequences import KINDS, meaning
 from tactcad.review.summary import MOST_LINES, lines, markdown
+from tactcad.stacks.virtual_build import sensor
 
 ROOT = Path(__file__).parents[2]
 HARDWARE = ROOT / "hardware"
@@ -38,7 +37,7 @@ OF_ARRAY = {"spacer", "end-plate-head", "end-plate-tapped"}
 
 @pytest.fixture(autouse=True)
 def few_arrays(monkeypatch):
-    monkeypatch.setattr("tactcad.review.sensor_state.COUNT", ARRAYS)
+    monkeypatch.setattr("tactcad.review.effect.COUNT", ARRAYS)
 
 
 def edited(name: str, *edits: tuple[str, str]) -> str:
@@ -340,7 +339,7 @@ def test_a_cause_that_is_refused_alone_is_taken_back_alone():
 
 def test_yield_and_the_check_of_it_turn(monkeypatch):
     """Fillets left loose: some hinges yield before their stop closes; counted as `tactcad build` counts."""
-    monkeypatch.setattr("tactcad.review.sensor_state.COUNT", 200)
+    monkeypatch.setattr("tactcad.review.effect.COUNT", 200)
     loose = ("[gauge]", "[tolerance]\nfillet_radius = 0.2\n[gauge]")
     old, new = edited(SOFT), edited(SOFT, loose, ("pad_height = 1.6", "pad_height = 1.65"))
     _, meant = compared(old, new)

@@ -16,10 +16,9 @@ import pytest
 
 from tactcad.cli.main import main
 from tactcad.design.load import read
-from tactcad.review import freecad_file
-from tactcad.review.finding_facts import FindingFact
-from tactcad.review.freecad_record import freecad_record, parameter_rows
-from tactcad.review.scene_facts import scene_facts
+from tactcad.review import freecad
+from tactcad.review.facts import FindingFact, scene_facts
+from tactcad.review.freecad import freecad_record, parameter_rows
 from tactcad.scenes import make_scene
 
 ROOT = Path(__file__).parents[2]
@@ -99,7 +98,7 @@ def test_a_document_that_is_wrong(change, said):
 
 
 def test_where_freecad_is_missing_it_says_how_to_get_it(tmp_path, monkeypatch, capsys):
-    monkeypatch.setattr(freecad_file, "COMMANDS", ("no-such-program",))
+    monkeypatch.setattr(freecad, "COMMANDS", ("no-such-program",))
     out = tmp_path / "x.FCStd"
     assert main(["review", "soft-tissue", "--freecad", str(out)]) == 1
     assert "apt-get install freecad" in capsys.readouterr().err and not out.exists()
@@ -110,7 +109,7 @@ def test_where_freecad_is_missing_it_says_how_to_get_it(tmp_path, monkeypatch, c
 def test_the_macro_runs_this_tactcad_whatever_the_folder_holds(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "tactcad.py").write_text("raise SystemExit('theirs')")
-    text = freecad_file.reload_macro(["schema"], tmp_path / "d.FCStd").decode()
+    text = freecad.reload_macro(["schema"], tmp_path / "d.FCStd").decode()
     said = dict(re.findall(r"^(COMMAND|FOLDER) = (.*)$", text, re.MULTILINE))
     command, folder = (ast.literal_eval(said[name]) for name in ("COMMAND", "FOLDER"))
     run = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
@@ -118,7 +117,7 @@ def test_the_macro_runs_this_tactcad_whatever_the_folder_holds(tmp_path, monkeyp
 
 
 freecad_is_here = pytest.mark.skipif(
-    not any(map(freecad_file.shutil.which, freecad_file.COMMANDS)), reason="FreeCAD is not installed"
+    not any(map(freecad.shutil.which, freecad.COMMANDS)), reason="FreeCAD is not installed"
 )
 
 
@@ -189,15 +188,15 @@ def test_the_macro_makes_the_document_again_and_keeps_the_eye(tmp_path, monkeypa
     assert main(["review", "d.toml", "--scene", "array", "--freecad", "d.FCStd"]) == 0
     thicker, broken = (text.replace("hinge_thickness = 0.15", f"hinge_thickness = {t}") for t in (0.2, 9.0))
     (tmp_path / "inside.py").write_text(IN_FREECAD)
-    (tmp_path / "user.cfg").write_text(freecad_file.profile())
-    own = freecad_file.environment(tmp_path) | {
+    (tmp_path / "user.cfg").write_text(freecad.profile())
+    own = freecad.environment(tmp_path) | {
         "REVIEW_FILE": str(path),
         "REVIEW_MACRO": str(path.with_suffix(".FCMacro")),
         "REVIEW_DESIGN": str(design),
         "REVIEW_TEXTS": json.dumps([thicker, broken]),
         "REVIEW_OUT": str(tmp_path / "out.json"),
     }
-    command = [freecad_file.program(), "-u", str(tmp_path / "user.cfg"), str(tmp_path / "inside.py")]
+    command = [freecad.program(), "-u", str(tmp_path / "user.cfg"), str(tmp_path / "inside.py")]
     subprocess.run(command, env=own, capture_output=True, check=False, timeout=300)
     before, after, still, documents = json.loads((tmp_path / "out.json").read_text())
     design.write_text(thicker)

@@ -9,7 +9,7 @@ import pytest
 
 from tactcad.contour import Contour, Corner, circle, rounded_polygon
 from tactcad.export.dxf import dxf_bytes
-from tactcad.parts.description import Extrusion, Material, Part
+from tactcad.parts.language.description import Extrusion, Material, Part
 
 SCRIPT = Path(__file__).parents[2] / "packaging" / "review" / "in_ezdxf.py"
 spec = importlib.util.spec_from_file_location("review_ezdxf", SCRIPT)

@@ -48,8 +48,8 @@ def live(shapes, tmp_path):
 
 @contextmanager
 def serving(live, port: int = 0):
-    from tactcad.review.live_server import LiveServer
-    from tactcad.review.viewer_library import viewer_library
+    from tactcad.review.live import LiveServer
+    from tactcad.review.review_page import viewer_library
 
     with LiveServer(lambda: live, viewer_library(), port) as server:
         thread = threading.Thread(target=server.serve_forever, args=(0.05,))
@@ -93,7 +93,7 @@ def estimates(text: str) -> tuple[float, float, float]:
     from tactcad.design.load import parse
     from tactcad.lab.array_estimate import estimate
     from tactcad.mechanics.ladder import DEFAULT_RUNG
-    from tactcad.parts.layout import Layout
+    from tactcad.parts.array.layout import Layout
 
     row = estimate(Layout(parse(text, "d.toml")), DEFAULT_RUNG)[0]
     return row.stiffness, row.rated_force, row.yield_force
@@ -169,10 +169,10 @@ def test_a_comment_changes_nothing(live):
 
 
 def test_only_changed_parts_are_meshed(live, monkeypatch):
-    from tactcad.solids import facets
+    from tactcad.solids import triangles
 
-    meshed, whole = [], facets.facets
-    monkeypatch.setattr(facets, "facets", lambda *a: meshed.append(1) or whole(*a))
+    meshed, whole = [], triangles.facets
+    monkeypatch.setattr(triangles, "facets", lambda *a: meshed.append(1) or whole(*a))
     saved(live, TEXT.replace(HINGE, "hinge_thickness = 0.26", 1))
     assert live.shown.model == 1 and len(meshed) == 1
 
@@ -237,7 +237,7 @@ def test_a_taken_port_is_refused_before_a_model_is_made(live, server, monkeypatc
 
 
 def test_a_port_is_given_back_where_the_design_has_no_model(live):
-    from tactcad.review.live_server import LiveServer
+    from tactcad.review.live import LiveServer
 
     with serving(live) as one:
         port, library = one.server_port, one.library

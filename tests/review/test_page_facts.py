@@ -14,18 +14,16 @@ from variants import HARDWARE, variant
 
 from tactcad.design.messages import InputError
 from tactcad.export.inputs import flattened, nested
+from tactcad.fem.elements import solve_plane
 from tactcad.fem.face_strain import face_strain
-from tactcad.fem.plane_elements import solve_plane
 from tactcad.fem.shape import cut_element
 from tactcad.lab.array_estimate import estimate
-from tactcad.parts.element import element
-from tactcad.parts.finding import Finding
-from tactcad.parts.hinge_section import design_alloy
-from tactcad.parts.layout import Layout
-from tactcad.review import finding_facts, viewer_library
-from tactcad.review.element_facts import element_facts
-from tactcad.review.part_facts import part_facts
-from tactcad.review.scene_facts import scene_facts
+from tactcad.parts.array.element import element
+from tactcad.parts.array.hinge_section import design_alloy
+from tactcad.parts.array.layout import Layout
+from tactcad.parts.language.finding import Finding
+from tactcad.review import review_page
+from tactcad.review.facts import _fact, element_facts, part_facts, scene_facts
 from tactcad.review.strain_field import strain_along, strain_field
 from tactcad.scenes import make_scene
 
@@ -178,15 +176,15 @@ def test_each_pose_brings_an_elements_pad_to_where_the_first_ones_stands(macro):
 
 
 def test_findings_are_told_with_their_parts(macro_scene):
-    def told(part: str, check: str = "hinge", subject: str = "x", place=(1.0, 2.0)):
-        record = vars(Finding("c", "flag", part, place, 0, 0, "m"))
-        return finding_facts._fact(check, subject, record, [macro_scene])
+    def told(part: str, check: str = "hinge", subject: str = "x", place=(1.0, 2.0), number: str = ""):
+        return _fact(check, subject, Finding("c", "flag", part, place, 0, 0, "m", number), [macro_scene])
 
     alike = tuple(
         p.designator for p in macro_scene.placements if p.part.part_no == "macro-array-element-a6mm"
     )
     assert told("macro-array-element-a6mm").designators == alike and len(alike) == 2
-    assert told("E2 (macro-array-element-a7mm)").designators == ("E2",)
+    element = told("E2", number="macro-array-element-a7mm")
+    assert element.designators == ("E2",) and element.about == "E2 (macro-array-element-a7mm)"
     assert told("macro-array").designators == ()
     assert told("E2", "interference", "array").scene == "array"
     assert told("E2", "motion", "array").place == ()
@@ -204,13 +202,13 @@ def test_a_design_is_read_back_from_an_exports_values(macro):
 
 
 def test_a_missing_viewer_is_said_with_the_remedy(monkeypatch, tmp_path):
-    monkeypatch.setattr(viewer_library, "find_spec", lambda name: None)
+    monkeypatch.setattr(review_page, "find_spec", lambda name: None)
     with pytest.raises(InputError, match=r"pip install '\.\[review\]' in a checkout"):
-        viewer_library.viewer_library()
+        review_page.viewer_library()
 
 
 def test_the_installed_viewer_is_whole():
-    found = viewer_library.viewer_library()
+    found = review_page.viewer_library()
     assert found.version.startswith("5.") and b"export {" in found.script[-600:] and "tcv_" in found.style
 
 

@@ -51,8 +51,7 @@ def record(macro, tmp_path_factory):
 
 
 def written(path, record):
-    from tactcad.review.review_page import review_page
-    from tactcad.review.viewer_library import viewer_library
+    from tactcad.review.review_page import review_page, viewer_library
 
     path.write_bytes(review_page(*record, viewer_library()))
     return path

@@ -18,7 +18,7 @@ from tactcad.cli.main import main
 from tactcad.design.messages import InputError
 from tactcad.export.golden_file import golden_bytes, golden_record
 from tactcad.parts.designs import load
-from tactcad.review.repository import repository_of
+from tactcad.review.revisions import repository_of
 
 ROOT = Path(__file__).parents[2]
 SHIPPED = (ROOT / "hardware" / "smallest-bearing.toml").read_text()
@@ -46,7 +46,7 @@ print(json.dumps({"new": head, "changes": changes}))
 
 @pytest.fixture(autouse=True)
 def few_arrays(monkeypatch):
-    monkeypatch.setattr("tactcad.review.sensor_state.COUNT", 20)
+    monkeypatch.setattr("tactcad.review.effect.COUNT", 20)
 
 
 class Work:
@@ -264,7 +264,7 @@ def test_a_repository_of_another_owner_is_refused_by_git(work, capsys, monkeypat
     if subprocess.run(["git", "status"], capture_output=True, check=False).returncode == 0:
         pytest.skip("this git has no such switch for tests")
     # the switch has to pass: only git's own settings do
-    monkeypatch.setattr("tactcad.review.repository.KEPT", ("GIT_",))
+    monkeypatch.setattr("tactcad.review.revisions.KEPT", ("GIT_",))
     assert main(["diff", "HEAD~1", "HEAD", "small"]) == 2
     assert "dubious ownership" in capsys.readouterr().err and not Path(os.environ["RAN"]).exists()
 

@@ -27,7 +27,7 @@ from websockets.sync.server import serve
 from tactcad.design.messages import CheckFailure, InputError
 from tactcad.parts.designs import load
 from tactcad.review import show as showing
-from tactcad.review.scene_facts import scene_facts
+from tactcad.review.facts import scene_facts
 
 pytestmark = pytest.mark.slow  # starts a browser
 

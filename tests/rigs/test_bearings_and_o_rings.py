@@ -9,9 +9,10 @@ from pathlib import Path
 
 import pytest
 
-from tactcad.parts.library import orings
-from tactcad.parts.library.bearings import BEARINGS, bearing
-from tactcad.parts.library.screws import CAP_SCREW_LENGTHS, METRIC
+from tactcad.parts.bought import standard_parts
+from tactcad.parts.bought.screws import CAP_SCREW_LENGTHS
+from tactcad.parts.bought.standard_parts import BEARINGS, bearing
+from tactcad.parts.language.metric import METRIC
 from tactcad.solids.build import build
 
 
@@ -49,46 +50,48 @@ def test_the_estimate_of_the_inner_shoulder_keeps_to_the_known_ones():
 
 def test_o_rings_are_those_of_the_standard():
     known = {r["Size"]: r for r in rows("o-ring_parameters.csv")}
-    for code, inside in orings.INSIDE.items():
-        assert (inside, orings.SECTION) == (
+    for code, inside in standard_parts.INSIDE.items():
+        assert (inside, standard_parts.SECTION) == (
             float(known[code]["iso3601:id"]),
             float(known[code]["iso3601:w"]),
         ), code
 
 
 def test_the_groove_is_that_of_a_static_face_seal():
-    (gland,) = (r for r in rows("o-ring_static_gland_parameters.csv") if float(r["w"]) == orings.SECTION)
-    assert float(gland["d_a_min"]) <= orings.GROOVE_DEPTH <= float(gland["d_a_max"])
-    assert orings.GROOVE_WIDTH == pytest.approx(float(gland["g_w_0"]), abs=0.02)
+    (gland,) = (
+        r for r in rows("o-ring_static_gland_parameters.csv") if float(r["w"]) == standard_parts.SECTION
+    )
+    assert float(gland["d_a_min"]) <= standard_parts.GROOVE_DEPTH <= float(gland["d_a_max"])
+    assert standard_parts.GROOVE_WIDTH == pytest.approx(float(gland["g_w_0"]), abs=0.02)
     low, high = float(gland["sq_a_p_min"]) / 100, float(gland["sq_a_p_max"]) / 100
-    assert low <= 1 - orings.GROOVE_DEPTH / orings.SECTION <= high
+    assert low <= 1 - standard_parts.GROOVE_DEPTH / standard_parts.SECTION <= high
 
 
 @pytest.mark.parametrize("code", ["010", "025", "040"])
 def test_a_squeezed_ring_keeps_its_rubber_and_fits_its_groove(code):
-    inside, w = orings.INSIDE[code], orings.SECTION
+    inside, w = standard_parts.INSIDE[code], standard_parts.SECTION
     torus = pi * w**2 / 4 * pi * (inside + w)
-    solid = build(orings.o_ring(code))
+    solid = build(standard_parts.o_ring(code))
     assert solid.volume == pytest.approx(torus, rel=1e-9)
     box = solid.bounding_box()
-    inner, outer = orings.groove(code)
-    assert box.size.Z == pytest.approx(orings.GROOVE_DEPTH)
+    inner, outer = standard_parts.groove(code)
+    assert box.size.Z == pytest.approx(standard_parts.GROOVE_DEPTH)
     assert box.max.X < outer / 2
     assert inner == inside
 
 
 def test_the_smallest_ring_that_reaches_around_is_taken():
-    assert orings.size_around(29.7) == "025"
-    assert orings.size_around(29.87) == "025"
-    assert orings.size_around(29.88) == "026"
-    assert orings.size_around(100.0) is None
+    assert standard_parts.size_around(29.7) == "025"
+    assert standard_parts.size_around(29.87) == "025"
+    assert standard_parts.size_around(29.88) == "026"
+    assert standard_parts.size_around(100.0) is None
 
 
 def test_axles_have_a_plain_shank_under_the_bearing():
     """ISO 4762: a screw has 2 d + 12 of thread; shorter ones are threaded to the head."""
     from variants import variant
 
-    from tactcad.parts.rigs.cart_layout import cart_layout
+    from tactcad.parts.rigs.cart import cart_layout
 
     for size, b in BEARINGS.items():
         rig = cart_layout(variant({"cart.bearing": size, "cart.shim": 0.3}))

@@ -5,13 +5,12 @@ from __future__ import annotations
 import pytest
 from variants import variant
 
-from tactcad.checks.interference import check_interference
-from tactcad.checks.motion import check_motions
+from tactcad.checks.on_solids.interference import check_interference
+from tactcad.checks.on_solids.motion import check_motions
 from tactcad.contour import circle, rectangle
-from tactcad.parts.description import Extrusion, Hole, Material, Part
 from tactcad.parts.designs import load
-from tactcad.parts.envelope import envelope
-from tactcad.parts.finding import Finding
+from tactcad.parts.language.description import Extrusion, Hole, Material, Part, envelope
+from tactcad.parts.language.finding import Finding
 from tactcad.scenes import make_scene
 from tactcad.scenes.scene import Contact, Motion, Placement, Scene
 from tactcad.solids.build import build
@@ -112,9 +111,9 @@ def test_a_tip_that_is_not_lifted_enough_is_seen():
 
 
 def test_a_pressed_element_meets_the_stop_only_beyond_its_gap():
-    from tactcad.parts.deflected import deflected_element
-    from tactcad.parts.layout import Layout
-    from tactcad.parts.stop_gap import stop_gap
+    from tactcad.parts.array.element import deflected_element
+    from tactcad.parts.array.layout import Layout
+    from tactcad.parts.array.stop_gap import stop_gap
     from tactcad.scenes.rigs.array import array
 
     design = load("macro-array")

@@ -12,19 +12,20 @@ import pytest
 from variants import variant
 
 from tactcad.cli.main import main
-from tactcad.cli.progress import progress
+from tactcad.cli.streams import progress
 from tactcad.design.messages import InputError
 from tactcad.drawing import guide
 from tactcad.drawing.assemblies.arrangement import notes_of
-from tactcad.export.pipeline import ExportOptions, export
+from tactcad.export.formats import ExportOptions
+from tactcad.export.pipeline import export
 from tactcad.export.products import _compare_box
-from tactcad.parts.deflected import deflected_element, deflection_at_pad_edge
+from tactcad.parts.array.element import deflected_element, deflection_at_pad_edge
+from tactcad.parts.array.layout import Layout
+from tactcad.parts.bought.screws import seating_torque
 from tactcad.parts.designs import load
-from tactcad.parts.layout import Layout
-from tactcad.parts.library.screws import seating_torque
-from tactcad.parts.rigs.calibration_loads import calibration_loads
 from tactcad.parts.rigs.frame import pad_middles
-from tactcad.parts.rigs.stand_layout import StandLayout
+from tactcad.parts.rigs.stand import StandLayout
+from tactcad.parts.rigs.stiffness import calibration_loads
 from tactcad.scenes import make_scene, scene_names
 from tactcad.scenes.poses import pose_of, poses
 from tactcad.scenes.rigs.calibration import check_travel
@@ -188,7 +189,7 @@ def test_a_pressed_pad_touches_the_roller(number, deflection):
 
 
 def _gap(layout, place):
-    from tactcad.parts.stop_gap import stop_gap
+    from tactcad.parts.array.stop_gap import stop_gap
 
     return stop_gap(layout, place)
 

@@ -9,12 +9,11 @@ import pytest
 from scipy.optimize import linprog
 from variants import variant
 
-from tactcad.mechanics.rig_statics import holding_force, inside_by, tipping_margin, tipping_pull
+from tactcad.mechanics.statics import holding_force, inside_by, tipping_margin, tipping_pull
 from tactcad.parts.designs import load
-from tactcad.parts.rigs.cart_layout import cart_layout
+from tactcad.parts.rigs.cart import cart_layout
 from tactcad.scenes import make_scene
-from tactcad.scenes.moving_axis import moving_weight
-from tactcad.scenes.rigs.grasping import check_moving_weight
+from tactcad.scenes.rigs.grasping import check_moving_weight, moving_weight
 from tactcad.scenes.scene import Pose
 from tactcad.solids.build import build
 

@@ -10,22 +10,22 @@ from itertools import product
 import pytest
 from variants import DROP, variant
 
-from tactcad.checks.rigidity import check_rigidity
+from tactcad.checks.described.rigidity import check_rigidity
 from tactcad.checks.run import _left_out, run_checks
 from tactcad.cli.main import main
 from tactcad.design.following import LARGEST_SIDE
 from tactcad.design.load import paths
 from tactcad.design.tree import Design
-from tactcad.parts.layout import Layout
-from tactcad.parts.library.stages import STAGES
-from tactcad.parts.rigs.cart_layout import cart_layout
+from tactcad.parts.array.layout import Layout
+from tactcad.parts.bought.standard_parts import STAGES
+from tactcad.parts.rigs.cart import cart_layout
 from tactcad.parts.rigs.frame import POST_Y, pad_middles
-from tactcad.parts.rigs.guide_layout import guide_layout
-from tactcad.parts.rigs.stage_choice import calibration_stage
+from tactcad.parts.rigs.linear_guide import guide_layout
+from tactcad.parts.rigs.stand import calibration_stage
 from tactcad.parts.rules import broken_rules
 from tactcad.scenes import left_out, make_scene, scene_names
-from tactcad.scenes.moving_axis import ballast_range, moving_weight
 from tactcad.scenes.rig import all_rigs
+from tactcad.scenes.rigs.grasping import ballast_range, moving_weight
 
 ARMS = ((4, 7, 6, 8, 6), (8, 5, 4, 5, 7))
 LINE = re.compile(r"scene ([\w-]+) left out: rule \w+: .+ \((\S+) = (.+); legal: (.+)\)")

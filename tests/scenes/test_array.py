@@ -11,9 +11,9 @@ from variants import variant
 
 from tactcad.contour import Arc
 from tactcad.drawing.engine.extent import part_box, placed
-from tactcad.parts.description import Hole
-from tactcad.parts.layout import Layout
-from tactcad.parts.library.screws import METRIC
+from tactcad.parts.array.layout import Layout
+from tactcad.parts.language.description import Hole
+from tactcad.parts.language.metric import METRIC
 from tactcad.scenes import chosen_scenes, make_scene, scene_names
 from tactcad.scenes.scene import Placement, Scene
 

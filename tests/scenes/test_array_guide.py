@@ -14,7 +14,7 @@ from tactcad.drawing import guide
 from tactcad.drawing.engine.extent import box_corners, part_box, placed
 from tactcad.drawing.engine.layout_check import layout_faults
 from tactcad.drawing.guide import face_map
-from tactcad.parts.library.screws import METRIC
+from tactcad.parts.language.metric import METRIC
 from tactcad.scenes import make_scene
 from tactcad.scenes.scene import Placement, Scene
 

@@ -8,25 +8,26 @@ import numpy as np
 import pytest
 from variants import DROP, IN_SLOT, variant
 
-from tactcad.assembly.virtual_build import sensor
-from tactcad.checks.goes_together import check_assembly
-from tactcad.checks.interference import check_interference
+from tactcad.checks.described.goes_together import check_assembly
+from tactcad.checks.described.wirecut import check_wirecut
+from tactcad.checks.on_solids.interference import check_interference
 from tactcad.checks.shop import DEFAULT, load_shop
-from tactcad.checks.wirecut import check_wirecut
 from tactcad.design.load import names
 from tactcad.drawing.engine.extent import placed
 from tactcad.drawing.parts.part_sheet import part_plan
-from tactcad.mechanics import gauge_place
+from tactcad.families.facing_rows import FAMILY
+from tactcad.mechanics import gauge_signal
+from tactcad.parts.array.gauge_checks import gauge_checks, volts
+from tactcad.parts.array.hinge_section import hinge_section
+from tactcad.parts.array.layout import Layout
 from tactcad.parts.designs import load
-from tactcad.parts.gauge_checks import gauge_checks, volts
-from tactcad.parts.hinge_section import hinge_section
-from tactcad.parts.layout import Layout
-from tactcad.parts.rigs.bonding_layout import bonding_rigs
+from tactcad.parts.rigs.bonding_fixture import bonding_rigs
 from tactcad.parts.rules import broken_rules
 from tactcad.scenes import left_out, make_scene, scene_names
-from tactcad.scenes.bonding_requirements import PLACE_ON_HINGE
+from tactcad.scenes.rig_requirements import PLACE_ON_HINGE
 from tactcad.solids.build import build
 from tactcad.solids.measure import measure
+from tactcad.stacks.virtual_build import sensor
 
 # The array and its bonding fixture alone: whose rules are asked here.
 ALONE = {table: DROP for table in ("calibration", "sample", "cart", "holder", "grasping")}
@@ -151,7 +152,7 @@ def test_hinges_of_other_sizes_have_a_fixture_in_which_nothing_overlaps(hinge):
     shop = load_shop(DEFAULT)
     for part in (p for p in scene.parts if "-bonding-" in p.part_no):
         assert [f for f in check_wirecut(part, shop) if f.severity == "fail"] == []
-        plan = part_plan(part, ())
+        plan = part_plan(part, (), FAMILY.plans)
         keys = [d.characteristic.name for d in plan.dimensions if d.characteristic]
         assert sorted(keys) == sorted(c.name for c in part.characteristics)
 
@@ -193,7 +194,7 @@ def test_the_gauges_place_in_the_worst_case_by_hand():
     made = sensor(design, [make_scene(design, "bonding")])
     (line,) = made.stack(PLACE_ON_HINGE)
     layout = Layout(design)
-    allowed = gauge_place.allowed(
+    allowed = gauge_signal.allowed(
         hinge_section(layout, layout.elements[:1]), design.gauge.grid_length, 0.03
     ).item()
     worst = (0.90 - 0.845) / 2 + 0.03

@@ -10,9 +10,9 @@ import pytest
 
 from tactcad.design.load import names
 from tactcad.drawing.engine.extent import box_corners, part_box, placed
-from tactcad.parts.description import Hole
+from tactcad.parts.array.element import WIRE_TOLERANCE, least_passes
 from tactcad.parts.designs import load
-from tactcad.parts.wire_passes import WIRE_TOLERANCE, least_passes
+from tactcad.parts.language.description import Hole
 from tactcad.scenes import make_scene, scene_names
 from tactcad.scenes.scene import Placement, Pose
 

@@ -10,14 +10,14 @@ import cadquery as cq
 import numpy as np
 import pytest
 
-from tactcad.checks.interference import check_interference
+from tactcad.checks.on_solids.interference import check_interference
 from tactcad.design.messages import InputError
 from tactcad.drawing.engine import picture
 from tactcad.export import shapes as shapes_of
 from tactcad.export import step_file as step
 from tactcad.export.cache import Cache
 from tactcad.export.step_text import Header
-from tactcad.parts.description import Material, Purchase
+from tactcad.parts.language.description import Material, Purchase
 from tactcad.scenes import bom
 from tactcad.scenes.scene import Contact, Placement, Scene
 from tactcad.solids.build import build

@@ -12,9 +12,9 @@ from pathlib import Path
 import psutil
 
 from tactcad.cli.main import main
-from tactcad.sweep.kept import claimed
 from tactcad.sweep.measured import made_by
 from tactcad.sweep.on_dask import SweepTask
+from tactcad.sweep.store import claimed
 from tactcad.sweep.study import read_study
 
 SMALL = """

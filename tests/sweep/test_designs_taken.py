@@ -11,8 +11,7 @@ from scipy.stats import qmc
 from small_study import SMALL, written
 
 from tactcad.design.load import from_table, read
-from tactcad.sweep import sobol
-from tactcad.sweep.designs_taken import designs_taken, table_of
+from tactcad.sweep.designs_taken import designs_taken, points_at_powers, stretch, table_of
 from tactcad.sweep.study import read_study
 
 T, ARM = "element.hinge_thickness", "array.row_arms[0][3]"
@@ -92,4 +91,4 @@ def test_any_stretch_of_a_sobol_sequence_is_scipys(fields, start, stop):
     sampler = qmc.Sobol(fields, rng=7)
     wanted = (sampler.fast_forward(start) if start else sampler).random(stop - start)
     for count in (stop, 2_000_000):
-        assert np.array_equal(sobol.stretch(sobol.points_at_powers(fields, count, 7), start, stop), wanted)
+        assert np.array_equal(stretch(points_at_powers(fields, count, 7), start, stop), wanted)

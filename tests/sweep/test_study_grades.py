@@ -9,20 +9,21 @@ import numpy as np
 import pytest
 from small_study import SMALL, swept, written
 
-from tactcad.costs import this_machine
+from tactcad.costs import grades
 from tactcad.design.allowance import Allowance
 from tactcad.design.messages import CheckFailure, InputError
 from tactcad.mechanics.accuracy import expected_error_of
 from tactcad.mechanics.ladder import RUNGS
+from tactcad.parts.array.hinge_section import element_section
+from tactcad.sweep.closed_forms import Refused, alike
 from tactcad.sweep.designs_taken import designs_taken
 from tactcad.sweep.study import read_study
 from tactcad.sweep.study_grades import with_allowance
-from tactcad.sweep.vector_sections import VectorDesigns
 
 
 @pytest.fixture(autouse=True)
 def published_machine(monkeypatch):
-    monkeypatch.setattr(this_machine, "slowness", lambda: 1.0)
+    monkeypatch.setattr(grades, "slowness", lambda: 1.0)
 
 
 def study(folder, **changes):
@@ -33,9 +34,10 @@ def study(folder, **changes):
 def test_the_rung_keeps_its_error_at_every_design(tmp_path, within):
     asked = study(tmp_path)
     chosen, picked = with_allowance(asked, Allowance(within), 2)
-    many = VectorDesigns(asked.design, designs_taken(asked, 0, asked.count))
+    ((_, many),) = alike(asked, designs_taken(asked, 0, asked.count), Refused(asked.count))
+    sections = [element_section(many, many.elements[n - 1]) for n in asked.elements]
     worst = {
-        rung: max(float(np.nanmax(expected_error_of(many.section(n), rung))) for n in asked.elements)
+        rung: max(float(np.nanmax(expected_error_of(section, rung))) for section in sections)
         for rung in RUNGS
     }
     (rung,) = chosen.measure.rungs
@@ -51,7 +53,7 @@ def test_time_is_shared_by_workers_and_grows_with_designs(tmp_path):
     def seconds(some, workers):
         return with_allowance(some, Allowance(0.002), workers)[1].grade.seconds
 
-    start = this_machine.published()["sweep"]["start"]
+    start = grades.published()["sweep"]["start"]
     one, two = seconds(asked, 1) - start, seconds(asked, 2) - start
     assert one == pytest.approx(2.0 * two, rel=0.02)
     more = replace(asked, study=replace(asked.study, count=4 * asked.study.count))

@@ -23,9 +23,9 @@ from tactcad.design.design_text import design_text
 from tactcad.design.load import from_table, read
 from tactcad.design.messages import CheckFailure
 from tactcad.sweep.designs_taken import designs_taken, table_of
-from tactcad.sweep.kept import claimed
 from tactcad.sweep.measured import made_by
 from tactcad.sweep.on_dask import SweepTask
+from tactcad.sweep.store import claimed
 from tactcad.sweep.study import read_study
 
 

@@ -65,11 +65,7 @@ def litter(folder: Path) -> set[str]:
     """What lies there beside finished tasks and the marks of their folders."""
     found = [p for p in (folder / "out").rglob("*") if p.is_file() and p.name not in entries(folder / "out")]
     found += [*(folder / "tmp").iterdir(), *(folder / "home").iterdir()]
-    return {str(p.relative_to(folder)) for p in found} - {
-        "out/study.json",
-        "out/store/secret",
-        "out/store/CACHEDIR.TAG",
-    }
+    return {str(p.relative_to(folder)) for p in found} - {"out/study.json", "out/store/CACHEDIR.TAG"}
 
 
 @pytest.mark.parametrize("sent", ["SIGINT", "SIGTERM", "SIGHUP", "SIGKILL"])
@@ -128,7 +124,7 @@ main()
 """
 BLIND = """
 import sys
-import tactcad.sweep.kept as kept
+import tactcad.sweep.store as kept
 kept.MARK = "not-there.json"
 from dask.__main__ import main
 main()

@@ -12,23 +12,23 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tactcad.assembly.mechanic import Assembled
-from tactcad.assembly.virtual_build import ROUNDING, sensor
-from tactcad.assembly.virtual_shop import Distribution, made
 from tactcad.design.tree import Design
 from tactcad.lab.calibration import calibrate
+from tactcad.lab.calibration_file import Sensitivity
 from tactcad.lab.combine import Interval, combine, hull
 from tactcad.lab.grasp import common_slopes
 from tactcad.lab.load_cell import LoadCell
 from tactcad.lab.readings import CalibrationReadings, GraspReadings
-from tactcad.lab.sensitivity import Sensitivity
 from tactcad.lab.simulate import Noise, Truth, approach, calibration_rows
 from tactcad.mechanics import gauge_signal, ladder, strength
 from tactcad.mechanics.readout import volts_per_strain
 from tactcad.mechanics.section import HingeSection
-from tactcad.parts.hinge_section import design_alloy, design_gauge, design_readout, hinge_section
+from tactcad.parts.array.hinge_section import design_alloy, design_gauge, design_readout, hinge_section
 from tactcad.scenes import make_scene
-from tactcad.synthesis.evaluation import Covariance, Evaluation
+from tactcad.stacks.mechanic import Assembled
+from tactcad.stacks.variables import Distribution, made
+from tactcad.stacks.virtual_build import ROUNDING, sensor
+from tactcad.synthesis.interval import Covariance, Evaluation
 from tactcad.synthesis.target import Target
 
 LEVEL = 0.95

@@ -25,8 +25,8 @@ from scipy.stats import binom, kstest
 from tactcad.design.tree import Design
 from tactcad.lab.combine import combine
 from tactcad.lab.grasp import common_slopes, evaluate
-from tactcad.parts.hinge_section import hinge_section
-from tactcad.parts.layout import Layout
+from tactcad.parts.array.hinge_section import hinge_section
+from tactcad.parts.array.layout import Layout
 from tactcad.synthesis.candidates import stands
 from tactcad.synthesis.interval import bounds, coupled_estimate
 from tactcad.synthesis.made_arrays import MadeSensor

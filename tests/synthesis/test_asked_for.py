@@ -10,23 +10,21 @@ import numpy as np
 import pytest
 from small_target import SMALL
 
-from tactcad.checks.signals import check_signals
+from tactcad.checks.facing_rows.circuit import check_signals
 from tactcad.circuit.element_signals import element_signals
 from tactcad.design.design_text import design_text
 from tactcad.design.load import parse
 from tactcad.design.messages import InputError
 from tactcad.mechanics.ladder import stiffness
-from tactcad.parts.finding import Finding
-from tactcad.parts.hinge_section import hinge_section
-from tactcad.parts.layout import Layout
+from tactcad.parts.array.hinge_section import hinge_section
+from tactcad.parts.array.layout import Layout
+from tactcad.parts.language.finding import Finding
 from tactcad.parts.rules import broken_rules
-from tactcad.synthesis.candidates import stands
-from tactcad.synthesis.realise import realised
+from tactcad.synthesis.candidates import realised, stands
 from tactcad.synthesis.search import refusals, search
 from tactcad.synthesis.synthesise import Synthesis, attempt
 from tactcad.synthesis.target import Target, parse_target
-from tactcad.synthesis.target_answer import answer
-from tactcad.synthesis.target_report import record
+from tactcad.synthesis.target_report import answer, record
 
 
 def small(*changes: tuple[str, str]) -> Target:

@@ -10,7 +10,7 @@ from tactcad.parts.designs import load
 from tactcad.scenes import scene_names
 from tactcad.synthesis.synthesise import design
 from tactcad.synthesis.target import parse_target
-from tactcad.synthesis.write import write
+from tactcad.synthesis.target_report import write
 
 SEED = 20261123
 # Half a minute each, most of it for solids: three are slow tests, all others nightly ones.

@@ -8,13 +8,13 @@ import pytest
 from small_target import SMALL
 
 from tactcad.cli.main import main
-from tactcad.costs import this_machine
+from tactcad.costs import grades
+from tactcad.synthesis.synthesise import work_ahead
 from tactcad.synthesis.target import parse_target
-from tactcad.synthesis.work_ahead import work_ahead
 
 
 def test_a_design_makes_as_many_arrays_as_its_interval_needs(tmp_path, capsys, monkeypatch, time_is_over):
-    monkeypatch.setattr(this_machine, "slowness", lambda: 1.0)
+    monkeypatch.setattr(grades, "slowness", lambda: 1.0)
     (tmp_path / "small.toml").write_text(SMALL)
     args = ["design", str(tmp_path / "small.toml"), "--out", str(tmp_path / "out")]
     assert main([*args, "--within", "5%", "--in", "40", "--json"]) == 0

@@ -7,7 +7,7 @@ import pytest
 from scipy.stats import binom, kstest
 
 from tactcad.lab.combine import Slopes, combine
-from tactcad.synthesis.evaluation import Covariance, Evaluation
+from tactcad.synthesis.interval import Covariance, Evaluation
 
 NOISE, LOADS = 4e-4, 10
 

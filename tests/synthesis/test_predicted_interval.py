@@ -9,8 +9,8 @@ import pytest
 from as_a_lab import calibrations
 from scipy.stats import t as student
 
-from tactcad.parts.hinge_section import hinge_section
-from tactcad.parts.layout import Layout
+from tactcad.parts.array.hinge_section import hinge_section
+from tactcad.parts.array.layout import Layout
 from tactcad.synthesis.interval import bounds, coupled_estimate, information, motion, weights
 from tactcad.synthesis.knowledge import Elements, Knowledge, elements, knowledge
 from tactcad.synthesis.target import parse_target

@@ -15,8 +15,8 @@ import pytest
 from tactcad.design.tree import Design
 from tactcad.mechanics.ladder import stiffness as tip_stiffness
 from tactcad.mechanics.section import Array, HingeSection
-from tactcad.parts.hinge_section import hinge_section
-from tactcad.parts.layout import Layout
+from tactcad.parts.array.hinge_section import hinge_section
+from tactcad.parts.array.layout import Layout
 from tactcad.synthesis.interval import bounds
 from tactcad.synthesis.knowledge import elements, knowledge
 from tactcad.synthesis.made_arrays import MadeSensor

@@ -19,9 +19,9 @@ from tactcad.design.messages import CheckFailure
 from tactcad.parts.designs import load
 from tactcad.parts.rules import broken_rules
 from tactcad.synthesis import relax, synthesise
-from tactcad.synthesis import write as write_module
+from tactcad.synthesis import target_report as write_module
+from tactcad.synthesis.candidates import order
 from tactcad.synthesis.made_arrays import MadeSensor
-from tactcad.synthesis.realise import order
 from tactcad.synthesis.shares import variance_shares
 from tactcad.synthesis.synthesise import Synthesis, attempt, design
 from tactcad.synthesis.target import parse_target
@@ -227,7 +227,7 @@ def test_options_out_of_range_are_refused(tmp_path, capsys, arguments):
 def test_the_interval_narrows_with_more_force_and_longer_calibration():
     got = small()
     x = np.array([4.0])
-    here = got.interval(x).half_width(x)[0]
+    here = got.sensor.interval(x).half_width(x)[0]
     for path, value in (("grasp.force", 12.0), ("known.runs", 12), ("known.run_scatter", 0.001)):
         other = Synthesis(got.target.with_(path, value), got.found, got.wanted, got.made, True)
-        assert other.interval(x).half_width(x)[0] < here
+        assert other.sensor.interval(x).half_width(x)[0] < here

@@ -14,17 +14,14 @@ from tactcad.cli.main import main
 from tactcad.design.design_text import design_text
 from tactcad.design.load import read
 from tactcad.design.messages import CheckFailure, InputError
-from tactcad.parts.finding import Finding
+from tactcad.parts.language.finding import Finding
 from tactcad.scenes import LeftOut
 from tactcad.synthesis import relax
-from tactcad.synthesis.alternatives import LeastChange
 from tactcad.synthesis.made_arrays import MadeSensor
 from tactcad.synthesis.shares import COUNT, variance_shares
-from tactcad.synthesis.synthesise import Synthesis, attempt, design
+from tactcad.synthesis.synthesise import LeastChange, Synthesis, attempt, design
 from tactcad.synthesis.target import TABLES, Target, parse_target, read_target
-from tactcad.synthesis.target_answer import answer, no_other_change
-from tactcad.synthesis.target_report import record, report_page
-from tactcad.synthesis.write import refuse_unwritable
+from tactcad.synthesis.target_report import answer, no_other_change, record, refuse_unwritable, report_page
 
 
 def target(*changes: tuple[str, object]) -> Target:
@@ -66,11 +63,11 @@ def test_room_that_is_missed_by_a_little_is_missed_by_that():
 
 
 def test_fields_not_tried_are_not_said_to_have_been_tried():
-    r = {"changes": [], "left_out": []}
-    assert no_other_change(r).startswith("no single field changed")
-    r["left_out"] = ["least change of grasp.force", "least change of room.width"]
-    assert no_other_change(r) == "not tried for time: 2 fields that might make it possible if changed alone"
-    missed = replace(small(), met=False, left_out=("least change of grasp.force",))
+    assert no_other_change(small()).startswith("no single field changed")
+    two = replace(small(), not_tried=("grasp.force", "room.width"))
+    assert no_other_change(two) == "not tried for time: 2 fields that might make it possible if changed alone"
+    missed = replace(small(), met=False, not_tried=("grasp.force",))
+    assert record(missed)["left_out"] == ["least change of grasp.force"]
     assert b"Not tried for time: 1 fields" in report_page(missed)
     changed = replace(small(), met=False, changes=(LeastChange("grasp.force", 6.0, 7.0),))
     assert b"No other single field" in report_page(changed)

@@ -10,8 +10,8 @@ from typing import Any
 from xml.etree import ElementTree
 
 from tactcad.design.messages import CheckFailure
-from tactcad.parts.finding import Finding
-from tactcad.parts.stiffness_table import Deflection
+from tactcad.parts.array.stiffness_table import Deflection
+from tactcad.parts.language.finding import Finding
 
 
 @dataclass(frozen=True)
@@ -78,7 +78,7 @@ def as_record(report: Report) -> dict[str, Any]:
         "design": report.design,
         "revision": report.revision,
         "passed": not report.failures,
-        "findings": [asdict(f) for f in report.findings],
+        "findings": [f.as_record() for f in report.findings],
         "deflections": [asdict(line) for line in report.deflections],
         "runs": report.runs,
         "seconds": {name: round(s, 4) for name, s in report.seconds.items()},
@@ -130,7 +130,7 @@ def _case(suite: ElementTree.Element, design: str, case: Case) -> None:
 
 def failure_table(reports: Sequence[Report]) -> list[str]:
     """Every failure as a line of a table: design, part, check, message; empty where nothing failed."""
-    rows = [(r.design, f.part, f.check, f.message + _at(f)) for r in reports for f in r.failures]
+    rows = [(r.design, f.about, f.check, f.message + _at(f)) for r in reports for f in r.failures]
     if not rows:
         return []
     head = ("design", "part", "check", "what is wrong")

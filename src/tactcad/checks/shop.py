@@ -10,7 +10,7 @@ from typing import Any
 from tactcad.design.fields import shown_text
 from tactcad.design.files import read_text
 from tactcad.design.messages import InputError, one_of
-from tactcad.design.toml_text import parse_toml
+from tactcad.design.text_values import parse_toml
 
 MOST_BYTES = 100_000  # a page of limits and their sources
 OPTIONAL = {"machining", "machining_source", "feed", "feed_source"}

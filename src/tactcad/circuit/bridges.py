@@ -17,9 +17,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 
-from tactcad.design.electronics import AMPLIFIERS, MULTIPLEXERS, SWITCHES, WIRES
-from tactcad.parts.boards import ReadBoard, boards
-from tactcad.parts.electronic_parts import (
+from tactcad.design.sensing import AMPLIFIERS, MULTIPLEXERS, SWITCHES, WIRES
+from tactcad.parts.array.layout import Layout
+from tactcad.parts.array.leads import LeadRoute, ReadBoard, boards, colours, lead_ohm, lead_routes, leads
+from tactcad.parts.bought.electronic_parts import (
     COMPLETION,
     DECOUPLING,
     GAIN_RESISTOR,
@@ -33,8 +34,6 @@ from tactcad.parts.electronic_parts import (
     lead_part,
     set_gain,
 )
-from tactcad.parts.layout import Layout
-from tactcad.parts.lead_route import LeadRoute, colours, lead_ohm, lead_routes, leads
 
 from .netlist import GROUND, Component, Kind, Netlist, Pin
 

@@ -7,12 +7,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from tactcad.mechanics import gauge_signal, readout
-from tactcad.parts.bridge_figures import amplified, drift
-from tactcad.parts.electronic_parts import completion_tolerance
-from tactcad.parts.hinge_section import design_gauge, design_readout, hinge_section
-from tactcad.parts.layout import ElementPlace, Layout
-from tactcad.parts.lead_route import longest_lead_resistance
-from tactcad.parts.overload import overloads
+from tactcad.parts.array.bridge_figures import amplified, drift
+from tactcad.parts.array.hinge_section import design_gauge, design_readout, hinge_section
+from tactcad.parts.array.layout import ElementPlace, Layout
+from tactcad.parts.array.leads import longest_lead_resistance
+from tactcad.parts.array.stop_gap import overloads
+from tactcad.parts.bought.electronic_parts import completion_tolerance
 
 
 @dataclass(frozen=True)

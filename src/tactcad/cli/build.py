@@ -14,13 +14,12 @@ from typing import TYPE_CHECKING
 from tactcad.design.allowance import pick
 from tactcad.design.messages import InputError
 
-from .allowed import add_allowance, allowance, refuse_named
-from .parser import add_design, add_json
+from .parser import add_allowance, add_design, add_json, allowance, refuse_named
 
 if TYPE_CHECKING:
-    from tactcad.assembly.stack import StackLine
-    from tactcad.assembly.virtual_build import Builds
-    from tactcad.parts.layout import Layout
+    from tactcad.parts.array.layout import Layout
+    from tactcad.stacks.stack import StackLine
+    from tactcad.stacks.virtual_build import Builds
 
 EXAMPLES = """\
   tactcad build                            1000 arrays of hardware/macro-array.toml, seed as published
@@ -46,9 +45,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    from tactcad.assembly.stack import SEED
-    from tactcad.assembly.virtual_build import sensor
     from tactcad.parts.designs import load
+    from tactcad.stacks.stack import SEED
+    from tactcad.stacks.virtual_build import sensor
 
     asked = allowance(args)
     refuse_named(asked, "--count", args.count)
@@ -60,7 +59,7 @@ def run(args: argparse.Namespace) -> int:
     started = time.perf_counter()
     design, picked = load(args.design), None
     if asked:
-        from tactcad.costs.command_costs import YIELD, arrays_of, build_grades
+        from tactcad.costs.grades import YIELD, arrays_of, build_grades
 
         picked = pick(build_grades(design), asked, YIELD)
         count = arrays_of(picked.grade)
@@ -131,7 +130,8 @@ def _print(layout: Layout, builds: Builds, lines: list[StackLine]) -> None:
         worst = f"{line.worst_low:.4g} to {line.worst_high:.4g}"
         r = named[line.requirement.name]
         print(f"  {r:{wide}} {line.nominal:9.4g} {worst:>21} {line.sigma:8.2g}  {who}")
-    print("  element  K, N/mm         load arm, mm    stop gap, mm    closes at least at, N")
+    if builds.elements:
+        print("  element  K, N/mm         load arm, mm    stop gap, mm    closes at least at, N")
     for e in builds.elements:
         known = isfinite(e.stiffness[0])
         K = f"{e.stiffness[0]:6.2f} +-{e.stiffness[1]:5.2f}" if known else f"{'none':15}"
@@ -147,9 +147,9 @@ def _print(layout: Layout, builds: Builds, lines: list[StackLine]) -> None:
 def _reasons(layout: Layout, builds: Builds) -> Iterator[str]:
     """Why elements have no stiffness: as drawn, or in one of the arrays built."""
     from tactcad.mechanics import ladder
-    from tactcad.parts.hinge_section import hinge_section, not_reached
+    from tactcad.parts.array.hinge_section import hinge_section, not_reached
 
-    for place, e in zip(layout.elements, builds.elements, strict=True):
+    for place, e in zip(layout.elements if builds.elements else (), builds.elements, strict=True):
         if not isfinite(e.stiffness[0]):
             drawn = not_reached(layout, (place,), hinge_section(layout, (place,)), ladder.DEFAULT_RUNG)
             near = f"rung {ladder.DEFAULT_RUNG} does not reach element {place.number} with its tolerances"

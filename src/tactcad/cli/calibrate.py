@@ -9,7 +9,11 @@ from typing import TYPE_CHECKING
 
 from tactcad.design.messages import InputError
 
+from .parser import add_needless_allowance, allowance
+
 if TYPE_CHECKING:
+    from tactcad.design.family import FamilyReadings
+    from tactcad.design.tree import Design
     from tactcad.lab.load_cell import LoadCell
 
 EXAMPLES = """\
@@ -52,15 +56,16 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--drop-outliers", action="store_true", help="leave named outliers out of the fit")
     parser.add_argument("--out", metavar="FILE", help="write the calibration as CSV, for `tactcad stiffness`")
     parser.add_argument("--json", action="store_true", help="print as JSON")
+    add_needless_allowance(parser)
 
 
 def run(args: argparse.Namespace) -> int:
     from tactcad.design.files import refuse_overwriting, write_whole
-    from tactcad.lab import calibration, calibration_text, readings
-    from tactcad.lab.column_units import against_design
+    from tactcad.lab import calibration, calibration_file, readings
 
-    from .progress import slow_work
+    from .streams import slow_work
 
+    allowance(args)
     if args.out:
         refuse_overwriting(args.out, args.file)
     load_cell = _load_cell(args.load_cell, args.design)
@@ -75,14 +80,16 @@ def run(args: argparse.Namespace) -> int:
             run_scatter=args.run_scatter,
             tell=tell,
         )
-    warnings = against_design(table, rows, load_cell, args.design) if args.design else []
+    warnings = (
+        _readings_of(args.design)[0].against(table, rows, load_cell, args.design) if args.design else []
+    )
     if args.out:
-        write_whole(args.out, calibration_text.to_csv(rows, load_cell).encode())
+        write_whole(args.out, calibration_file.to_csv(rows, load_cell).encode())
     if args.json:
-        sys.stdout.write(calibration_text.to_json(rows, load_cell, args.level, warnings))
+        sys.stdout.write(calibration_file.to_json(rows, load_cell, args.level, warnings))
     else:
         above = "".join(f"warning: {warning}\n" for warning in warnings)
-        sys.stdout.write(above + calibration_text.to_text(rows, load_cell, args.level))
+        sys.stdout.write(above + calibration_file.to_text(rows, load_cell, args.level))
     return 0
 
 
@@ -99,9 +106,17 @@ def _load_cell(given: str | None, design: str | None) -> LoadCell:
         raise InputError(
             "--load-cell", "stands in the design's [calibration]; leave out one of both", value=given
         )
+    readings, read = _readings_of(design)
+    cell = readings.load_cell(read)
+    if cell is None:
+        raise InputError(f"design {design}", "has no [calibration] table, where its load cell would stand")
+    return cell
+
+
+def _readings_of(source: str) -> tuple[FamilyReadings, Design]:
+    """What the family of a design makes of readings, and the design."""
+    from tactcad.design.family import family_of
     from tactcad.parts.designs import load
 
-    rig = load(design).calibration
-    if rig is None:
-        raise InputError(f"design {design}", "has no [calibration] table, where its load cell would stand")
-    return LoadCell(rig.load_cell_stiffness, rig.load_cell_accuracy * rig.load_cell_stiffness)
+    design = load(source)
+    return family_of(design).must("readings", "calibrate --design"), design

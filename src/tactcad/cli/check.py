@@ -15,8 +15,7 @@ if TYPE_CHECKING:
     from tactcad.design.allowance import Allowance, Picked
     from tactcad.solids.meshing import Meshing
 
-from .allowed import add_allowance, allowance
-from .parser import add_design, add_json, add_shop, add_strict
+from .parser import add_allowance, add_design, add_json, add_shop, add_strict, allowance
 
 EXAMPLES = """\
   tactcad check                           every check of hardware/macro-array.toml
@@ -76,7 +75,7 @@ def run(args: argparse.Namespace) -> int:
 
 def _picked(args: argparse.Namespace, asked: Allowance) -> tuple[Meshing, Picked]:
     """One mesh for all designs; one that is refused costs nothing here."""
-    from tactcad.costs.command_costs import VOLUME, check_grades, meshing_of
+    from tactcad.costs.grades import VOLUME, check_grades, meshing_of
     from tactcad.design.allowance import pick
     from tactcad.design.messages import InputError
     from tactcad.parts.designs import load
@@ -100,10 +99,10 @@ def _checked(source: str, args: argparse.Namespace, shop: Path, meshing: Meshing
     from tactcad.design.messages import InputError
     from tactcad.export.golden_file import check_golden, golden_path
     from tactcad.parts.designs import load
-    from tactcad.parts.finding import Finding
+    from tactcad.parts.language.finding import Finding
     from tactcad.scenes import chosen_scenes
 
-    from .progress import progress
+    from .streams import progress
 
     try:
         design = load(source)

@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING
 from tactcad.design.allowance import Allowance, Picked, pick
 from tactcad.design.messages import CheckFailure
 
-from .allowed import add_allowance, allowance
-from .parser import add_json
+from .parser import add_allowance, add_json, allowance
 
 if TYPE_CHECKING:
+    from tactcad.synthesis.synthesise import Synthesis
     from tactcad.synthesis.target import Target
 
 EXAMPLES = """\
@@ -42,14 +42,14 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    from tactcad.costs.command_costs import arrays_of
+    from tactcad.costs.grades import arrays_of
+    from tactcad.design.family import family_of
     from tactcad.synthesis import target_report as report
-    from tactcad.synthesis.synthesise import ARRAYS, design
+    from tactcad.synthesis.synthesise import ARRAYS
     from tactcad.synthesis.target import read_target
-    from tactcad.synthesis.target_answer import answer
-    from tactcad.synthesis.write import refuse_unwritable, write
+    from tactcad.synthesis.target_report import answer, refuse_unwritable, write
 
-    from .progress import slow_work
+    from .streams import slow_work
 
     asked = allowance(args)
     target = read_target(args.target)
@@ -57,6 +57,7 @@ def run(args: argparse.Namespace) -> int:
     picked = _picked(target, asked) if asked else None
     count = arrays_of(picked.grade) if picked else ARRAYS
     with slow_work(sys.stderr) as tell:
+        design = family_of(target.base).must("variables", "target.base")
         got = design(target, arrays=count, seconds=asked.seconds, tell=tell)
     r = report.record(got)
     written = got.met or (args.best and got.found.accepted)
@@ -66,7 +67,7 @@ def run(args: argparse.Namespace) -> int:
         print(json.dumps(r | ({"budget": picked.record()} if picked else {}), indent=1))
     else:
         print(answer(r))
-        _print(r)
+        _print(got, r)
         if picked:
             print(picked.text())
         if written:
@@ -89,8 +90,8 @@ def _next(out: str) -> str:
 
 def _picked(target: Target, asked: Allowance) -> Picked:
     """With the whole report in the time, or else with what of it the search and the yield leave."""
-    from tactcad.costs.command_costs import YIELD, synthesis_grades
-    from tactcad.synthesis.work_ahead import work_ahead
+    from tactcad.costs.grades import YIELD, synthesis_grades
+    from tactcad.synthesis.synthesise import work_ahead
 
     try:
         return pick(synthesis_grades(work_ahead(target, True)), asked, YIELD)
@@ -98,8 +99,8 @@ def _picked(target: Target, asked: Allowance) -> Picked:
         return pick(synthesis_grades(work_ahead(target, False)), asked, YIELD)
 
 
-def _print(r: dict) -> None:
-    from tactcad.synthesis.target_answer import no_other_change
+def _print(got: Synthesis, r: dict) -> None:
+    from tactcad.synthesis.target_report import no_other_change
 
     for limit in r["binding"][:5]:
         print(
@@ -111,7 +112,7 @@ def _print(r: dict) -> None:
             f"  possible with {change['field']} {_text(change['needed'])} instead of {_text(change['value'])}"
         )
     if not r["met"]:
-        print(f"  {no_other_change(r)}")
+        print(f"  {no_other_change(got)}")
     elif r["left_out"]:
         print(f"  left out of the report for time: {', '.join(r['left_out'])}")
     for note in r["notes"]:

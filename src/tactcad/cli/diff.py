@@ -38,7 +38,7 @@ What only one of them tells is left out, and said. The exit status is 0 whether 
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
-    # what --fail-on takes; tactcad.review.gating, which has them, loads numpy
+    # what --fail-on takes; tactcad.review.consequences, which has them, loads numpy
     kinds = ("changes", "geometry", "stiffness", "checks", "revision")
     parser.add_argument("old", metavar="A", help="design, export's folder or golden file; or revision")
     parser.add_argument("new", metavar="B", help="the same, what it became")
@@ -81,8 +81,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     from tactcad.design.files import write_whole
     from tactcad.export.sides import compare_sides
-    from tactcad.review.consequences import meaning
-    from tactcad.review.gating import Compared, held
+    from tactcad.review.consequences import Compared, held, meaning
     from tactcad.review.summary import html, markdown
 
     old, new = _sides(args)
@@ -113,9 +112,9 @@ def _sides(args: argparse.Namespace) -> tuple[Side, Side]:
     from tactcad.design.files import refuse_overwriting
     from tactcad.design.messages import InputError
     from tactcad.export.sides import named, read_side
-    from tactcad.review.freecad_file import refuse_no_document
+    from tactcad.review.freecad import refuse_no_document
+    from tactcad.review.review_page import viewer_library
     from tactcad.review.revisions import design_file, revision_sides
-    from tactcad.review.viewer_library import viewer_library
 
     if args.their_code and args.design is None:
         raise InputError("--their-code", "goes with revisions only", legal="A B DESIGN")
@@ -150,13 +149,12 @@ def _material(
     """What shows material that changed, by file: the page, the document of FreeCAD."""
     from tactcad.review.change_record import change_record
     from tactcad.review.consequences import kept_designs
-    from tactcad.review.freecad_changes import freecad_changes
-    from tactcad.review.review_page import review_page
+    from tactcad.review.freecad import freecad_changes
+    from tactcad.review.review_page import review_page, viewer_library
     from tactcad.review.subject import shapes_of
     from tactcad.review.summary import rows
-    from tactcad.review.viewer_library import viewer_library
 
-    from .progress import progress
+    from .streams import progress
 
     say = progress(sys.stderr)
     designs = kept_designs(old, new)

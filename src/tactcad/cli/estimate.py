@@ -11,13 +11,14 @@ from tactcad.design.allowance import Allowance, Picked, pick, read_within
 from tactcad.design.messages import InputError
 from tactcad.mechanics.ladder import DEFAULT_RUNG, FINITE_ELEMENTS, FITTED, RUNGS
 
-from .allowed import add_allowance, allowance, refuse_named
+from .parser import add_allowance, allowance, refuse_named
 
 if TYPE_CHECKING:
     from tactcad.design.tree import Design, Tolerance
+    from tactcad.lab.array_estimate import ElementEstimate
     from tactcad.mechanics.accuracy import Candidate
     from tactcad.mechanics.section import HingeSection
-    from tactcad.parts.layout import Layout
+    from tactcad.parts.array.layout import Layout
 
 EXAMPLES = """\
   tactcad estimate
@@ -33,22 +34,23 @@ EXAMPLES = """\
                                       filled in: a copy of an export's inspection.csv, kept outside the export
 """
 
-COLUMNS = (  # heading, unit, field, format
-    ("no.", "", "number", "d"),
-    ("arm", "mm", "arm", "g"),
-    ("K", "N/mm", "stiffness", ".4g"),
-    ("K_r/K_m", "", "stiffness_ratio", ".3g"),
-    ("deflection", "um", "deflection_um", ".4g"),
-    ("strain gauge", "1e-6", "gauge_microstrain", ".0f"),
-    ("strain fillet", "1e-6", "peak_microstrain", ".0f"),
-    ("stress", "MPa", "stress", ".0f"),
-    ("yield/stress", "", "yield_factor_fillet", ".2f"),
-    ("flat face", "", "yield_factor_face", ".2f"),
-    ("Goodman", "", "goodman_factor", ".2f"),
-    ("yield at", "N", "yield_force", ".3g"),
-    ("and", "um", "yield_deflection_um", ".4g"),
-    ("rated", "N", "rated_force", ".3g"),
-    ("at most", "um", "rated_deflection_um", ".4g"),
+# Of an element's figures, those that the table for the terminal has.
+SHOWN = (
+    "number",
+    "arm",
+    "stiffness",
+    "stiffness_ratio",
+    "deflection",
+    "gauge_strain",
+    "peak_strain",
+    "stress",
+    "yield_factor_fillet",
+    "yield_factor_face",
+    "goodman_factor",
+    "yield_force",
+    "yield_deflection",
+    "rated_force",
+    "rated_deflection",
 )
 
 
@@ -87,19 +89,45 @@ def run(args: argparse.Namespace) -> int:
     asked = _asked(args)
     if args.batch is not None:
         return _batch(args, asked)
-    if args.inspection is not None:
-        return _as_made(args, asked)
     if args.out is not None:
         raise InputError("--out", "goes with --batch only", value=args.out)
-    from tactcad.lab.array_estimate import compare_uncut, estimate
+    from tactcad.design.family import family_of
     from tactcad.parts.designs import load
-    from tactcad.parts.layout import Layout
 
     design = load(args.design or "macro-array")
+    return family_of(design).estimate.run(args, asked, design)
+
+
+def plain_estimate(args: argparse.Namespace, asked: Allowance, design: Design) -> int:
+    """Of a family with one model: its elements' figures as they are."""
+    from tactcad.design.family import family_of
+
+    family = family_of(design)
+    for option, given in (("--model", args.model), ("--inspection", args.inspection), ("--within", asked)):
+        if given:
+            raise InputError(option, "does not take designs of this family", value=family.name)
+    rows = [asdict(row) for row in family.estimate.rows(family.layout(design), DEFAULT_RUNG, args.force)]
+    if args.json:
+        print(json.dumps({"design": design.name, "family": family.name, "elements": rows}, indent=2))
+        return 0
+    print(f"{design.name} {design.design.revision}, {design.material.alloy}")
+    for row in rows:
+        known = (f"{name} {v:.4g}" for name, v in row.items() if isinstance(v, int | float) and v is not True)
+        print(f"  {', '.join(known)}")
+    return 0
+
+
+def estimate_design(args: argparse.Namespace, asked: Allowance, design: Design) -> int:
+    """Of facing rows: by any rung, with tolerances; or as made, by the inspection sheet."""
+    from tactcad.lab.array_estimate import compare_uncut, estimate
+    from tactcad.parts.array.layout import Layout
+
     layout = Layout(design)
+    if args.inspection is not None:
+        return _as_made(args, asked, layout)
     chosen, picked = _chosen(layout, asked) if asked else (None, None)
     model, mesh = (chosen.rung, chosen.mesh) if chosen else (args.model or DEFAULT_RUNG, None)
-    rows = [asdict(row) for row in estimate(layout, model, args.force, mesh)]
+    rows = estimate(layout, model, args.force, mesh)
     shares = _shares(layout, model)
     uncut = asdict(compare_uncut(layout)) if model in FINITE_ELEMENTS else None
     if args.json:
@@ -129,7 +157,7 @@ def _asked(args: argparse.Namespace) -> Allowance:
 
 def _chosen(layout: Layout, asked: Allowance) -> tuple[Candidate, Picked]:
     """The rung for all elements, equal ones solved once."""
-    from tactcad.costs.rung_costs import rung_grades
+    from tactcad.costs.grades import rung_grades
     from tactcad.lab.array_estimate import choose_rung, distinct_sections
     from tactcad.mechanics.accuracy import CANDIDATES, require_measured
 
@@ -156,7 +184,7 @@ def _batch(args: argparse.Namespace, asked: Allowance) -> int:
     said: list[Picked] = []
 
     def accuracy(section: HingeSection) -> float:
-        from tactcad.costs.rung_costs import row_grades
+        from tactcad.costs.grades import row_grades
 
         grades = row_grades(section, asked.within) or row_grades(section)
         if not grades:
@@ -172,15 +200,10 @@ def _batch(args: argparse.Namespace, asked: Allowance) -> int:
     return 0
 
 
-def _as_made(args: argparse.Namespace, asked: Allowance) -> int:
-    from tactcad.lab import as_made_text
-    from tactcad.lab.as_made import as_made
+def _as_made(args: argparse.Namespace, asked: Allowance, layout: Layout) -> int:
+    from tactcad.lab.as_made import as_made, document, report
     from tactcad.lab.inspection_sheet import read_sheet
-    from tactcad.parts.designs import load
-    from tactcad.parts.layout import Layout
 
-    if args.out is not None:
-        raise InputError("--out", "goes with --batch only", value=args.out)
     if asked:
         raise InputError(
             "--inspection", "takes no --within or --in: the cut's scatter is far above it; use --model"
@@ -189,23 +212,24 @@ def _as_made(args: argparse.Namespace, asked: Allowance) -> int:
         closed = ", ".join(rung for rung in RUNGS if rung not in FINITE_ELEMENTS)
         raise InputError("--model", "--inspection takes closed forms only", value=args.model, legal=closed)
     model = args.model or DEFAULT_RUNG
-    layout = Layout(load(args.design or "macro-array"))
     rows = as_made(layout, read_sheet(args.inspection, layout), model, args.force)
     if args.json:
-        print(json.dumps(as_made_text.document(layout.design, model, rows), indent=2))
+        print(json.dumps(document(layout.design, model, rows), indent=2))
     else:
-        print(as_made_text.report(layout.design, model, rows))
+        print(report(layout.design, model, rows))
     return 0
 
 
-def _worst(rows: list[dict]) -> float | None:
+def _worst(rows: list[ElementEstimate]) -> float | None:
     """Largest expected error of the elements; None where one element's was not measured."""
-    errors = [row["expected_error"] for row in rows]
-    return None if None in errors else max(errors)
+    errors = [row.expected_error for row in rows if row.expected_error is not None]
+    return max(errors) if len(errors) == len(rows) else None
 
 
-def _document(design: Design, model: str, rows: list[dict], uncut: dict | None, shares: dict | None) -> dict:
-    from tactcad.lab import material_text
+def _document(
+    design: Design, model: str, rows: list[ElementEstimate], uncut: dict | None, shares: dict | None
+) -> dict:
+    from tactcad.lab.array_estimate import material_record
     from tactcad.mechanics.accuracy import accuracy_data
 
     document = {
@@ -213,31 +237,33 @@ def _document(design: Design, model: str, rows: list[dict], uncut: dict | None, 
         "revision": design.design.revision,
         "model": model,
         "alloy": design.material.alloy,
-        "force_N": rows[0]["force"],
+        "force_N": rows[0].force,
         "units": {"length": "mm", "force": "N", "stiffness": "N/mm", "stress": "MPa", "strain": "1"},
         "expected_error": _worst(rows),
         "reference": accuracy_data()["reference"],
-        "elements": rows,
+        "elements": [asdict(row) for row in rows],
         "as_built": [
-            {"number": row["number"]} | {field: float(share[i]) for field, share in (shares or {}).items()}
+            {"number": row.number} | {field: float(share[i]) for field, share in (shares or {}).items()}
             for i, row in enumerate(rows)
         ],
     }
-    return document | material_text.record(design) | ({"uncut": uncut} if uncut else {})
+    return document | material_record(design) | ({"uncut": uncut} if uncut else {})
 
 
-def _report(design: Design, model: str, rows: list[dict], uncut: dict | None, shares: dict | None) -> str:
-    from tactcad.lab import material_text
+def _report(
+    design: Design, model: str, rows: list[ElementEstimate], uncut: dict | None, shares: dict | None
+) -> str:
+    from tactcad.lab.array_estimate import ELEMENT, material_lines
     from tactcad.mechanics.accuracy import stated
+    from tactcad.report.figures import text_table
 
-    first = rows[0]
     lines = [
         f"{design.name} {design.design.revision}, {design.material.alloy}, rung {model}, "
-        f"{first['force']:g} N on each pad",
-        *_table([_shown(row) for row in rows]),
+        f"{rows[0].force:g} N on each pad",
+        *text_table(ELEMENT.some(*SHOWN), rows, lambda row: "-" if row.elastic else "invalid"),
     ]
-    lines += material_text.lines(design, [row["stiffness"] for row in rows])
-    plastic = [str(row["number"]) for row in rows if not row["elastic"]]
+    lines += material_lines(design, [row.stiffness for row in rows])
+    plastic = [str(row.number) for row in rows if not row.elastic]
     if plastic:
         lines.append(
             f"invalid: above yield at this force, strain and stress not given: no. {', '.join(plastic)}"
@@ -258,41 +284,18 @@ def _report(design: Design, model: str, rows: list[dict], uncut: dict | None, sh
     return "\n".join(lines)
 
 
-def _errors(rows: list[dict]) -> str:
+def _errors(rows: list[ElementEstimate]) -> str:
     """Stated errors of strain and stress against refined solid elements, of the worst element."""
+    from tactcad.lab.array_estimate import ELEMENT
 
-    def worst(field: str) -> str:
-        known = [row[field] for row in rows if row[field] is not None]
-        return f"{max(known):.1%}" if len(known) == len(rows) else "not known"
-
-    shares = {"gauge": "gauge_strain_error", "fillet": "peak_strain_error", "stress": "stress_error"}
-    told = ", ".join(f"{name} {worst(field)}" for name, field in shares.items())
-    return f"error against refined elements, at most: strain {told} (at mid-width; docs/mechanics.md)"
-
-
-def _shown(row: dict) -> dict:
-    scaled = {
-        "deflection_um": ("deflection", 1e3),
-        "gauge_microstrain": ("gauge_strain", 1e6),
-        "peak_microstrain": ("peak_strain", 1e6),
-        "yield_deflection_um": ("yield_deflection", 1e3),
-        "rated_deflection_um": ("rated_deflection", 1e3),
-    }
-    return row | {name: None if row[of] is None else row[of] * by for name, (of, by) in scaled.items()}
-
-
-def _table(rows: list[dict]) -> list[str]:
-    cells = [[heading for heading, *_ in COLUMNS], [unit for _, unit, *_ in COLUMNS]]
-    cells += [[_cell(row, f, spec) for *_, f, spec in COLUMNS] for row in rows]
-    widths = [max(len(line[i]) for line in cells) for i in range(len(COLUMNS))]
-    return ["  ".join(cell.rjust(width) for cell, width in zip(line, widths)).rstrip() for line in cells]
-
-
-def _cell(row: dict, field: str, spec: str) -> str:
-    """ "invalid" above yield, "-" where the gauge's grid does not fit a two-sided hinge."""
-    if row[field] is not None:
-        return format(row[field], spec)
-    return "-" if row["elastic"] else "invalid"
+    told = []
+    for figure in ELEMENT.some("gauge_strain_error", "peak_strain_error", "stress_error"):
+        known = [value for row in rows if (value := figure.of(row)) is not None]
+        share = figure.written(max(known)) + figure.unit if len(known) == len(rows) else "not known"
+        told.append(f"{figure.heading} {share}")
+    return (
+        f"error against refined elements, at most: strain {', '.join(told)} (at mid-width; docs/mechanics.md)"
+    )
 
 
 def _spread(tolerance: Tolerance, shares: dict) -> list[str]:
@@ -323,6 +326,6 @@ def _shares(layout: Layout, model: str) -> dict | None:
     if model not in FITTED:
         return None
     from tactcad.mechanics.as_built import half_widths
-    from tactcad.parts.hinge_section import hinge_section
+    from tactcad.parts.array.hinge_section import hinge_section
 
     return half_widths(hinge_section(layout, layout.elements), layout.design.tolerance, model)

@@ -1,4 +1,4 @@
-"""tactcad export [DESIGN] [--scene NAME]... [--strict] [--out DIR] [--within P] [--in SECONDS] [--json]"""
+"""tactcad export [DESIGN]... [--scene NAME]... [--strict] [--out DIR] [--within P] [--in SECONDS] [--json]"""
 
 from __future__ import annotations
 
@@ -6,16 +6,21 @@ import argparse
 import json
 import sys
 from dataclasses import asdict, replace
+from typing import TYPE_CHECKING, Any
 
 from tactcad.design.allowance import pick
+from tactcad.design.messages import CheckFailure, InputError
 
-from .allowed import add_allowance, allowance
-from .parser import add_design, add_json, add_others, add_strict
+from .parser import add_allowance, add_design, add_json, add_others, add_strict, allowance
+
+if TYPE_CHECKING:
+    from tactcad.export.pipeline import Progress
 
 EXAMPLES = """\
   tactcad export                              the array of hardware/macro-array.toml, to exports/macro-array
   tactcad export soft-tissue --out soft       another design, to a folder of your choice
   tactcad export my/design.toml --scene array one scene only
+  tactcad export hardware/*.toml              several designs, one after another, each to exports/<its name>
   tactcad export --scene calibration --pose element=4 --out element-4
                                               a rig in a chosen configuration
   tactcad export --guide                      with the assembly guides, to open in a browser
@@ -31,7 +36,7 @@ in a copy of inspection.csv (in inspections/, say), not the export's own."""
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
-    add_design(parser)
+    add_design(parser, several=True)
     parser.add_argument(
         "--scene", action="append", metavar="NAME", help="export this scene; may be repeated (default: all)"
     )
@@ -65,23 +70,44 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
+    from .streams import progress
+
+    if args.out and len(args.design) > 1:
+        raise InputError("--out", "names one folder for several designs", legal="one design, or no --out")
+    say, status, records = progress(sys.stderr), 0, []
+    for source in args.design:
+        try:
+            record, missing = _exported(source, args, say)
+        except (InputError, CheckFailure) as error:  # the other designs still have their turn
+            if len(args.design) == 1:
+                raise
+            print(f"tactcad: {error}", file=sys.stderr)
+            record, missing, status = {"design": source, "failure": str(error)}, [], 1
+        records.append(record)
+        status = 1 if args.strict and missing else status
+    if args.json:
+        print(json.dumps(records[0] if len(records) == 1 else records, indent=1))
+    return status
+
+
+def _exported(source: str, args: argparse.Namespace, say: Progress) -> tuple[dict[str, Any], list[str]]:
+    """Export one design: what is reported, and what of it was left out."""
     from tactcad.design.files import refuse_overwriting
     from tactcad.design.load import find, read
-    from tactcad.export.pipeline import ExportOptions, export
+    from tactcad.export.formats import ExportOptions
+    from tactcad.export.pipeline import export
     from tactcad.scenes import chosen_scenes, left_out
     from tactcad.scenes.poses import pose_of
 
-    from .progress import progress
-
     asked = allowance(args)
-    design = read(args.design)
-    scenes, say = chosen_scenes(design, args.scene), progress(sys.stderr)
+    design = read(source)
+    scenes = chosen_scenes(design, args.scene)
     out = args.out or f"exports/{design.name}" + ("" if args.detail == "full" else f"-{args.detail}")
-    refuse_overwriting(out, find(args.design))
+    refuse_overwriting(out, find(source))
     options = ExportOptions(tuple(scenes), pose_of(args.pose, design), args.guide, args.detail, args.drawings)
     picked = None
     if asked:
-        from tactcad.costs.command_costs import VOLUME, export_grades, meshing_of
+        from tactcad.costs.grades import VOLUME, export_grades, meshing_of
         from tactcad.parts.rules import refuse_broken
 
         refuse_broken(design)
@@ -91,9 +117,7 @@ def run(args: argparse.Namespace) -> int:
     missing = [] if args.scene else [str(left) for left in left_out(design)]
     for line in missing:
         say.line(f"warning: {line}")
-    if args.json:
-        record = {**asdict(done), "folder": str(done.folder), "left_out": missing}
-        print(json.dumps(record | ({"budget": picked.record()} if picked else {}), indent=1))
-    elif picked:
+    if picked and not args.json:
         say.line(picked.text())
-    return 1 if args.strict and missing else 0
+    record = {**asdict(done), "folder": str(done.folder), "left_out": missing}
+    return record | ({"budget": picked.record()} if picked else {}), missing

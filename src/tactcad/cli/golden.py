@@ -43,7 +43,7 @@ def _renew(source: str, shop_file: str | None) -> None:
     from tactcad.parts.designs import load
     from tactcad.scenes import scene_names
 
-    from .progress import progress
+    from .streams import progress
 
     shop = Path(shop_file) if shop_file else DEFAULT
     load_shop(shop)

@@ -16,12 +16,12 @@ from collections.abc import Callable
 from contextlib import suppress
 
 from tactcad import __version__
-from tactcad.account import account, text
 from tactcad.design import extras
 from tactcad.design.files import NO_ROOM
 from tactcad.design.messages import CheckFailure, InputError, one_of
-from tactcad.ending import end_on_signals, past_ending
 from tactcad.export.cache import take_libraries_in
+from tactcad.profiling import profiled, text
+from tactcad.shutdown import end_on_signals, ignore_signals
 
 from . import streams
 from .parser import Parser
@@ -43,6 +43,7 @@ COMMANDS = {
     "validate": "hold the models against the paper's Tables 1 and 2, as a report",
     "calibrate": "force, deflection and signal readings to stiffness and sensitivity, with intervals",
     "stiffness": "grasp readings and a calibration to the object's stiffness, with intervals",
+    "grasp": "press an array on a soft body: deflection, force and signal of every element",
     "schema": "print every field of a design file with unit, range, default and meaning",
 }
 
@@ -104,7 +105,7 @@ def _own_process() -> int:
     except SystemExit as ended:  # the parser's help and refusals
         status = ended.code if isinstance(ended.code, int) else DONE
     sys.stdout.flush()
-    past_ending()
+    ignore_signals()
     gc.freeze()  # nothing is collected once more at the end: that took 0.6 s with the CAD kernel loaded
     if output.failed and status == DONE:
         return _refused(f"the output cannot be written: {output.failed.strerror}", FAILED)
@@ -117,8 +118,8 @@ def _refused(why: object, status: int) -> int:
 
 
 def _profiled(run: Callable[[argparse.Namespace], int], args: argparse.Namespace) -> int:
-    """Run the command and print its account, whether it succeeds or not."""
-    with account() as made:
+    """Run the command and print its profile, whether it succeeds or not."""
+    with profiled() as made:
         try:
             return run(args)
         finally:

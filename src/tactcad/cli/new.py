@@ -33,9 +33,9 @@ def run(args: argparse.Namespace) -> int:
     from datetime import date
     from pathlib import Path
 
+    from tactcad.design.design_text import name_of, started
     from tactcad.design.files import write_whole
     from tactcad.design.load import parse
-    from tactcad.design.start import name_of, started
     from tactcad.parts.rules import refuse_broken
 
     path = Path(args.file)

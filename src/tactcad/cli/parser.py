@@ -1,4 +1,5 @@
-"""Command-line arguments, refused like all other bad input: one line that says what is legal."""
+"""Command-line arguments and the options that commands share; refused like all other bad input: one line that
+says what is legal."""
 
 from __future__ import annotations
 
@@ -7,9 +8,10 @@ import re
 from collections.abc import Sequence
 from typing import Any, NoReturn
 
+from tactcad.design.allowance import Allowance, read_seconds, read_within
 from tactcad.design.load import DEFAULT_DESIGN
 from tactcad.design.messages import InputError, near, one_of
-from tactcad.design.plain_numbers import as_number, as_whole
+from tactcad.design.text_values import as_number, as_whole
 
 
 class Parser(argparse.ArgumentParser):
@@ -104,3 +106,44 @@ def add_others(
 
 def _named(action: argparse.Action) -> str:
     return "/".join(action.option_strings) or str(action.metavar or action.dest)
+
+
+def add_allowance(parser: argparse.ArgumentParser, of: str, chosen: str) -> None:
+    """The two options; `of` says whose error P is, `chosen` what is chosen by it."""
+    of = of.replace("%", "%%")  # argparse formats help
+    parser.add_argument(
+        "--within",
+        metavar="P",
+        help=f"largest {of} that may be left, as 1%% or 0.01; takes the {chosen} of least work that keeps "
+        "it, or refuses; says what a step more or less would cost (docs/accuracy.md)",
+    )
+    parser.add_argument(
+        "--in",
+        dest="seconds",
+        metavar="SECONDS",
+        help=f"time it may take: the {chosen} of least error in it; with --within both must hold; a time too "
+        "short is refused before anything is begun, with the time needed: no check is left out for it",
+    )
+
+
+def add_needless_allowance(parser: argparse.ArgumentParser) -> None:
+    """The two options on a command that answers at once, with nothing to choose: read, and without effect."""
+    for option, dest, metavar in (("--within", "within", "P"), ("--in", "seconds", "SECONDS")):
+        parser.add_argument(
+            option, dest=dest, metavar=metavar, help="as of other commands; this one has nothing to choose"
+        )
+
+
+def allowance(args: argparse.Namespace) -> Allowance:
+    """What was asked; false where neither was. Raises InputError."""
+    return Allowance(
+        None if args.within is None else read_within(args.within, "--within"),
+        None if args.seconds is None else read_seconds(args.seconds, "--in"),
+    )
+
+
+def refuse_named(asked: Allowance, option: str, given: object) -> None:
+    """Raise InputError where what the allowance chooses is named as well."""
+    if asked and given is not None:
+        by = "--within" if asked.within is not None else "--in"
+        raise InputError(by, f"makes this choice itself; leave out {option} {given}")

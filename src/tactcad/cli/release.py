@@ -63,9 +63,9 @@ def run(args: argparse.Namespace) -> int:
     from tactcad.design.messages import CheckFailure, InputError
     from tactcad.parts.designs import load
     from tactcad.release.make import Terms, looked_up, release
-    from tactcad.release.owner import owned
+    from tactcad.release.release_contents import owned
 
-    from .progress import progress
+    from .streams import progress
 
     shop = Path(args.shop) if args.shop else DEFAULT
     load_shop(shop)  # files that cannot be used are refused before any work

@@ -48,14 +48,13 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     from tactcad.design.files import refuse_overwriting, write_whole
     from tactcad.design.messages import InputError
-    from tactcad.review.freecad_file import freecad_document, refuse_no_document, reload_macro
-    from tactcad.review.review_page import review_page
+    from tactcad.review.freecad import freecad_document, refuse_no_document, reload_macro
+    from tactcad.review.review_page import review_page, viewer_library
     from tactcad.review.review_record import review_record
     from tactcad.review.subject import drawn_sheets, shapes_of, subject
-    from tactcad.review.viewer_library import viewer_library
     from tactcad.scenes import chosen_scenes, make_scene
 
-    from .progress import progress
+    from .streams import progress
 
     started, say = time.perf_counter(), progress(sys.stderr)
     seen = subject(args.design)
@@ -81,8 +80,7 @@ def run(args: argparse.Namespace) -> int:
     if out and library:
         if args.drawings:
             scenes = [make_scene(seen.design, name) for name in names]
-            parts = list({part.part_no: part for scene in scenes for part in scene.parts}.values())
-            sheets = drawn_sheets(seen.design, parts, shapes, say.step)
+            sheets = drawn_sheets(seen.design, scenes, shapes, say.step)
         made[out] = review_page(*review_record(seen.design, names, shapes, say.step, sheets), library)
     for path, data in made.items():
         write_whole(path, data)

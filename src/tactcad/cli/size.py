@@ -5,11 +5,14 @@ from __future__ import annotations
 import argparse
 import json
 import math
+from contextlib import suppress
 from typing import TYPE_CHECKING
 
 from tactcad.design.messages import CheckFailure, InputError
 from tactcad.mechanics.ladder import CLOSED_FORMS, DEFAULT_RUNG
 from tactcad.mechanics.section import REQUIRED, HingeSection
+
+from .parser import add_allowance, allowance, refuse_named
 
 if TYPE_CHECKING:
     from tactcad.design.tree import Design
@@ -60,10 +63,10 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--model",
         choices=CLOSED_FORMS,
-        default=DEFAULT_RUNG,
         metavar="RUNG",
         help=f"one of {', '.join(CLOSED_FORMS)} (default {DEFAULT_RUNG})",
     )
+    add_allowance(parser, "error of K, against solid elements refined to their limit,", "rung")
     parser.add_argument("--json", action="store_true", help="write JSON")
 
 
@@ -83,47 +86,67 @@ def run(args: argparse.Namespace) -> int:
         raise InputError(
             f"--hinge-{args.solve}", "is what is to be found; leave it out", value=getattr(args, parameter)
         )
-    from tactcad.lab import material_text
+    from tactcad.lab.array_estimate import material_lines, material_record
     from tactcad.parts.designs import load
 
+    asked = allowance(args)
+    refuse_named(asked, "--model", args.model)
     design = load(args.design)
-    answer = _answer(args, design, parameter)
+    if asked.within is None:
+        answer = _answer(args, design, parameter, args.model or DEFAULT_RUNG)
+    else:
+        answer = _answer_within(args, design, parameter, asked.within)
     own = args.youngs_modulus is None and args.alloy is None  # else nobody asked for the design's material
     if args.json:
-        print(json.dumps(answer | (material_text.record(design) if own else {}), indent=2))
+        print(json.dumps(answer | (material_record(design) if own else {}), indent=2))
     else:
-        further = material_text.lines(design, [answer["stiffness"]]) if own else []
+        further = material_lines(design, [answer["stiffness"]]) if own else []
         print("\n".join([_report(answer), *further]))
     return 0
 
 
-def _answer(args: argparse.Namespace, design: Design, parameter: str) -> dict:
+def _answer_within(args: argparse.Namespace, design: Design, parameter: str, within: float) -> dict:
+    """By the rung of least work whose error of K, at the hinge that it finds, is within that."""
+    from tactcad.design.allowance import percent
+
+    best, least = _answer(args, design, parameter, DEFAULT_RUNG), math.inf
+    for rung in CLOSED_FORMS:
+        with suppress(CheckFailure):
+            answer = _answer(args, design, parameter, rung)
+            error = math.inf if answer["expected_error"] is None else answer["expected_error"]
+            if error <= within:
+                return answer
+            best, least = (answer, error) if error < least else (best, least)
+    known = (
+        f"the best is {best['model']}, {percent(least)}" if least < math.inf else "no error was measured here"
+    )
+    raise CheckFailure(f"nothing keeps K within {percent(within)}: {known}")
+
+
+def _answer(args: argparse.Namespace, design: Design, parameter: str, model: str) -> dict:
     from tactcad.design.materials import alloy as alloy_named
     from tactcad.mechanics import ladder, strain, strength
     from tactcad.mechanics.accuracy import expected_error_of
-    from tactcad.mechanics.sizing import size
-    from tactcad.parts.hinge_section import design_alloy
+    from tactcad.mechanics.ladder import size
+    from tactcad.parts.array.hinge_section import design_alloy
 
     section = _section(args, design)
     alloy = alloy_named(args.alloy) if args.alloy else design_alloy(design)
     tolerance = args.tolerance or getattr(design.tolerance, parameter)
     force = args.force or design.rating.force
-    value = size(section, args.stiffness, parameter, args.model)
-    ends = [_stiffness_at(section, parameter, value + sign * tolerance, args.model) for sign in (-1, 1)]
+    value = size(section, args.stiffness, parameter, model)
+    ends = [_stiffness_at(section, parameter, value + sign * tolerance, model) for sign in (-1, 1)]
     sized = section.with_(**{parameter: value})
     elastic = bool(strength.elastic(sized, alloy, force))
-    per_cut = (
-        strain.peak(sized, force, args.model),
-        strain.gauge(sized, force, design.gauge.grid_length, args.model),
-    )
+    per_cut = (strain.peak(sized, force, model), strain.gauge(sized, force, design.gauge.grid_length, model))
     yields_at = float(strength.yield_force(sized, alloy))
-    error = float(expected_error_of(sized, args.model))
+    error = float(expected_error_of(sized, model))
     return {
-        "model": args.model,
+        "model": model,
         "solved": parameter,
         "value": value,
         "tolerance": tolerance,
-        "stiffness": float(ladder.stiffness(sized, args.model)),
+        "stiffness": float(ladder.stiffness(sized, model)),
         "expected_error": error if math.isfinite(error) else None,
         "stiffness_interval": sorted(ends),
         "section": {
@@ -153,8 +176,8 @@ def _stiffness_at(section: HingeSection, parameter: str, value: float, model: st
 
 def _section(args: argparse.Namespace, design: Design) -> HingeSection:
     """The design's element with what the options change, at the asked load arm."""
-    from tactcad.parts.hinge_section import own_parameters, shared_parameters
-    from tactcad.parts.layout import Layout
+    from tactcad.parts.array.hinge_section import own_parameters, shared_parameters
+    from tactcad.parts.array.layout import Layout
 
     layout = Layout(design)
     e = design.element

@@ -5,6 +5,8 @@ from __future__ import annotations
 import argparse
 import sys
 
+from .parser import add_needless_allowance, allowance
+
 EXAMPLES = """\
   tactcad calibrate hardware/examples/calibration.csv --out calibration.csv
   tactcad stiffness hardware/examples/grasp.csv --calibration calibration.csv
@@ -57,19 +59,24 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "modulus is printed too",
     )
     parser.add_argument("--json", action="store_true", help="print as JSON")
+    add_needless_allowance(parser)
 
 
 def run(args: argparse.Namespace) -> int:
+    from tactcad.design.family import family_of
     from tactcad.design.load import DEFAULT_DESIGN
-    from tactcad.lab import calibration_text, grasp, grasp_text, pads, readings
+    from tactcad.lab import calibration_file, grasp, pads, readings
     from tactcad.parts.designs import load
 
-    from .progress import slow_work
+    from .streams import slow_work
 
-    known = calibration_text.read(args.calibration)
+    allowance(args)
+    known = calibration_file.read(args.calibration)
     results: list[grasp.Grasp] = []
     source = args.design or DEFAULT_DESIGN
     design = load(source)
+    family = family_of(design)
+    readings_of = family.must("readings", "stiffness --design")
     unit = None
     if args.thickness is not None:
         unit = pads.stiffness_per_modulus(design, args.thickness, "--thickness")
@@ -85,9 +92,9 @@ def run(args: argparse.Namespace) -> int:
                     reference=args.reference,
                     level=args.level,
                     coupling=pads.coupling(source, g, args.coupling),
-                    overload_force=design.rating.overload_force,
-                    elements=sum(map(len, design.array.row_arms)),
+                    overload_force=readings_of.overload(design),
+                    elements=len(family.layout(design).elements),
                 )
             )
-    sys.stdout.write((grasp_text.to_json if args.json else grasp_text.to_text)(results, args.level, unit))
+    sys.stdout.write((grasp.to_json if args.json else grasp.to_text)(results, args.level, unit))
     return 0

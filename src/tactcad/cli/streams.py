@@ -1,4 +1,5 @@
-"""Standard output and standard error that let the work go on when their readers are gone."""
+"""Standard output and standard error: the work goes on when their readers are gone, and progress is one
+moving line on a terminal, plain lines in a log."""
 
 from __future__ import annotations
 
@@ -6,6 +7,9 @@ import io
 import os
 import select
 import sys
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from typing import Any, TextIO
 
 
@@ -64,3 +68,62 @@ def _lossy(stream: TextIO) -> tuple[io.TextIOWrapper, Lossy]:
     file = Lossy(stream.fileno())
     buffered: Any = io.BufferedWriter(file)  # the type stub requires more of a raw file than is used
     return io.TextIOWrapper(buffered, stream.encoding, "backslashreplace", line_buffering=at_once), file
+
+
+SILENT = 2.0  # s; shorter work shows no progress
+
+
+class Terminal:
+    """A line that is written over, with lines worth keeping above it."""
+
+    def __init__(self, stream: TextIO) -> None:
+        self.stream = stream
+
+    def line(self, text: str) -> None:
+        self.stream.write(f"\r\x1b[K{text}\n")
+        self.stream.flush()
+
+    def step(self, done: int, total: int, text: str) -> None:
+        bar = "#" * round(20 * done / max(total, 1))
+        end = "\r\x1b[K" if done == total else f"\r\x1b[K[{bar:20}] {done}/{total} {text[:50]}"
+        self.stream.write(end)
+        self.stream.flush()
+
+
+class Log:
+    """Plain lines, one for every piece of work."""
+
+    def __init__(self, stream: TextIO) -> None:
+        self.stream = stream
+
+    def line(self, text: str) -> None:
+        print(text, file=self.stream, flush=True)
+
+    def step(self, done: int, total: int, text: str) -> None:
+        if done < total:
+            print(f"[{done + 1}/{total}] {text}", file=self.stream, flush=True)
+
+
+def progress(stream: TextIO) -> Terminal | Log:
+    """The kind of progress that suits the stream."""
+    return Terminal(stream) if stream.isatty() else Log(stream)
+
+
+@contextmanager
+def slow_work(stream: TextIO) -> Iterator[Callable[[int, int, str], None]]:
+    """Gives a function to tell each step's (done, total, text); what is told is shown every SILENT seconds
+    only."""
+    shown, told, ended = progress(stream), [(0, 1, "")], threading.Event()
+
+    def show() -> None:
+        while not ended.wait(SILENT):
+            shown.step(*told[-1])
+
+    thread = threading.Thread(target=show, daemon=True)
+    thread.start()
+    try:
+        yield lambda done, total, text: told.__setitem__(-1, (done, total, text))
+    finally:
+        ended.set()
+        thread.join()
+        shown.step(1, 1, "")  # on a terminal the line is removed

@@ -11,8 +11,7 @@ from typing import TYPE_CHECKING
 from tactcad.design.extras import refuse_missing
 from tactcad.design.messages import CheckFailure, InputError
 
-from .allowed import add_allowance, allowance
-from .parser import add_json
+from .parser import add_allowance, add_json, allowance
 
 if TYPE_CHECKING:
     from tactcad.design.allowance import Picked
@@ -74,7 +73,7 @@ def _sweep(args: argparse.Namespace) -> int:
     from tactcad.sweep.run_sweep import sweep
     from tactcad.sweep.study import CHECKS, EXPORT, read_study
 
-    from .progress import progress, slow_work
+    from .streams import progress, slow_work
 
     if len(args.study) > 1:
         raise InputError("STUDY.toml", "more than one", value=args.study[1], legal="one study, or plot DIR")

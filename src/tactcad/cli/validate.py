@@ -36,7 +36,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     from tactcad.design.files import refuse_overwriting
     from tactcad.design.load import find
-    from tactcad.export.publication import turn
+    from tactcad.export.publication import replacing
     from tactcad.paper import array_model as array
     from tactcad.paper import published, validation
     from tactcad.parts.designs import load
@@ -44,7 +44,7 @@ def run(args: argparse.Namespace) -> int:
 
     if args.out:
         refuse_overwriting(args.out, args.table1, args.table2, find(args.design))
-    with turn(args.out, report.SCHEMA, args.others) if args.out else nullcontext() as work:
+    with replacing(args.out, report.SCHEMA, args.others) if args.out else nullcontext() as work:
         data = published.load(args.table1, args.table2)
         made = validation.validate(data, array.from_design(load(args.design)))
         as_json = report.to_json(made)

@@ -31,12 +31,11 @@ def run(args: argparse.Namespace) -> int:
     from tactcad.design.load import find
     from tactcad.export.shapes import Shapes
     from tactcad.parts.designs import load
-    from tactcad.review.live import POLL, Live, load_kernel
-    from tactcad.review.live_server import LiveServer
+    from tactcad.review.live import POLL, Live, LiveServer, load_kernel
+    from tactcad.review.review_page import viewer_library
     from tactcad.review.subject import shapes_of
-    from tactcad.review.viewer_library import viewer_library
 
-    from .progress import progress
+    from .streams import progress
 
     say = progress(sys.stderr)
     path, library = find(args.design), viewer_library()

@@ -10,18 +10,19 @@ from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 
 from .messages import CheckFailure, InputError
-from .plain_numbers import as_number
+from .text_values import as_number
 
 LONGEST = 1e9  # s, thirty years
 
 
 @dataclass(frozen=True)
 class Grade:
-    """A way of answering: its name, the largest relative error it promises, and the seconds it is to take."""
+    """A way of answering: its name, the largest relative error it promises, and the seconds it is to take,
+    None if it answers at once."""
 
     name: str
     error: float
-    seconds: float
+    seconds: float | None
 
 
 @dataclass(frozen=True)
@@ -113,7 +114,7 @@ def pick(grades: Sequence[Grade], asked: Allowance, what: str) -> Picked:
         raise CheckFailure(
             f"nothing keeps {what} within {percent(asked.within)}: the best is {_whole(steps[-1])}"
         )
-    in_time = [g for g in steps if asked.seconds is None or g.seconds <= asked.seconds]
+    in_time = [g for g in steps if asked.seconds is None or (g.seconds or 0.0) <= asked.seconds]
     possible = [g for g in good if g in in_time]
     if not possible:
         raise CheckFailure(_too_short(asked, what, good[0], in_time))
@@ -139,7 +140,8 @@ def _too_short(asked: Allowance, what: str, needed: Grade, in_time: Sequence[Gra
     of = "" if asked.within is None else f" for {what} within {percent(asked.within)}"
     best = f"; in {asked.seconds:g} s at best {_whole(in_time[-1])}" if in_time else ""
     return (
-        f"{asked.seconds:g} s are too short{of}: needs about {needed.seconds:.4g} s ({_whole(needed)}){best}"
+        f"{asked.seconds:g} s are too short{of}: needs about {needed.seconds or 0.0:.4g} s "
+        f"({_whole(needed)}){best}"
     )
 
 
@@ -148,4 +150,5 @@ def _whole(grade: Grade) -> str:
 
 
 def _promise(grade: Grade) -> str:
-    return f"{percent(grade.error)} in about {seconds_text(grade.seconds)}"
+    time = "" if grade.seconds is None else f" in about {seconds_text(grade.seconds)}"
+    return percent(grade.error) + time

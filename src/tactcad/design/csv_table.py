@@ -21,7 +21,8 @@ import numpy as np
 
 from tactcad.design.files import read_text
 from tactcad.design.messages import InputError
-from tactcad.design.plain_numbers import as_number
+
+from .text_values import as_number
 
 LARGEST_FILE = 100_000_000  # bytes; a million lines of readings are 35 MB
 COMMENT = re.compile(r"\s*#(?!N/A|DIV/0!|VALUE!|REF!|NAME\?|NUM!|NULL!)")  # no spreadsheet's error value

@@ -1,12 +1,22 @@
-"""A design as the text of a design file: what `load.parse` reads back as the same design."""
+"""A design as the text of a design file: what `load.parse` reads back as the same design, and that of another
+one under a new name, to start from.
+"""
 
 from __future__ import annotations
 
 import dataclasses
 import json
+import os
+import re
+from datetime import date
+from pathlib import Path
 from typing import Any
 
-from .tree import Design
+from .files import read_text
+from .load import MOST_BYTES, find, names, parse
+from .messages import InputError
+from .text_values import parse_toml
+from .tree import Design, Identity
 
 
 def design_text(design: Design, heading: str = "") -> str:
@@ -48,3 +58,85 @@ def _text(value: Any) -> str:
     if isinstance(value, tuple):
         return "[" + ", ".join(_text(v) for v in value) + "]"
     return repr(value)
+
+
+def name_of(path: Path) -> str:
+    """The name of the design that a new file `path` is to hold: the file's own, without .toml.
+
+    Raises InputError where the file is there, is no .toml, or its name is not a design's or is taken.
+    """
+    if os.path.lexists(path):
+        raise InputError(str(path), "is there already; nothing was changed", legal="the name of a new file")
+    if path.suffix != ".toml":
+        raise InputError(str(path), "not a design file's name", legal="NAME.toml")
+    name = Identity.__dataclass_fields__["name"].metadata["spec"].read(path.stem, str(path))
+    if name in names():
+        raise InputError(
+            str(path),
+            "there is a named design of this name, and exports and part numbers start with it",
+            value=name,
+            legal=f"a name other than {', '.join(names())}",
+        )
+    return name
+
+
+def started(source: str, name: str, today: date) -> str:
+    """The text of a design under another name, its comments and origins kept; its title is left out, so that
+    it follows the array, which is about to be another.
+
+    Parameters
+    ----------
+    source
+        The design to start from: a path, or a name in hardware/.
+    name
+        Of the new design.
+    today
+        Its date; its revision is A.
+
+    Raises
+    ------
+    InputError
+        Where the source is no design, or its [design] is not written a value a line.
+    """
+    text = read_text(find(source), MOST_BYTES, "a design file (TOML)").replace("\r\n", "\n")
+    old, revision = parse_toml(text, source), parse(text, source).design.revision
+    values = {"name": name, "revision": "A", "date": today.isoformat()}
+    origins = {key: f"chosen: tactcad new, from {source} revision {revision}" for key in values}
+    origins = {f"design.{k}": v for k, v in origins.items() if f"design.{k}" in old.get("origin", {})}
+    new = _with_values(_without(text, "design", "title"), "design", values)
+    new = _with_values(_without(new, "origin", "design.title"), "origin", origins)
+    new = f"# {name}: started from {source}, revision {revision}, by `tactcad new`.\n{new}"
+    wanted = old | {"design": {k: v for k, v in old["design"].items() if k != "title"} | values}
+    if "origin" in old:
+        wanted["origin"] = {k: v for k, v in old["origin"].items() if k != "design.title"} | origins
+    if parse_toml(new, source) != wanted:  # inline tables, dotted keys: legal, but nothing to edit by lines
+        raise InputError(
+            source, "[design] cannot be renamed", legal='lines like `name = "..."` below [design]'
+        )
+    return new
+
+
+def _without(text: str, table: str, name: str) -> str:
+    """TOML text without a key that stands on a line of its own below [table]."""
+    here, lines = "", []
+    for line in text.split("\n"):
+        if header := re.match(r"\s*\[\s*([^\[\]]+?)\s*\]", line):
+            here = header[1]
+        key = re.match(r'\s*"?([\w.-]+)"?\s*=', line)
+        if not (here == table and key and key[1] == name):
+            lines.append(line)
+    return "\n".join(lines)
+
+
+def _with_values(text: str, table: str, values: dict[str, str]) -> str:
+    """TOML text with other values of keys that stand a line each below [table]."""
+    here, lines = "", []
+    for line in text.split("\n"):
+        if header := re.match(r"\s*\[\s*([^\[\]]+?)\s*\]", line):
+            here = header[1]
+        key = re.match(r'\s*"?([\w.-]+)"?\s*=\s*', line)
+        if here == table and key and key[1] in values:
+            comment = re.search(r"\"\s*(#.*)$", line)
+            line = f"{key[0]}{json.dumps(values[key[1]])}" + (f"  {comment[1]}" if comment else "")
+        lines.append(line)
+    return "\n".join(lines)

@@ -7,11 +7,12 @@ import datetime
 import re
 from dataclasses import dataclass
 from math import isfinite
-from typing import Any
+from typing import Any, TypeVar
 
 from .messages import InputError, hidden, in_brackets, near, visible
 
 REQUIRED = object()
+T = TypeVar("T")
 
 
 @dataclass(frozen=True)
@@ -252,3 +253,16 @@ def given(spec: Spec, default: Any = REQUIRED, derived: str = "") -> Any:
     if default is REQUIRED:
         return dataclasses.field(metadata=metadata)
     return dataclasses.field(default=default, metadata=metadata)
+
+
+def present(value: T | None) -> T:
+    """An optional table or value of a design that earlier code has ensured to be there: for the type checker,
+    not for input.
+
+    Raises
+    ------
+    TypeError : it is not there.
+    """
+    if value is None:
+        raise TypeError("a value of the design that is needed here was left out of it")
+    return value

@@ -9,7 +9,6 @@ from __future__ import annotations
 import errno
 import json
 import os
-import signal
 import stat
 import tempfile
 from collections.abc import Iterator
@@ -19,10 +18,10 @@ from math import isfinite
 from pathlib import Path
 from typing import Any, NoReturn
 
-from tactcad.ending import SAID, unfinished
+from tactcad.shutdown import unfinished
 
-from .held import held_file, held_folder, sweep_folders
 from .messages import CheckFailure, InputError, hidden, shortened
+from .staging import staged_file, staged_folder
 
 PIECE = 1 << 20  # bytes read at once
 
@@ -33,6 +32,7 @@ REFUSED_BY_MACHINE = NO_ROOM | {
     errno.EPERM,
     errno.EROFS,
     errno.EEXIST,
+    errno.ENOTEMPTY,
     errno.ENOTDIR,
     errno.EISDIR,
     errno.ENOENT,
@@ -196,7 +196,7 @@ def whole_file(path: str | Path) -> Iterator[Path]:
     with in_one_line(path):
         place = Path(os.path.realpath(path))
         mode = _mode(path, place)
-        with held_file(place) as part:
+        with staged_file(place) as part:
             yield part
             flush_entry(part)
             part.chmod(mode)
@@ -229,16 +229,6 @@ def refuse_link(path: str | Path) -> None:
         )
 
 
-@contextmanager
-def no_signals() -> Iterator[None]:
-    """Signals that end the program wait until the block has ended."""
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, SAID)
-    try:
-        yield
-    finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)
-
-
 def flush_entry(path: Path) -> None:
     """Write the content of the file or folder to the disk."""
     handle = os.open(path, os.O_RDONLY)
@@ -254,14 +244,10 @@ def scratch_folder(purpose: str) -> Iterator[Path]:
 
     Raises as `whole_file` does.
     """
-    stem = f"tactcad-{purpose}"
     with in_one_line("temporary folder"):
         parent = absolute(tempfile.gettempdir())
-    with in_one_line(parent):
-        with suppress(OSError):  # a killed run's helper may still write there: the next run sweeps
-            sweep_folders(parent, stem)
-        with held_folder(parent, stem) as folder:
-            yield folder
+    with in_one_line(parent), staged_folder(parent, f"tactcad-{purpose}") as folder:
+        yield folder
 
 
 def refuse_overwriting(out: str | Path, *inputs: str | Path | None, option: str = "--out") -> None:

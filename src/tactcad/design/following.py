@@ -1,4 +1,4 @@
-"""What follows the array where the design leaves it out: its title, sizes of its rigs.
+"""What follows the array where the design leaves it out: title, tolerances of the sheet, rigs' sizes.
 
 Each size is the published set-up's as long as the array is no longer than the published one.
 """
@@ -9,7 +9,8 @@ from dataclasses import replace
 from math import ceil
 from typing import Any
 
-from .tree import Array, Element, Sheet
+from .materials import ALLOYS, LOT_SPREAD, sheet_tolerance
+from .tree import Array, Element, Sheet, SheetMaterial
 
 # The published set-up, mm and N; the cart is chosen around its sample.
 SIDE, LENGTH, WIDTH, WHEEL_BASE, VACUUM, RINGS = 32.0, 70.0, 50.0, 50.0, 26.0, 3
@@ -29,6 +30,7 @@ def followed(values: dict[str, Any]) -> dict[str, Any]:
     sample, grasping = values.get("sample"), values.get("grasping")
     done = dict(values)
     done["design"] = _filled(done["design"], title=_title(array))
+    done["tolerance"] = _filled(done["tolerance"], **_as_bought(done["material"], sheet))
     if sample is not None:
         sample = done["sample"] = _filled(sample, side=_side(array, sheet, element))
         more = max(sample.side - SIDE, 0.0)
@@ -47,6 +49,15 @@ def followed(values: dict[str, Any]) -> dict[str, Any]:
 
 def _filled(table: Any, **left_out: float | str) -> Any:
     return replace(table, **{name: v for name, v in left_out.items() if getattr(table, name) is None})
+
+
+def _as_bought(material: SheetMaterial, sheet: Sheet) -> dict[str, float]:
+    """What the sheet may differ by: Young's modulus and thickness."""
+    row = ALLOYS.get(material.alloy)
+    return {
+        "youngs_modulus": row.spread["youngs_modulus"] if row else LOT_SPREAD,
+        "sheet_thickness": sheet_tolerance(sheet.thickness, material.density),
+    }
 
 
 def _title(array: Array) -> str:

@@ -9,15 +9,13 @@ import typing
 from pathlib import Path
 from typing import Any
 
+from .family import all_families, family_with, section_types
 from .fields import Number, shown_text
 from .files import read_text
-from .following import followed
-from .materials import ALLOYS, LOT_SPREAD, completed
+from .materials import completed
 from .messages import InputError, nearest, one_of
-from .plain_numbers import as_number
-from .stock import sheet_tolerance
-from .toml_text import parse_toml
-from .tree import Design, Element, Hinge, Sheet, SheetMaterial, Stop, Tolerance
+from .text_values import as_number, parse_toml
+from .tree import CommonTables, Design, Element, Hinge, SheetMaterial, Stop
 
 # A design is a page of text; a larger file is a mistake or an attack, and is refused without parsing.
 MOST_BYTES = 1_000_000
@@ -77,39 +75,36 @@ def parse(text: str, where: str) -> Design:
 
 def from_table(table: dict[str, Any]) -> Design:
     """Read a design from the nested dict that TOML gives."""
-    sections = {f.name: f for f in dataclasses.fields(Design)}
+    family = family_with(table)
     for name, value in table.items():
-        if name not in sections:
+        if name not in (*family.tables, "origin"):
             if name in OTHER_FILES:
                 raise InputError(name, "is a table of no design file", legal=f"a design; {OTHER_FILES[name]}")
-            raise unknown_field(name, list(sections))
+            if of := [f.name for f in all_families().values() if name in f.tables]:
+                raise InputError(name, f"is a table of {' and '.join(of)}; the others are of {family.name}")
+            raise unknown_field(name, [*family.tables, "origin"])
         if not isinstance(value, dict):
             raise InputError(name, "not a table", value=value, legal=f"a table [{name}]")
     values = {}
-    for name, section in sections.items():
+    for section in dataclasses.fields(family.spec):
+        name = section.name
         if name == "origin":
             continue
-        kind = SECTION_TYPES[name]
         if name not in table and section.default is dataclasses.MISSING:
             raise InputError(name, "missing table", legal=f"a table [{name}]")
         if name not in table and section.default is None:
             continue  # a rig that this design does not have
-        values[name] = read_table(kind, table.get(name, {}), name)
+        values[name] = read_table(family.tables[name], table.get(name, {}), name)
     values["material"] = _material(values["material"])
-    values["tolerance"] = _tolerance(values["tolerance"], values["material"], values["sheet"])
-    design = Design(**followed(values), origin={})
+    design = family.spec(**family.spec.completed(values), origin={})
     design = dataclasses.replace(design, origin=_origins(table.get("origin", {}), design))
     _ = design.differences  # refuses values that are not those of the material's name
-    return design
+    return typing.cast(Design, design)
 
 
 SCHEMA = "tactcad schema"  # prints every field
 OTHER_FILES = {"target": "a target is for `tactcad design`", "study": "a study is for `tactcad sweep`"}
-SECTION_TYPES = {
-    # a rig's table is `Kind | None`; the kind is its first argument
-    name: (typing.get_args(hint) or (hint,))[0]
-    for name, hint in typing.get_type_hints(Design).items()
-}
+SECTION_TYPES = section_types(Design)  # of facing rows
 
 
 def read_table(kind: type, table: dict[str, Any], path: str) -> Any:
@@ -170,17 +165,7 @@ def _material(given: SheetMaterial) -> SheetMaterial:
     return SheetMaterial(**completed(given.alloy, vars(given)))
 
 
-def _tolerance(given: Tolerance, material: SheetMaterial, sheet: Sheet) -> Tolerance:
-    """[tolerance], completed with what the sheet as bought may differ by: Young's modulus and thickness."""
-    row = ALLOYS.get(material.alloy)
-    bought = {
-        "youngs_modulus": row.spread["youngs_modulus"] if row else LOT_SPREAD,
-        "sheet_thickness": sheet_tolerance(sheet.thickness, material.density),
-    }
-    return dataclasses.replace(given, **{n: v for n, v in bought.items() if getattr(given, n) is None})
-
-
-def _origins(table: dict[str, Any], design: Design) -> dict[str, str]:
+def _origins(table: dict[str, Any], design: CommonTables) -> dict[str, str]:
     """[origin]: the source of a value by its path, as "element.pad_length" or nested tables."""
     flat: dict[str, str] = {}
     stack = [("", table)]
@@ -199,7 +184,7 @@ def _origins(table: dict[str, Any], design: Design) -> dict[str, str]:
     return dict(sorted(flat.items()))
 
 
-def paths(design: Design) -> dict[str, Any]:
+def paths(design: CommonTables) -> dict[str, Any]:
     """Every value of a design by its dotted path, as in messages and in [origin]."""
     flat: dict[str, Any] = {}
 
@@ -213,7 +198,7 @@ def paths(design: Design) -> dict[str, Any]:
         else:
             flat[prefix] = value
 
-    for f in dataclasses.fields(Design):
+    for f in dataclasses.fields(design):
         if f.name != "origin":
             add(f.name, getattr(design, f.name))
     return flat
@@ -233,6 +218,6 @@ def unknown_field(path: str, known: list[str], schema: str = SCHEMA) -> InputErr
 
 def _elsewhere(name: str) -> str:
     """The first field of another table that is called so, or begins so; "" where none does."""
-    kinds = ((table, kind) for table, kind in SECTION_TYPES.items() if table != "origin")
-    every = ((table, f.name) for table, kind in kinds for f in dataclasses.fields(kind))
+    kinds = {table: kind for family in all_families().values() for table, kind in family.tables.items()}
+    every = ((table, f.name) for table, kind in kinds.items() for f in dataclasses.fields(kind))
     return next((f"{t}.{n}" for t, n in every if f"{n}_".startswith(f"{name}_")), "")

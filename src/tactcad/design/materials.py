@@ -1,5 +1,5 @@
-"""Materials of the sensing element: the table of those known by name, and how a design's own values differ
-from it.
+"""Materials of the sensing element: the table of those known by name, how a design's own values differ from
+it, and what a sheet's thickness may differ by where the design does not say.
 """
 
 from __future__ import annotations
@@ -7,19 +7,22 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cache
 from math import isclose
 from pathlib import Path
 from typing import Any
 
-from .data_table import data_rows
+from .fields import present
 from .messages import InputError, in_brackets, near, one_of
-from .present import present
+from .text_values import data_rows
 
 # A value that differs by more than this from the named material's belongs to another material.
 MOST_DIFFERENCE = 0.10
 # Young's modulus of a lot about its material's, relative, where a label of its own has no row: chosen, as
 # the widest of the wrought alloys but the cold-rolled.
 LOT_SPREAD = 0.02
+# mm, plus and minus, of sheet that EN 485-4 does not hold for; chosen: measure it.
+OTHER_SHEET = 0.1
 # Properties that a design may give, by the table's columns; a material of one's own may lack the OPTIONAL
 # ones.
 PROPERTIES = ("youngs_modulus", "poisson", "density", "yield_strength", "fatigue_strength")
@@ -110,8 +113,6 @@ def _alloy(row: dict[str, str]) -> Alloy:
 
 
 ALLOYS = _table()
-
-
 # What the water of a wire-cutting machine does to a metal that its supply makes the anode; trade practice,
 # not measured. A supply without mean voltage (anti-electrolysis) prevents it.
 ELECTROLYSIS = {"aluminium": "pits", "titanium": "discolours", "steel": "rusts", "copper": "tarnishes"}
@@ -205,3 +206,16 @@ def differences(name: str, given: Mapping[str, Any], origin: Mapping[str, str]) 
             )
         differing.append(difference)
     return tuple(differing)
+
+
+def sheet_tolerance(thickness: float, density: float) -> float:
+    """Plus and minus mm of a rolled sheet (mm) of that density (kg/m3): EN 485-4 where that is aluminium."""
+    if family(density) != "aluminium":
+        return OTHER_SHEET
+    return next(tolerance for to, tolerance in _rows() if thickness <= to)
+
+
+@cache
+def _rows() -> tuple[tuple[float, float], ...]:
+    rows = data_rows(Path(__file__).parent / "data" / "sheet_thickness.csv")
+    return tuple((float(row["to"]), float(row["tolerance"])) for row in rows)

@@ -6,9 +6,9 @@ import dataclasses
 import textwrap
 from typing import Any
 
+from .family import Family, all_families, optional_tables
 from .fields import Spec
-from .load import SECTION_TYPES
-from .tree import Design, Element, Hinge
+from .tree import CommonTables, Element, Hinge
 
 _TEXT_ORIGIN = (
     '[origin] holds the source of any value by its path, as "element.pad_length" = "paper: 2 x 3 mm2".'
@@ -40,14 +40,21 @@ def text_schema() -> str:
         "Lengths in mm, forces in N, stresses in MPa, density in kg/m3 unless a field says otherwise.",
         "",
     ]
-    optional = {f.name for f in dataclasses.fields(Design) if f.default is None}
-    for name, kind in SECTION_TYPES.items():
-        if name == "origin":
-            continue
-        lines += table_text(name, kind, optional=name in optional)
-        if kind is Element:
-            lines += table_text("element.override.N", Hinge, optional=True)
+    for family in all_families().values():
+        optional = optional_tables(family.spec)
+        if lines[2:]:
+            lines += [f"Tables of {family.name}, besides those of every family:", ""]
+        for name, kind in _own(family, first=not lines[2:]).items():
+            lines += table_text(name, kind, optional=name in optional)
+            if kind is Element:
+                lines += table_text("element.override.N", Hinge, optional=True)
     return "\n".join([*lines, *textwrap.wrap(_TEXT_ORIGIN, 100)])
+
+
+def _own(family: Family, first: bool) -> dict[str, type]:
+    """Tables of the first family; of another those that only it has."""
+    common = () if first else tuple(f.name for f in dataclasses.fields(CommonTables))
+    return {name: kind for name, kind in family.tables.items() if name not in common}
 
 
 def table_text(name: str, kind: type, optional: bool) -> list[str]:
@@ -61,8 +68,10 @@ def table_text(name: str, kind: type, optional: bool) -> list[str]:
 
 def markdown_schema() -> str:
     """The same as `text_schema` with a section and a table of fields for every table of the file."""
-    optional = {f.name for f in dataclasses.fields(Design) if f.default is None}
-    tables = [(name, kind, name in optional) for name, kind in SECTION_TYPES.items() if name != "origin"]
+    tables: list[tuple[str, type, bool]] = []
+    for family in all_families().values():
+        optional = optional_tables(family.spec)
+        tables += [(name, kind, name in optional) for name, kind in _own(family, not tables).items()]
     tables.insert([kind for _, kind, _ in tables].index(Element) + 1, ("element.override.N", Hinge, True))
     lines = []
     for name, kind, may_be_left_out in tables:
@@ -76,30 +85,33 @@ def markdown_schema() -> str:
 
 
 def json_schema() -> dict[str, Any]:
-    """JSON Schema (2020-12) of the design file."""
-    tables = {name: table_schema(kind) for name, kind in SECTION_TYPES.items() if name != "origin"}
-    override = {
-        "type": "object",
-        "patternProperties": {"^[1-9][0-9]{0,3}$": table_schema(Hinge)},
-        "additionalProperties": False,
-    }
-    tables["element"]["properties"]["override"] = override
-    gaps = tables["stop"]["properties"]["gaps"]
-    tables["stop"]["properties"]["gaps"] = {"type": "object", "additionalProperties": gaps}
-    tables["origin"] = {"type": "object"}
-    required = [
-        f.name
-        for f in dataclasses.fields(Design)
-        if f.default is dataclasses.MISSING and f.default_factory is dataclasses.MISSING
-    ]
+    """JSON Schema (2020-12) of the design file, of whichever family."""
+    files = [_file_schema(family) for family in all_families().values()]
     return {
         "$schema": "https://json-schema.org/draft/2020-12/schema",
         "title": "tactcad design file",
-        "type": "object",
-        "properties": tables,
-        "required": required,
-        "additionalProperties": False,
+        **(files[0] if len(files) == 1 else {"anyOf": files}),
     }
+
+
+def _file_schema(family: Family) -> dict[str, Any]:
+    tables = {name: table_schema(kind) for name, kind in family.tables.items()}
+    if family.tables.get("element") is Element:
+        override = {
+            "type": "object",
+            "patternProperties": {"^[1-9][0-9]{0,3}$": table_schema(Hinge)},
+            "additionalProperties": False,
+        }
+        tables["element"]["properties"]["override"] = override
+        gaps = tables["stop"]["properties"]["gaps"]
+        tables["stop"]["properties"]["gaps"] = {"type": "object", "additionalProperties": gaps}
+    tables["origin"] = {"type": "object"}
+    required = [
+        f.name
+        for f in dataclasses.fields(family.spec)
+        if f.default is dataclasses.MISSING and f.default_factory is dataclasses.MISSING
+    ]
+    return {"type": "object", "properties": tables, "required": required, "additionalProperties": False}
 
 
 def table_schema(kind: type) -> dict[str, Any]:

@@ -2,7 +2,7 @@
 
 Lengths in mm, forces in N, stresses in MPa, density in kg/m3. Frame: x from the middle line between the rows
 along the arms, y along the row, z = 0 on the elements' flat (gauge) face, + away from the object. A default
-of None is derived from other fields (parts/layout.py says how).
+of None is derived from other fields (parts/array/layout.py says how).
 """
 
 from __future__ import annotations
@@ -11,10 +11,9 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from .fields import Day, Number, NumberRows, Numbers, OneOf, TextLine, given
-from .materials import ALLOYS, LOT_SPREAD, MAGNETIC, PLATE_ALLOYS, Difference, differences
+from .materials import ALLOYS, LOT_SPREAD, MAGNETIC, OTHER_SHEET, PLATE_ALLOYS, Difference, differences
 from .rigs import Bonding, Calibration, Cart, Grasping, Holder, Sample
 from .sensing import Readout, StrainGauge, Wiring
-from .stock import OTHER_SHEET
 
 # Without control characters, line ends, characters that turn the direction of text, and those that XML (SVG)
 # cannot hold.
@@ -288,11 +287,38 @@ class Rating:
 
 
 @dataclass(frozen=True)
-class Design:
-    """A whole design file."""
+class CommonTables:
+    """Tables that the design file of every family has (family.py); a family's own class adds its own."""
 
     design: Identity
     material: SheetMaterial
+    origin: dict[str, str] = field(default_factory=dict, kw_only=True)
+
+    @classmethod
+    def completed(cls, tables: dict[str, Any]) -> dict[str, Any]:
+        """The tables as read, with what they leave out and others decide."""
+        return tables
+
+    @property
+    def name(self) -> str:
+        return self.design.name
+
+    @property
+    def differences(self) -> tuple[Difference, ...]:
+        """Differences between the material and the table's row of its name; see `materials.differences`."""
+        return differences(self.material.alloy, vars(self.material), self.origin)
+
+    @property
+    def stiffness_factor(self) -> float | None:
+        """Stiffness with the table's Young's modulus over that with the design's: the ratio of the moduli,
+        since the elements are linear; None where the design has the table's."""
+        return next((d.table / d.value for d in self.differences if d.name == "youngs_modulus"), None)
+
+
+@dataclass(frozen=True)
+class Design(CommonTables):
+    """A whole design file of facing rows."""
+
     sheet: Sheet
     array: Array
     element: Element
@@ -310,19 +336,9 @@ class Design:
     sample: Sample | None = None
     grasping: Grasping | None = None
     bonding: Bonding | None = None
-    origin: dict[str, str] = field(default_factory=dict)
 
-    @property
-    def name(self) -> str:
-        return self.design.name
+    @classmethod
+    def completed(cls, tables: dict[str, Any]) -> dict[str, Any]:
+        from .following import followed
 
-    @property
-    def differences(self) -> tuple[Difference, ...]:
-        """Differences between the material and the table's row of its name; see `materials.differences`."""
-        return differences(self.material.alloy, vars(self.material), self.origin)
-
-    @property
-    def stiffness_factor(self) -> float | None:
-        """Stiffness with the table's Young's modulus over that with the design's: the ratio of the moduli,
-        since the elements are linear; None where the design has the table's."""
-        return next((d.table / d.value for d in self.differences if d.name == "youngs_modulus"), None)
+        return followed(tables)

@@ -12,11 +12,11 @@ from collections.abc import Sequence
 from html import escape
 from math import ceil
 
+from tactcad.design.family import family_of
 from tactcad.design.tree import Design
-from tactcad.parts import seating
-from tactcad.parts.description import Part, Vector
-from tactcad.parts.layout import Layout
-from tactcad.parts.library.screws import METRIC
+from tactcad.parts.array import seating
+from tactcad.parts.language.description import Part, Vector
+from tactcad.parts.language.metric import METRIC
 from tactcad.scenes.scene import Placement, Scene, Step
 
 from .engine.boxes import Box, bounds, bounds_of, corners
@@ -93,7 +93,7 @@ def _coming(scene: Scene, step: Step) -> tuple[Placement, ...]:
 def torque(part: Part, design: Design) -> float | None:
     """Tightening torque of a screw or nut, N m; None for other parts, 0 for a set screw that only touches."""
     if part.kind == "set screw":
-        return seating.torque(Layout(design))
+        return seating.torque(family_of(design).layout(design))
     return METRIC[part.thread].torque if part.thread else None
 
 

@@ -1,44 +1,49 @@
-"""Bytes by key, kept from run to run; every entry is verified when it is read.
+"""Bytes by key, kept from run to run; every entry is verified when it is read, and all may be deleted.
 
 The key contains everything that the bytes depend on (see inputs.py), so an entry is never out of date, only
-absent. An entry is one file: a header line with the digest of key and bytes, then the bytes; name and digest
-are keyed with a secret that is stored beside the entries and readable by its owner only. Entries that were
-truncated, altered, made without the secret or put under another key are reported, removed and built again.
+absent. An entry is one file named by the key's digest: a line with the digest of key and bytes, then the
+bytes. Entries that were truncated, altered or put under another key are reported, removed and built again.
 
 The folder is one that tactcad made or found empty, and marked; any other is refused, and in its own only
-regular files with the names of entries are read or removed. The cache is optional: where it cannot be written
-the work is done without it. At the end of an export the least recently used entries beyond a bound are
-removed.
+files with the names of entries are removed. The cache is optional: where it cannot be written the work is
+done without it. At the end of an export the least recently used entries beyond a bound are removed.
 """
 
 from __future__ import annotations
 
-import fcntl
-import hmac
 import os
 import re
-import stat
 import sys
-import tempfile
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
 
+from tactcad.design.files import read_bytes
 from tactcad.design.messages import InputError
-from tactcad.ending import unfinished
+from tactcad.design.staging import remove_left, staged_file
 
-FORMAT = b"tactcad-cache-2"
+from .contents import sha256_of
+
 # All designs in hardware/ take 50 MB a revision: room for ten revisions, little for a disk.
 MOST_BYTES = 500_000_000
-UNFINISHED = ".new-"
+LIBRARIES = "libraries"
 
 # bford.info/cachedir: backup programs skip a folder with such a file
 MARK_NAME = "CACHEDIR.TAG"
 MARK = b"""Signature: 8a477f597d28d172789f06886806bc55
 # Cache of tactcad: everything in this folder may be deleted at any time, and tactcad deletes in it.
 """
-SECRET_NAME, SECRET_BYTES = "secret", 32
-LIBRARIES = "libraries"
+
+
+def as_entry(key: str, data: bytes) -> bytes:
+    """The bytes with a line before them, by which `from_entry` verifies them."""
+    return sha256_of(key.encode() + b"\0" + data).encode() + b"\n" + data
+
+
+def from_entry(key: str, entry: bytes) -> bytes | None:
+    """The bytes of an entry; None where it is damaged, or another key's."""
+    data = entry.partition(b"\n")[2]
+    return data if as_entry(key, data) == entry else None
 
 
 class Cache:
@@ -52,63 +57,44 @@ class Cache:
         self, root: Path, say: Callable[[str], None] = lambda text: print(text, file=sys.stderr)
     ) -> None:
         self.root, self.say = root, say
-        self._secret = b""  # empty: nothing is read or kept
-        self._trouble: OSError | None = None  # why, reported at the first use
-        self._complained = False
+        self._ours = self._complained = False
         try:
             root.mkdir(parents=True, exist_ok=True)
             _claim(root)
-            self._secret = _secret(root / SECRET_NAME)
+            self._ours = True
         except OSError as error:
-            self._trouble = error
+            self._complain(error)
 
     def get(self, key: str) -> bytes | None:
         """The bytes kept under the key, None where there are none or they are damaged."""
-        if self._trouble:
-            self._complain(self._trouble)
+        path = self._path(key)
+        if not os.path.lexists(path):
             return None
+        try:
+            data = from_entry(key, read_bytes(path, MOST_BYTES, "an entry of the cache"))
+        except InputError:
+            data = None
+        with suppress(OSError):  # another process removed it, or a folder
+            if data is not None:
+                os.utime(path)  # by which `trim` decides
+            elif os.path.lexists(path):
+                self.say(f"cache: entry {path.name[:12]} is damaged and will be built again")
+                path.unlink()
+        return data
+
+    def put(self, key: str, data: bytes) -> bool:
+        """Keep the bytes under the key, whole or not at all; whether that could be."""
         path = self._path(key)
         try:
-            kept = None if path.parent.is_symlink() else _content(path)
-        except FileNotFoundError:
-            return None
-        except OSError:  # a link, a folder
-            kept = None
-        header, _, data = (kept or b"").partition(b"\n")
-        if hmac.compare_digest(header, self._header(key, data)):
-            return data
-        self.say(f"cache: entry {path.name[:12]} is damaged and will be built again")
-        with suppress(OSError):
-            path.unlink()
-        return None
-
-    def has(self, key: str) -> bool:
-        """Whether something is kept under the key, damaged or not."""
-        return not self._trouble and self._path(key).is_file()
-
-    def put(self, key: str, data: bytes) -> None:
-        """Keep the bytes under the key, whole or not at all."""
-        if self._trouble:
-            return
-        path = self._path(key)
-        try:
-            path.parent.mkdir(exist_ok=True)
-            if path.parent.is_symlink():
-                return  # it leads out of the folder
-            handle, temporary = tempfile.mkstemp(prefix=UNFINISHED, dir=path.parent)
-            try:
-                with unfinished(lambda: os.unlink(temporary)), open(handle, "wb") as file:
-                    fcntl.flock(file, fcntl.LOCK_EX)  # by which `trim` recognises what a killed run left
-                    file.write(self._header(key, data) + b"\n")
-                    file.write(data)
-                    file.flush()
-                    os.replace(temporary, path)  # another process may put the same entry: the last one stays
-            except BaseException:
-                with suppress(OSError):
-                    os.unlink(temporary)
-                raise
+            if self._ours:
+                path.parent.mkdir(exist_ok=True)
+                with staged_file(path) as part:
+                    part.write_bytes(as_entry(key, data))
+                    part.replace(path)  # another process may put the same entry: the last one stays
         except OSError as error:
             self._complain(error)
+            return False
+        return self._ours
 
     def get_or_make(self, key: str, make: Callable[[], bytes]) -> bytes:
         """The bytes kept under the key, or what `make` returns, which is then kept."""
@@ -125,34 +111,39 @@ class Cache:
         Returns how many entries were removed. Another process may read or write meanwhile: it builds again
         what it misses.
         """
-        if self._trouble:
-            return 0
         entries = []
-        for path in _own_files(self.root):
+        for path in self._files():
             with suppress(OSError):  # another process was faster
-                if path.name.startswith(UNFINISHED):
-                    _remove_if_left(path)
+                if path.name.startswith("."):
+                    remove_left(path)
                 else:
-                    state = path.lstat()
+                    state = path.stat()
                     entries.append((state.st_mtime_ns, path.name, state.st_size, path))
         excess, gone = sum(size for _, _, size, _ in entries) - most_bytes, 0
         for _, _, size, path in sorted(entries):
             if excess <= 0:
                 break
-            with suppress(OSError):
-                path.unlink()
-                gone += 1
-            excess -= size
+            path.unlink(missing_ok=True)
+            gone, excess = gone + 1, excess - size
         return gone
 
     def _path(self, key: str) -> Path:
-        name = hmac.digest(self._secret, key.encode(), "sha256").hex()
+        name = sha256_of(key.encode())
         return self.root / name[:2] / name
 
-    def _header(self, key: str, data: bytes) -> bytes:
-        digest = hmac.new(self._secret, key.encode() + b"\0", "sha256")
-        digest.update(data)
-        return b"%s %s" % (FORMAT, digest.hexdigest().encode())
+    def _files(self) -> list[Path]:
+        """Entries, and those that are being written; links are somebody's."""
+        folders = [f for f in self.root.glob("[0-9a-f][0-9a-f]") if self._ours and not f.is_symlink()]
+        files = [file for folder in folders for file in folder.glob("*")]
+        form = re.compile(r"[0-9a-f]{64}|\.[0-9a-f]{64}\.tactcad-.{8}\.part")
+        return [
+            file
+            for file in files
+            if form.fullmatch(file.name)
+            and file.name.lstrip(".")[:2] == file.parent.name
+            and file.is_file()
+            and not file.is_symlink()
+        ]
 
     def _complain(self, error: OSError) -> None:
         if not self._complained:
@@ -184,77 +175,13 @@ def take_libraries_in() -> None:
 def _claim(root: Path) -> None:
     """Mark an empty folder; raises InputError where it is another's."""
     names = os.listdir(root)  # before the mark is read: who put anything there had marked it
-    mark = _content(root / MARK_NAME) if MARK_NAME in names else b""
+    mark = read_bytes(root / MARK_NAME, MOST_BYTES, "a cache's mark") if MARK_NAME in names else b""
     if mark == MARK:
         return
-    if set(names) - {MARK_NAME, LIBRARIES} or mark is None or not MARK.startswith(mark):
+    if set(names) - {MARK_NAME, LIBRARIES} or not MARK.startswith(mark):
         raise InputError(
             str(root),
             "holds files that are not tactcad's, so it cannot be the cache",
             legal="in TACTCAD_CACHE: a new or empty folder, or one that tactcad made its cache before",
         )
     (root / MARK_NAME).write_bytes(MARK)  # another process may do the same
-
-
-def _secret(path: Path) -> bytes:
-    """32 random bytes that only this user can read, drawn on first use.
-
-    Raises PermissionError where the file is not this user's.
-    """
-    handle = os.open(path, os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW | os.O_NONBLOCK, 0o600)
-    with open(handle, "r+b", buffering=0) as file:
-        fcntl.flock(file, fcntl.LOCK_EX)
-        state = os.fstat(handle)
-        if state.st_uid != os.geteuid() or not stat.S_ISREG(state.st_mode) or state.st_nlink != 1:
-            raise PermissionError(0, f"{path.name} in it is not this user's own file")
-        known = file.read(SECRET_BYTES + 1)
-        if len(known) != SECRET_BYTES or state.st_mode & 0o077:  # a killed run's, or others may have read it
-            os.fchmod(handle, 0o600)
-            known = os.urandom(SECRET_BYTES)
-            file.seek(0)
-            file.truncate()
-            file.write(known)
-        return known
-
-
-def _content(path: Path) -> bytes | None:
-    """The bytes of a regular file, None where it is something else or larger than the whole cache.
-
-    Records the use of the file, by which `trim` decides.
-    """
-    with open(path, "rb", opener=_without_waiting) as file:
-        state = os.fstat(file.fileno())
-        if not stat.S_ISREG(state.st_mode) or state.st_size > MOST_BYTES:
-            return None
-        with suppress(OSError):
-            os.utime(file.fileno())
-        return file.read()
-
-
-def _without_waiting(path: str, flags: int) -> int:
-    """Open a file without following links and without waiting for a pipe's writer."""
-    return os.open(path, flags | os.O_NOFOLLOW | os.O_NONBLOCK)
-
-
-def _own_files(root: Path) -> Iterator[Path]:
-    """The regular files below `root` that are named as entries, finished or not; no link is followed."""
-    with suppress(OSError), os.scandir(root) as folders:
-        for folder in folders:
-            if re.fullmatch("[0-9a-f]{2}", folder.name) and folder.is_dir(follow_symlinks=False):
-                named = re.compile(f"{folder.name}[0-9a-f]{{62}}|{re.escape(UNFINISHED)}.*")
-                with suppress(OSError), os.scandir(folder) as files:
-                    yield from (
-                        Path(file.path)
-                        for file in files
-                        if named.fullmatch(file.name) and file.is_file(follow_symlinks=False)
-                    )
-
-
-def _remove_if_left(path: Path) -> None:
-    """Remove an unfinished entry that no running process holds."""
-    with path.open("rb") as file:
-        try:
-            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
-            return
-        path.unlink()

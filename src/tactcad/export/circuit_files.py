@@ -8,14 +8,11 @@ import csv
 import io
 import re
 
-from tactcad.circuit.kicad import kicad_bytes
 from tactcad.circuit.netlist import Netlist
-from tactcad.circuit.netlist_table import netlist_csv
-from tactcad.circuit.spice_deck import deck_bytes
-from tactcad.circuit.wiring_list import wiring, wiring_csv
+from tactcad.circuit.netlist_files import deck_bytes, kicad_bytes, netlist_csv, wiring_csv
+from tactcad.design.family import family_of
 from tactcad.design.messages import CheckFailure
 from tactcad.design.tree import Design
-from tactcad.parts.layout import Layout
 
 Nets = dict[str, frozenset[tuple[str, str]]]  # designators and pins by net
 
@@ -42,7 +39,8 @@ def deck_file(design: Design, circuit: Netlist) -> bytes:
 
 def wiring_file(design: Design, circuit: Netlist) -> bytes:
     """The leads to cut. Raises CheckFailure where they are not the circuit's, each once."""
-    data = wiring_csv(wiring(Layout(design), circuit))
+    family = family_of(design)
+    data = wiring_csv(family.must("readout", "export").wiring(family.layout(design), circuit))
     check_leads(data, circuit)
     return data
 

@@ -17,8 +17,7 @@ from typing import TYPE_CHECKING, Any
 
 from tactcad.contour import Arc, Contour, Line, Point, Segment
 from tactcad.design.messages import CheckFailure
-from tactcad.parts.cut_section import cut_section
-from tactcad.parts.description import Extrusion, Part
+from tactcad.parts.language.description import Extrusion, Part, cut_section
 
 if TYPE_CHECKING:
     from ezdxf.document import Drawing
@@ -72,7 +71,7 @@ def dxf_bytes(part: Part) -> bytes:
     Parameters
     ----------
     part
-        A part that has a cut file (`tactcad.parts.cut_section`).
+        A part that has a cut file (`tactcad.parts.language.description`).
 
     Raises
     ------

@@ -1,38 +1,90 @@
-"""The formats that a part is exported in: one entry of PART_FORMATS each, made by a module of its own.
+"""What a format of parts' files declares, once, in a module of its own.
 
-A maker gets the part, the shapes and the file's header, returns bytes that it has read back and compared with
-the part, and raises CheckFailure where they differ. It imports what it needs when it runs.
+Every module in export/part_formats declares one or more, each a `PartFormat`; nothing lists them. A module
+without, a declaration that lacks something, or two of one kind are refused when they are imported. Manifest,
+bill, cache and release follow.
 """
 
 from __future__ import annotations
 
+import pkgutil
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache
+from importlib import import_module
 from typing import TYPE_CHECKING
 
-from tactcad.parts.description import NOT_MADE, Part
-
-from .shapes import Shapes, picture_bytes
+from tactcad.parts.language.description import NOT_MADE, Part
+from tactcad.solids.meshing import Meshing
 
 if TYPE_CHECKING:
+    from tactcad.scenes.scene import Pose
+
+    from .shapes import Shapes
     from .step_text import Header
 
 
 @dataclass(frozen=True)
+class ExportOptions:
+    """What of a design is exported, and how. With the design, this is all that an export is made from.
+
+    `pose`: a rig's configuration, None for its rest pose. `guides`: with assembly guides. `detail`: `full` or
+    `envelope`. `drawings`: with sheets, marked PRELIMINARY where a `draft`, not for order
+    where a `sample`. `meshing`: with the mesh of every part made, as STL, so fine.
+    """
+
+    scenes: tuple[str, ...]
+    pose: Pose | None = None
+    guides: bool = False
+    detail: str = "full"
+    drawings: bool = False
+    draft: bool = False
+    sample: bool = False
+    meshing: Meshing | None = None
+
+
+@dataclass(frozen=True)
 class PartFormat:
-    """`kind` in the manifest, `path` below the export's folder, which parts have such a file, and its
-    maker."""
+    """One kind of file that a part has.
+
+    kind      in the manifest
+    path      below the export's folder, with {part_no} and {revision}
+    place     among the formats: what every export holds first, by number
+    has       which parts have such a file
+    asked     what of the options it is made by, which is part of its key in the cache; None: not asked for
+    make      the part, the shapes, the file's header, and what was asked, to bytes that were read back and
+              compared with the part; raises CheckFailure where they differ. It imports what it needs when it
+              runs: formats are known without kernel
+    released  what a release's README says of the path's folder; "": shops do not get such a file
+    ordered   its rank among the files that a shop makes the part from: the bill names the highest; 0: none
+    """
 
     kind: str
     path: str
+    place: int
     has: Callable[[Part], bool]
-    make: Callable[[Part, Shapes, Header], bytes]
+    asked: Callable[[ExportOptions], object]
+    make: Callable[[Part, Shapes, Header, object], bytes]
+    released: str
+    ordered: int
+
+    def __post_init__(self) -> None:
+        if "{part_no}" not in self.path or "/" not in self.path:
+            raise TypeError(f"format {self.kind}: {self.path!r} has no folder, or no {{part_no}}")
+        if wrong := [name for name in ("has", "asked", "make") if not callable(getattr(self, name))]:
+            raise TypeError(f"format {self.kind}: {', '.join(wrong)} must be callable")
+        if self.released and "_{revision}" not in self.path:
+            raise TypeError(f"format {self.kind}: a released file's name ends in _{{revision}}")
+
+    @property
+    def folder(self) -> str:
+        """Of the path, with its "/"."""
+        return self.path.partition("/")[0] + "/"
 
 
-def _step(part: Part, shapes: Shapes, head: Header) -> bytes:
-    from .step_file import part_step
-
-    return part_step(part, shapes.of(part), head)
+def always(options: ExportOptions) -> object:
+    """For a format that every export has."""
+    return ()
 
 
 def has_limits(part: Part) -> bool:
@@ -41,39 +93,17 @@ def has_limits(part: Part) -> bool:
     return made and any((part.characteristics, part.geometric, part.datums))
 
 
-def _step_pmi(part: Part, shapes: Shapes, head: Header) -> bytes:
-    from tactcad.drawing.engine.workers import made_apart
-    from tactcad.solids.bytes import to_bytes
+@cache
+def part_formats() -> tuple[PartFormat, ...]:
+    """Every format by its place."""
+    from . import part_formats as folder
 
-    from .step_pmi import part_step_pmi
-
-    shape = to_bytes(shapes.of(part))
-    return made_apart(f"{part.part_no}: model with limits (AP242)", part_step_pmi, part, shape, head)
-
-
-def _has_cut_file(part: Part) -> bool:
-    """Whether it is cut from sheet or plate."""
-    from tactcad.parts.cut_section import cut_section
-
-    return cut_section(part) is not None
-
-
-def _dxf(part: Part, shapes: Shapes, head: Header) -> bytes:
-    from .dxf import checked_dxf
-
-    return checked_dxf(part)
-
-
-def _picture(part: Part, shapes: Shapes, head: Header) -> bytes:
-    from tactcad.scenes.scene import Placement
-
-    alone = (Placement(part.part_no, part),)
-    return picture_bytes(alone, "oblique", shapes, part.name, f"{part.part_no} revision {head.revision}")
-
-
-PART_FORMATS = (
-    PartFormat("step-part", "step/{part_no}_{revision}.step", lambda part: True, _step),
-    PartFormat("step-pmi", "step/{part_no}_{revision}-ap242.step", has_limits, _step_pmi),
-    PartFormat("dxf", "dxf/{part_no}_{revision}.dxf", _has_cut_file, _dxf),
-    PartFormat("picture", "pictures/{part_no}.svg", lambda part: not part.bought, _picture),
-)
+    found = []
+    for _, name, _ in pkgutil.iter_modules(folder.__path__):
+        module = import_module(f"{folder.__name__}.{name}")
+        if not (own := [f for f in vars(module).values() if isinstance(f, PartFormat)]):
+            raise TypeError(f"no PartFormat is declared in {module.__name__}")
+        found += own
+    if len({form.kind for form in found}) < len(found):
+        raise TypeError(f"two formats are of one kind, of {', '.join(form.kind for form in found)}")
+    return tuple(sorted(found, key=lambda form: (form.place, form.kind)))

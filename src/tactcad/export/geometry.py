@@ -11,15 +11,11 @@ from dataclasses import asdict
 from typing import Any
 
 from tactcad.contour import Arc, Contour, Line, Segment
+from tactcad.design.family import family_of
 from tactcad.design.tree import Design
 from tactcad.drawing.engine.extent import part_box
-from tactcad.mechanics import ladder, strength
-from tactcad.parts.cut_section import cut_section, section
-from tactcad.parts.description import Extrusion, Hole, ModelFile, Part
-from tactcad.parts.element import element_number
-from tactcad.parts.hinge_section import design_alloy, hinge_section
-from tactcad.parts.layout import Layout
-from tactcad.parts.surface import surface_area
+from tactcad.parts.language.description import Extrusion, Hole, ModelFile, Part, cut_section, section
+from tactcad.parts.language.surface import surface_area
 from tactcad.scenes import make_scene, scene_names
 from tactcad.scenes.bom import bom_rows
 from tactcad.scenes.scene import Scene
@@ -44,7 +40,7 @@ def geometry(design: Design, scenes: Sequence[Scene] | None = None) -> Record:
             no: part_record(part, max(s.count(part) for s in scenes)) for no, part in sorted(parts.items())
         },
         "scenes": {s.name: {"placed": _placed(s), "bom": bill(s)} for s in scenes},
-        "elements": _elements(design),
+        "elements": _rounded(family_of(design).estimate.golden(design)),
     }
 
 
@@ -132,31 +128,6 @@ def _placed(scene: Scene) -> Record:
     return {
         p.designator: _rounded({"part_no": p.part.part_no, "origin_mm": p.origin, "rotation": p.rotation})
         for p in scene.placements
-    }
-
-
-def _elements(design: Design) -> Record:
-    """Hinge, stiffness (N/mm) and force at yield (N) of every element by the default rung; None outside its
-    range."""
-    layout = Layout(design)
-    hinges = hinge_section(layout, layout.elements)
-    known = ladder.evaluate(hinges, ladder.DEFAULT_RUNG)
-    at_yield = strength.yield_force_where_known(hinges, design_alloy(design))
-    return {
-        place.designator: _rounded(
-            {
-                "part_no": element_number(design, place),
-                "arm_mm": place.arm,
-                "load_arm_mm": place.load_arm,
-                "hinge_thickness_mm": place.hinge.t,
-                "hinge_length_mm": place.hinge.l,
-                "fillet_radius_mm": place.hinge.r,
-                "arm_height_mm": place.hinge.h,
-                "stiffness_n_per_mm": float(K) if valid else None,
-                "yield_force_n": float(force) if valid else None,
-            }
-        )
-        for place, K, force, valid in zip(layout.elements, known.stiffness, at_yield, known.valid)
     }
 
 

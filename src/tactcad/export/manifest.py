@@ -11,11 +11,10 @@ from tactcad.design.files import read_bytes
 from tactcad.design.messages import InputError
 
 from .contents import MOST_BYTES, NAME, read_sealed, sealed, sha256_of
-from .formats import PART_FORMATS
+from .formats import part_formats
 
 SCHEMA = "tactcad-manifest-1"
-KINDS = {f.kind for f in PART_FORMATS} | {
-    "stl",
+KINDS = {f.kind for f in part_formats()} | {
     "step-assembly",
     "picture",
     "bom",

@@ -2,29 +2,32 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import closing
 from dataclasses import dataclass
+from functools import partial
+from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Protocol
 
-from tactcad.account import listening
+from tactcad.design.family import family_of
 from tactcad.design.messages import CheckFailure
 from tactcad.design.tree import Design
-from tactcad.solids.meshing import Meshing
 
 from . import manifest as manifests
 from .cache import Cache, default_root
 from .contents import Contents
+from .formats import ExportOptions, part_formats
 from .inputs import Inputs, digest, first_installed, inputs_from_json, inputs_of, reasons
 from .manifest import FileRecord, Manifest, PartRecord
-from .publication import REFUSE, Work, left_unfinished, looked_at, turn
+from .publication import REFUSE, Work, left_unfinished, looked_at, replacing
+from .workers import Task, relayed, side_by_side
 
 if TYPE_CHECKING:
-    from tactcad.parts.description import Part
-    from tactcad.scenes.scene import Pose, Scene
+    from tactcad.parts.language.description import Part
+    from tactcad.scenes.scene import Scene
 
-    from .products import Output
-    from .shapes import Shapes
+    from .products import Batch, Output, Plan
 
 # Rooms and libraries that an exported file may depend on: a change in any of them rebuilds.
 ROOMS = (
@@ -34,11 +37,12 @@ ROOMS = (
     "mechanics",
     "parts",
     "scenes",
-    "assembly",
+    "stacks",
     "circuit",
     "solids",
     "drawing",
     "export",
+    "families",
 )
 # The kernel's binding comes with VTK or, as the extra `cad` of PyPI has it, without; in a checkout the second
 # is an empty stand-in for the first.
@@ -68,25 +72,6 @@ class Exported:
     made: tuple[str, ...]
     built: tuple[str, ...]
     reasons: tuple[str, ...]
-
-
-@dataclass(frozen=True)
-class ExportOptions:
-    """What of a design is exported, and how. With the design, this is all that an export is made from.
-
-    `pose`: a rig's configuration, None for its rest pose. `guides`: with assembly guides. `detail`: `full` or
-    `envelope`. `drawings`: with sheets, marked PRELIMINARY where a `draft`, not for order
-    where a `sample`. `meshing`: with the mesh of every part made, as STL, so fine.
-    """
-
-    scenes: tuple[str, ...]
-    pose: Pose | None = None
-    guides: bool = False
-    detail: str = "full"
-    drawings: bool = False
-    draft: bool = False
-    sample: bool = False
-    meshing: Meshing | None = None
 
 
 def export(
@@ -129,13 +114,13 @@ def export(
     earlier = looked_at(out, manifests.SCHEMA, others)
     why = _reasons(earlier, inputs)
     if why:
-        _refuse_broken(design)  # before anything is written to the disk
-        if options.drawings:
-            _refuse_unprintable(design)
+        from tactcad.parts.rules import refuse_broken  # loads numpy: not needed where nothing changed
+
+        refuse_broken(design)  # before anything is written to the disk
     elif not left_unfinished(out):
         return _unchanged(out, earlier, progress)
-    cache = Cache(default_root(), progress.line)
-    with turn(out, manifests.SCHEMA, others, progress.line) as work:
+    cache = Cache(default_root(), relayed(progress.line))
+    with replacing(out, manifests.SCHEMA, others, progress.line) as work:
         why = _reasons(work.earlier, inputs)
         if not why:
             return _unchanged(out, work.earlier, progress)
@@ -149,24 +134,6 @@ def _unchanged(out: str | Path, earlier: Contents, progress: Progress) -> Export
     count = len(earlier.record["files"]) + 1
     progress.line(f"{out}: nothing changed, {count} files are up to date; nothing was rebuilt")
     return Exported(Path(out), count, (), (), ())
-
-
-def _refuse_broken(design: Design) -> None:
-    from tactcad.parts.rules import refuse_broken  # loads numpy: not needed where nothing changed
-
-    refuse_broken(design)
-
-
-def _refuse_unprintable(design: Design) -> None:
-    from tactcad.drawing.engine.fonts import refuse_letters_it_lacks
-
-    texts = design.design
-    refuse_letters_it_lacks(
-        {
-            f"design.{name}": getattr(texts, name) or ""
-            for name in ("title", "author", "organisation", "revision")
-        }
-    )
 
 
 def _reasons(earlier: Contents, now: Inputs) -> list[str]:
@@ -191,44 +158,21 @@ def _rebuild(
     progress: Progress,
 ) -> Exported:
     from tactcad.scenes import make_scene
-    from tactcad.scenes.detail import at_detail
+    from tactcad.scenes.scene import at_detail
 
-    from .products import (
-        assembly_products,
-        circuit_drawing,
-        circuit_products,
-        drawing_products,
-        guide_products,
-        mesh_products,
-        part_products,
-        scene_products,
-        stack_products,
-    )
+    from .products import Plan
     from .shapes import Shapes
 
-    shapes = Shapes(cache, digest((inputs.sources, inputs.libraries)))
     scenes = [at_detail(make_scene(design, name, options.pose), options.detail) for name in options.scenes]
-    parts = list({part.part_no: part for s in scenes for part in s.parts}.values())
-    products = [p for part in parts for p in part_products(design, part, shapes)]
-    if options.meshing:
-        products += mesh_products(design, parts, shapes, options.meshing)
-    products += [p for s in scenes for p in scene_products(design, s, shapes)]
-    products += stack_products(design, options.scenes, shapes)
-    products += circuit_products(design, shapes) if "array" in options.scenes else []
-    products += [p for s in scenes if options.guides for p in guide_products(design, s, shapes)]
-    if options.drawings:
-        products += drawing_products(
-            design, parts, shapes, products, progress.step, options.draft, options.sample
-        )
-        products += assembly_products(design, scenes, shapes, progress.step, options.draft, options.sample)
-        if "array" in options.scenes:
-            products += circuit_drawing(design, shapes, progress.step, options.draft, options.sample)
+    plan = Plan(design, options, scenes, Shapes(cache, digest((inputs.sources, inputs.libraries))))
+    jobs = plan.jobs()
     folder = work.folder
-    made = _write_products(folder, products, cache, progress)
-    records = [_record(folder, p, design) for p in products]
+    made = _write_products(folder, plan, jobs, progress)
+    products = [file for job in jobs for file in job.files]
+    records = [_record(folder, file, design) for file in products]
     records += _write_bills(folder, design, scenes, records)
     records += _write_element_tables(folder, design)
-    part_records = tuple(_part_record(part, scenes, shapes, cache) for part in parts)
+    part_records = tuple(_part_record(part, plan) for part in plan.parts)
     record = Manifest(design.name, design.design.revision, tuple(records), part_records, inputs.as_json())
     (folder / manifests.NAME).write_bytes(manifests.manifest_bytes(record))
     wrong = manifests.check_manifest(folder)
@@ -238,32 +182,71 @@ def _rebuild(
     cache.trim()
     count = len(records) + 1
     progress.line(f"{out}: {count} files, {len(made)} made, {len(products) - len(made)} taken from the cache")
-    return Exported(out, count, made, tuple(shapes.built), why)
+    return Exported(out, count, made, tuple(plan.shapes.built), why)
 
 
-def _write_products(
-    folder: Path, products: Sequence[Output], cache: Cache, progress: Progress
-) -> tuple[str, ...]:
-    """Write every product's bytes, from the cache where it has them; returns the paths that were made
-    anew."""
-    made = []
-    for n, product in enumerate(products):
-        data = cache.get(product.key)
-        progress.step(n, len(products), f"{product.path} ({'kept' if data is not None else 'making'})")
-        if data is None:
-
-            def hear(how_far: str, n: int = n, path: str = product.path) -> None:
-                progress.step(n, len(products), f"{path} ({how_far})")
-
-            with listening(hear):
-                data = product.make()
-            cache.put(product.key, data)
-            made.append(product.path)
-        path = folder / product.path
+def _write_products(folder: Path, plan: Plan, jobs: Sequence[Batch], progress: Progress) -> tuple[str, ...]:
+    """Write every file's bytes, from the cache where it has them; returns the paths that were made anew."""
+    made = set()
+    for file, data, anew in made_files(plan, jobs, progress.step, progress.line):
+        path = folder / file.path
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_bytes(data)
-    progress.step(len(products), len(products), "done")
-    return tuple(made)
+        if anew:
+            made.add(file.path)
+    return tuple(file.path for job in jobs for file in job.files if file.path in made)
+
+
+def made_files(
+    plan: Plan, jobs: Sequence[Batch], step: Callable[[int, int, str], None], say: Callable[[str], None]
+) -> Iterator[tuple[Output, bytes, bool]]:
+    """Every file of the jobs, its bytes, and whether they were made anew; what the cache holds comes first.
+
+    Parameters
+    ----------
+    plan
+        That the jobs are of.
+    jobs
+        Made side by side (workers.py), the solids that they need before them.
+    step, say
+        Receive done, total and what is under way; and lines to keep.
+    """
+    cache, shapes = plan.shapes.cache, plan.shapes
+    total, done, missing = sum(len(job.files) for job in jobs), 0, []
+    for job in jobs:
+        data = [cache.get(file.key) for file in job.files]
+        if any(each is None for each in data):
+            missing.append(job)
+            continue
+        for file, content in zip(job.files, data):
+            step(done, total, f"{file.path} (kept)")
+            done += 1
+            yield file, content or b"", False
+    if missing:
+        from .products import solid
+
+        _load_makers()
+        solids = [Task(f"solid of {part.part_no}", partial(solid, part, shapes)) for part in plan.parts]
+        missing.sort(key=lambda job: -job.size)
+        tasks = [*solids, *(Task(job.files[0].path, job.make, job.turn) for job in missing)]
+        hear = lambda text: step(done, total, text)  # noqa: E731
+        with closing(side_by_side(tasks, hear, say)) as ready:
+            for n, result in ready:
+                if n < len(solids):
+                    shapes.built += [plan.parts[n].part_no] * result
+                    continue
+                for file, content in zip(missing[n - len(solids)].files, result):
+                    cache.put(file.key, content)
+                    done += 1
+                    yield file, content, True
+    step(total, total, "done")
+
+
+def _load_makers() -> None:
+    """Load the kernel, and what works with it, once for all processes, and end its threads."""
+    for module in ("solids.build", "solids.step", "drawing.parts.solid_views", "drawing.engine.picture"):
+        import_module(f"tactcad.{module}")
+    import_module("tactcad.solids.occt").end_threads()
 
 
 def _record(folder: Path, product: Output, design: Design) -> FileRecord:
@@ -278,10 +261,8 @@ def _write_bills(
     from tactcad.scenes import bom
 
     revision = design.design.revision
-    # a shop cuts from the DXF where there is one, and makes the rest from the STEP file
-    files = {
-        r.part_no: (r.path, r.sha256) for kind in ("step-part", "dxf") for r in records if r.kind == kind
-    }
+    ranked = sorted((form for form in part_formats() if form.ordered), key=lambda form: form.ordered)
+    files = {r.part_no: (r.path, r.sha256) for form in ranked for r in records if r.kind == form.kind}
     written = []
     for scene in scenes:
         rows = bom.bom_rows(scene, revision, files)
@@ -298,35 +279,33 @@ def _write_bills(
 
 def _write_element_tables(folder: Path, design: Design) -> list[FileRecord]:
     """The inspection sheet to fill in, and the strength summary: tables of the numbered elements."""
-    from tactcad.parts.layout import Layout
-
     from . import inspection
     from . import strength_table as strength
 
-    layout = Layout(design)
-    written = []
+    family, written = family_of(design), []
+    layout = family.layout(design)
     for path, kind, data in (
         (inspection.NAME, "inspection", inspection.inspection_bytes(layout)),
-        (strength.NAME, "report", strength.strength_bytes(layout)),
+        (strength.NAME, "report", family.estimate.strength(layout)),
     ):
         (folder / path).write_bytes(data)
         written.append(FileRecord(path, kind, "", design.design.revision, manifests.sha256_of(data)))
     return written
 
 
-def _part_record(part: Part, scenes: Sequence[Scene], shapes: Shapes, cache: Cache) -> PartRecord:
-    from tactcad.parts.cut_section import cut_section
+def _part_record(part: Part, plan: Plan) -> PartRecord:
+    from tactcad.parts.language.description import cut_section
 
     from .products import part_facts
 
-    facts = part_facts(part, shapes, cache)
+    facts = part_facts(part, plan.shapes)
     low, high = facts["box"]
     cut = cut_section(part)
     return PartRecord(
         part_no=part.part_no,
         name=part.name,
         process=part.process,
-        qty=max(scene.count(part) for scene in scenes),
+        qty=max(scene.count(part) for scene in plan.scenes),
         volume_mm3=facts["volume"],
         area_mm2=facts["area"],
         mass_g=part.mass,

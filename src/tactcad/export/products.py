@@ -1,331 +1,351 @@
-"""The files of an export: for each what it is made from, and how it is made and checked.
+"""The files of an export, kind by kind: what each is made from, and how it is made and checked.
 
-Nothing here runs until a file is needed: the kernel is imported inside the makers.
+Every kind is a function from a `Plan` to jobs, marked with @product and what asks for it. Nothing runs until
+a file is needed: what makes it is imported then.
 """
 
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from functools import cache, partial
+from functools import cached_property, partial
 from typing import TYPE_CHECKING
 
+from tactcad.design.family import family_of
 from tactcad.design.messages import CheckFailure
 from tactcad.design.tree import Design
-from tactcad.parts.description import NOT_MADE, Extrusion, ModelFile, Part, Revolution
+from tactcad.parts.language.description import NOT_MADE, Extrusion, ModelFile, Part, Revolution
 from tactcad.scenes import make_scene
+from tactcad.scenes.rig import ARRAY
 from tactcad.scenes.scene import Placement, Scene
-from tactcad.solids.meshing import Meshing
 
-from .cache import Cache
 from .contents import sha256_of
-from .formats import PART_FORMATS, PartFormat
+from .formats import ExportOptions, PartFormat, part_formats
 from .inputs import digest
 from .shapes import Shapes, picture_bytes
 from .step_text import Header
 
 if TYPE_CHECKING:
-    from tactcad.drawing.engine.workers import Named, Written
+    from tactcad.drawing.engine.sheet_files import Written
+
+# What comes after what: parts' files need solids, and sheets need parts' files, whose digests they state.
+SOLIDS, FILES, SHEETS = range(3)
 
 
 @dataclass(frozen=True)
 class Output:
-    """One file of an export: path below its folder, kind and part number for the manifest, what it depends
-    on, and the function that makes its bytes and has checked them."""
+    """One file of an export: path below its folder, kind and part number for the manifest, and what it
+    depends on."""
 
     path: str
     kind: str
     part_no: str
     key: str
-    make: Callable[[], bytes]
 
 
-def header(design: Design, name: str, description: str) -> Header:
-    d = design.design
-    return Header(name, description, d.revision, d.date, d.author or "", d.organisation or "")
+@dataclass(frozen=True)
+class Batch:
+    """Files that are made in one go, and the function that makes their bytes and has checked them. `size`:
+    how long it takes beside others of its turn, roughly; what is long starts first."""
+
+    files: tuple[Output, ...]
+    make: Callable[[], Sequence[bytes]]
+    turn: int = FILES
+    size: int = 0
 
 
-def part_products(design: Design, part: Part, shapes: Shapes) -> list[Output]:
-    """A file of every format that the part has one in (formats.py)."""
-    head = header(design, part.part_no, part.name)
+@dataclass(frozen=True)
+class Plan:
+    """What an export is of: a design, what is asked for, its scenes at their detail, the parts' shapes."""
 
-    def product(form: PartFormat) -> Output:
-        path = form.path.format(part_no=part.part_no, revision=head.revision)
-        key = digest((form.kind, shapes.made_by, part, head))
-        return Output(path, form.kind, part.part_no, key, partial(form.make, part, shapes, head))
+    design: Design
+    options: ExportOptions
+    scenes: Sequence[Scene]
+    shapes: Shapes
 
-    return [product(form) for form in PART_FORMATS if form.has(part)]
+    @cached_property
+    def parts(self) -> list[Part]:
+        """Each once, in order of first placement."""
+        return list({part.part_no: part for scene in self.scenes for part in scene.parts}.values())
 
+    @property
+    def revision(self) -> str:
+        return self.design.design.revision
 
-def mesh_products(design: Design, parts: Sequence[Part], shapes: Shapes, meshing: Meshing) -> list[Output]:
-    """The mesh of every part made here, as STL."""
-    revision = design.design.revision
-    return [
-        Output(
-            f"stl/{part.part_no}_{revision}.stl",
-            "stl",
-            part.part_no,
-            digest(("stl", shapes.made_by, part, meshing)),
-            partial(_stl, part, shapes, meshing),
-        )
-        for part in parts
-        if not part.bought
-    ]
+    def header(self, name: str, description: str) -> Header:
+        """Of a STEP file."""
+        d = self.design.design
+        return Header(name, description, d.revision, d.date, d.author or "", d.organisation or "")
 
-
-def _stl(part: Part, shapes: Shapes, meshing: Meshing) -> bytes:
-    from .stl import part_stl
-
-    return part_stl(part.part_no, shapes.of(part), meshing)
+    def jobs(self) -> list[Batch]:
+        """All that is asked for."""
+        return [job for each in PRODUCTS if each.asked(self) for job in each.jobs(self)]
 
 
-def scene_products(design: Design, scene: Scene, shapes: Shapes) -> list[Output]:
-    """The assembly as STEP, and its pictures: from above, from below, and opened."""
-    name = f"{design.name}-{scene.name}"
-    revision = design.design.revision
-    head = header(design, name, f"{design.design.title}: {scene.name}")
-    products = [
-        Output(
-            f"step/{name}_{revision}.step",
-            "step-assembly",
-            "",
-            digest(("step-assembly", shapes.made_by, scene, head)),
-            lambda: _scene_step(scene, shapes, head),
-        )
-    ]
-    opened = tuple(p for p in scene.placements if p.designator not in scene.cover)
-    for label, view, placements in (
-        ("above", "above", scene.placements),
-        ("below", "below", scene.placements),
-        ("open", "above", opened),
-    ):
-        seen = "cover taken off" if label == "open" else f"from {label}"
-        text = f"{design.design.title}: {scene.name}, {seen}"
-        products.append(
-            Output(
-                f"pictures/{name}-{label}.svg",
-                "picture",
-                "",
-                digest(("picture", shapes.made_by, placements, view, text, head)),
-                partial(picture_bytes, placements, view, shapes, text, f"{name} revision {revision}"),
-            )
-        )
-    return products
+@dataclass(frozen=True)
+class Product:
+    """A kind of files: what asks for it, and the jobs that make it."""
+
+    asked: Callable[[Plan], bool]
+    jobs: Callable[[Plan], Iterator[Batch]]
 
 
-def stack_products(design: Design, names: Sequence[str], shapes: Shapes) -> list[Output]:
+PRODUCTS: list[Product] = []
+
+
+def product(
+    asked: Callable[[Plan], bool] = lambda _: True,
+) -> Callable[[Callable[[Plan], Iterator[Batch]]], Callable[[Plan], Iterator[Batch]]]:
+    """Marks the function of a kind of files. The manifest has kinds in the order of these functions."""
+
+    def enter(jobs: Callable[[Plan], Iterator[Batch]]) -> Callable[[Plan], Iterator[Batch]]:
+        PRODUCTS.append(Product(asked, jobs))
+        return jobs
+
+    return enter
+
+
+def _one(file: Output, make: Callable[[], bytes], size: int = 0) -> Batch:
+    return Batch((file,), lambda: (make(),), FILES, size)
+
+
+@product()
+def part_files(plan: Plan) -> Iterator[Batch]:
+    """A file of every format that a part has one in, part by part (formats.py); what was asked for besides
+    stands after what every export has."""
+    forms = [(form, form.asked(plan.options)) for form in part_formats()]
+    asked = [(form, settings) for form, settings in forms if settings is not None]
+    for part in plan.parts:
+        usual = (form for form, settings in asked if settings == () and form.has(part))
+        yield from (_part_file(plan, part, form, ()) for form in usual)
+    for form, settings in asked:
+        if settings != ():
+            yield from (_part_file(plan, part, form, settings) for part in plan.parts if form.has(part))
+
+
+def _part_file(plan: Plan, part: Part, form: PartFormat, settings: object) -> Batch:
+    head, shapes = plan.header(part.part_no, part.name), plan.shapes
+    path = form.path.format(part_no=part.part_no, revision=head.revision)
+    key = digest((form.kind, shapes.made_by, part, head, settings))
+    return _one(Output(path, form.kind, part.part_no, key), partial(form.make, part, shapes, head, settings))
+
+
+@product()
+def scene_files(plan: Plan) -> Iterator[Batch]:
+    """Each assembly as STEP, and its pictures: from above, from below, and opened."""
+    shapes, title = plan.shapes, plan.design.design.title
+    for scene in plan.scenes:
+        name = f"{plan.design.name}-{scene.name}"
+        head = plan.header(name, f"{title}: {scene.name}")
+        key = digest(("step-assembly", shapes.made_by, scene, head))
+        path = f"step/{name}_{plan.revision}.step"
+        many = len(scene.placements)
+        yield _one(Output(path, "step-assembly", "", key), partial(_scene_step, scene, shapes, head), many)
+        opened = tuple(p for p in scene.placements if p.designator not in scene.cover)
+        for label, view, placements in (
+            ("above", "above", scene.placements),
+            ("below", "below", scene.placements),
+            ("open", "above", opened),
+        ):
+            seen = "cover taken off" if label == "open" else f"from {label}"
+            text = f"{title}: {scene.name}, {seen}"
+            key = digest(("picture", shapes.made_by, placements, view, text, head))
+            make = partial(picture_bytes, placements, view, shapes, text, f"{name} revision {plan.revision}")
+            yield _one(Output(f"pictures/{name}-{label}.svg", "picture", "", key), make, many)
+
+
+def _scene_step(scene: Scene, shapes: Shapes, head: Header) -> bytes:
+    from .step_file import scene_step
+
+    return scene_step(scene, {part.part_no: shapes.of(part) for part in scene.parts}, head)
+
+
+@product()
+def stack_files(plan: Plan) -> Iterator[Batch]:
     """How the limits of all parts add up: a table, a page with bars, and what to measure on which part of the
-    scenes named; from one run of virtual builds. Envelopes and poses have no limits of their own."""
-    scenes = [make_scene(design, name) for name in names]
+    scenes; from one run of virtual builds. Envelopes and poses have no limits of their own."""
+    design, scenes = plan.design, [make_scene(plan.design, name) for name in plan.options.scenes]
 
-    @cache
-    def run() -> tuple[bytes, bytes, bytes]:
-        from tactcad.assembly.stack import stack_bytes
-        from tactcad.assembly.stack_page import stack_page
-        from tactcad.assembly.virtual_build import sensor
+    def run() -> Sequence[bytes]:
+        from tactcad.stacks.stack import stack_bytes
+        from tactcad.stacks.stack_page import stack_page
+        from tactcad.stacks.virtual_build import sensor
 
-        from . import part_inspection
+        from . import inspection
 
         made = sensor(design, scenes)
         lines = made.stack()
         title = f"{design.design.title}, revision {design.design.revision}"
         parts = (p for scene in scenes for p in scene.parts)
-        measured = part_inspection.part_inspection_bytes(design, parts, made.variables, lines)
+        measured = inspection.part_inspection_bytes(design, parts, made.variables, lines)
         return stack_bytes(lines), stack_page(title, made.built(1000), lines), measured
 
-    made_by = digest(("stack", shapes.made_by, design, scenes))
-    return [
-        Output("stack.csv", "report", "", digest((made_by, "csv")), lambda: run()[0]),
-        Output("stack.html", "report", "", digest((made_by, "html")), lambda: run()[1]),
-        Output("inspection-parts.csv", "report", "", digest((made_by, "parts")), lambda: run()[2]),
-    ]
+    made_by = digest(("stack", plan.shapes.made_by, design, scenes))
+    files = (("stack.csv", "csv"), ("stack.html", "html"), ("inspection-parts.csv", "parts"))
+    outputs = tuple(Output(path, "report", "", digest((made_by, what))) for path, what in files)
+    yield Batch(outputs, run, FILES, 300)
 
 
-def circuit_products(design: Design, shapes: Shapes) -> list[Output]:
+def _read(plan: Plan) -> bool:
+    """Whether it shows the array, and a circuit reads that."""
+    return ARRAY in plan.options.scenes and family_of(plan.design).readout is not None
+
+
+@product(_read)
+def circuit_files(plan: Plan) -> Iterator[Batch]:
     """The circuit that reads the array: its netlist in three forms, and the leads to cut."""
-    from tactcad.circuit.bridges import netlist
-    from tactcad.parts.layout import Layout
-
     from . import circuit_files as files
 
-    stem = f"circuit/{design.name}-circuit_{design.design.revision}"
-    circuit = netlist(Layout(design))
-    key = digest(("circuit", shapes.made_by, circuit, design.design))
-    return [
-        Output(path, kind, "", f"{key} {path}", partial(make, design, circuit))
-        for path, kind, make in (
-            (f"{stem}.net", "netlist", files.kicad_file),
-            (f"{stem}.csv", "netlist", files.table_file),
-            (f"{stem}.cir", "netlist", files.deck_file),
-            (f"circuit/{design.name}-wiring_{design.design.revision}.csv", "wiring", files.wiring_file),
-        )
-    ]
+    design, family = plan.design, family_of(plan.design)
+    circuit = family.must("readout", "export").netlist(family.layout(design))
+    key = digest(("circuit", plan.shapes.made_by, circuit, design.design))
+    for name, kind, make in (
+        ("circuit_{}.net", "netlist", files.kicad_file),
+        ("circuit_{}.csv", "netlist", files.table_file),
+        ("circuit_{}.cir", "netlist", files.deck_file),
+        ("wiring_{}.csv", "wiring", files.wiring_file),
+    ):
+        path = f"circuit/{design.name}-{name.format(plan.revision)}"
+        yield _one(Output(path, kind, "", f"{key} {path}"), partial(make, design, circuit))
 
 
-def guide_products(design: Design, scene: Scene, shapes: Shapes) -> list[Output]:
-    """The scene's assembly guide: an exploded view, a picture a step, and the page that shows them."""
+@product(lambda plan: plan.options.guides)
+def guide_files(plan: Plan) -> Iterator[Batch]:
+    """Each scene's assembly guide: an exploded view, a picture a step, and the page that shows them."""
     from tactcad.drawing import guide
 
-    if not scene.steps:
-        return []
-    name, revision = f"{design.name}-{scene.name}", design.design.revision
-    description = f"{name} revision {revision}"
-
     def picture(
-        label: str, title: str, placements: Sequence[Placement], marked: Sequence[Placement]
-    ) -> Output:
-        key = digest(("guide picture", shapes.made_by, placements, marked, title, description))
-        make = partial(picture_bytes, placements, "above", shapes, title, description, marked)
-        return Output(guide.picture_path(scene, label), "picture", "", key, make)
+        scene: Scene, label: str, title: str, placements: Sequence[Placement], marked: Sequence[Placement]
+    ) -> Batch:
+        description = f"{plan.design.name}-{scene.name} revision {plan.revision}"
+        key = digest(("guide picture", plan.shapes.made_by, placements, marked, title, description))
+        make = partial(picture_bytes, placements, "above", plan.shapes, title, description, marked)
+        path = guide.picture_path(scene, label)
+        return _one(Output(path, "picture", "", key), make, len(placements))
 
-    products = [
-        picture("exploded", f"{design.design.title}: {scene.name}, exploded", guide.exploded(scene), ())
-    ]
-    for n, step in enumerate(scene.steps, start=1):
-        if step.designators:
-            standing, coming = guide.at_step(scene, n)
-            products.append(
-                picture(f"{n:02d}", f"{scene.name}, step {n}: {step.title}", (*standing, *coming), coming)
-            )
-    if face := guide.sensing_face_map(scene):
-        path = guide.picture_path(scene, guide.MAP)
-        products.append(Output(path, "picture", "", digest(("guide map", face)), lambda: face))
-    page = guide.page(design, scene)
-    products.append(Output(guide.page_path(scene), "report", "", digest(("guide", page)), lambda: page))
-    return products
-
-
-@dataclass(frozen=True)
-class _Wanted:
-    """A drawing to make: its file's name, the part that it shows ("" for a scene), what it depends on, its
-    order.
-    """
-
-    stem: str
-    part_no: str
-    key: str
-    order: Callable[[], Named]
+    for scene in plan.scenes:
+        if not scene.steps:
+            continue
+        title = f"{plan.design.design.title}: {scene.name}, exploded"
+        yield picture(scene, "exploded", title, guide.exploded(scene), ())
+        for n, step in enumerate(scene.steps, start=1):
+            if step.designators:
+                standing, coming = guide.at_step(scene, n)
+                title = f"{scene.name}, step {n}: {step.title}"
+                yield picture(scene, f"{n:02d}", title, (*standing, *coming), coming)
+        if face := guide.sensing_face_map(scene):
+            path = guide.picture_path(scene, guide.MAP)
+            yield _one(Output(path, "picture", "", digest(("guide map", face))), partial(bytes, face))
+        page = guide.page(plan.design, scene)
+        key = digest(("guide", page))
+        yield _one(Output(guide.page_path(scene), "report", "", key), partial(bytes, page))
 
 
-def drawing_products(
-    design: Design,
-    parts: Sequence[Part],
-    shapes: Shapes,
-    products: Sequence[Output],
-    say: Callable[[int, int, str], None],
-    draft: bool = False,
-    sample: bool = False,
-) -> list[Output]:
-    """A sheet for every part made here, as PDF and SVG; `products` hold the files that the sheets name."""
-    from tactcad.drawing.engine.fonts import font_file
-    from tactcad.drawing.parts.part_sheet import MadeFrom, Order, written
+@product(lambda plan: plan.options.drawings)
+def part_sheets(plan: Plan) -> Iterator[Batch]:
+    """A sheet for every part made here, as PDF and SVG, which names the files that the part is made from."""
+    from tactcad.drawing.engine.ink import font_file, refuse_letters_it_lacks
 
+    design, shapes, options = plan.design, plan.shapes, plan.options
+    identity = design.design
+    names = ("title", "author", "organisation", "revision")
+    refuse_letters_it_lacks({f"design.{name}": getattr(identity, name) or "" for name in names})
     font_file()  # a missing font is reported before anything is made
-    sources = {(p.part_no, p.kind): p for p in products}
-    revision = design.design.revision
-    common = (design.design, design.tolerance, design.holes, draft, sample)
+    known = {(job.files[0].part_no, job.files[0].kind): job for job in part_files(plan)}
 
-    def order(part: Part, files: Sequence[Output]) -> Order:
-        from tactcad.solids.bytes import to_bytes
+    def make(part: Part, files: Sequence[Batch]) -> Written:
+        from tactcad.drawing.parts import part_sheet
+        from tactcad.solids.step import to_bytes
 
-        made_from = [MadeFrom(f.path, sha256_of(shapes.cache.get_or_make(f.key, f.make))) for f in files]
-        return Order(design, part, to_bytes(shapes.of(part)), tuple(made_from), draft, sample)
+        def digest_of(job: Batch) -> str:
+            return sha256_of(shapes.cache.get_or_make(job.files[0].key, lambda: job.make()[0]))
 
-    wanted = []
-    for part in parts:
-        if part.process not in NOT_MADE:
-            files = _made_from(part, sources)
-            key = digest(("drawing", shapes.made_by, part, [f.key for f in files], *common))
-            wanted.append(
-                _Wanted(f"{part.part_no}_{revision}", part.part_no, key, partial(order, part, files))
-            )
-    return _drawn(wanted, written, shapes, say)
+        made_from = tuple(part_sheet.MadeFrom(job.files[0].path, digest_of(job)) for job in files)
+        shape = to_bytes(shapes.of(part))
+        order = part_sheet.Order(design, part, shape, made_from, options.draft, options.sample)
+        return part_sheet.written(order)
+
+    for part in plan.parts:
+        if part.process in NOT_MADE:
+            continue
+        # wire-cut parts are made from the DXF alone, others from the model, and their blank from the DXF
+        kinds = ("dxf",) if part.process == "wire-cut" else ("step-part", "dxf")
+        files = [known[part.part_no, kind] for kind in kinds if (part.part_no, kind) in known]
+        made_from = [job.files[0].key for job in files]
+        common = (identity, _tables(design, "tolerance", "holes"), options.draft, options.sample)
+        key = digest(("drawing", shapes.made_by, part, made_from, *common))
+        stem = f"{part.part_no}_{plan.revision}"
+        yield _drawing(stem, part.part_no, key, partial(make, part, files), SHEETS)
 
 
-def assembly_products(
-    design: Design,
-    scenes: Sequence[Scene],
-    shapes: Shapes,
-    say: Callable[[int, int, str], None],
-    draft: bool = False,
-    sample: bool = False,
-) -> list[Output]:
+@product(lambda plan: plan.options.drawings)
+def assembly_sheets(plan: Plan) -> Iterator[Batch]:
     """An assembly drawing of every scene, as PDF and SVG."""
-    from tactcad.drawing.assemblies.assembly_sheets import AssemblyOrder, assembly_written
-    from tactcad.scenes.bom import bom_rows
+    design, options, shapes = plan.design, plan.options, plan.shapes
 
-    revision, common = design.design.revision, (design.design, design.tolerance, draft, sample)
+    def make(scene: Scene) -> Written:
+        from tactcad.drawing.assemblies.assembly_sheets import AssemblyOrder, assembly_written
+        from tactcad.scenes.bom import bom_rows
+        from tactcad.solids.step import to_bytes
 
-    def order(scene: Scene) -> AssemblyOrder:
-        from tactcad.solids.bytes import to_bytes
-
+        rows = bom_rows(scene, plan.revision, {})
         solids = {part.part_no: to_bytes(shapes.of(part)) for part in scene.parts}
-        return AssemblyOrder(design, scene, bom_rows(scene, revision, {}), solids, draft, sample)
+        return assembly_written(AssemblyOrder(design, scene, rows, solids, options.draft, options.sample))
 
-    wanted = []
-    for scene in scenes:
+    for scene in plan.scenes:
+        common = (design.design, _tables(design, "tolerance"), options.draft, options.sample)
         key = digest(("assembly drawing", shapes.made_by, scene, *common))
-        wanted.append(_Wanted(f"{design.name}-{scene.name}_{revision}", "", key, partial(order, scene)))
-    return _drawn(wanted, assembly_written, shapes, say)
+        stem = f"{design.name}-{scene.name}_{plan.revision}"
+        yield _drawing(stem, "", key, partial(make, scene), FILES, 10 * len(scene.placements))
 
 
-def circuit_drawing(
-    design: Design,
-    shapes: Shapes,
-    say: Callable[[int, int, str], None],
-    draft: bool = False,
-    sample: bool = False,
-) -> list[Output]:
+@product(lambda plan: plan.options.drawings and _read(plan))
+def circuit_sheets(plan: Plan) -> Iterator[Batch]:
     """The circuit's sheets, as PDF and SVG."""
-    from tactcad.drawing.circuit.circuit_sheets import CircuitOrder, circuit_written
+    draft, sample = plan.options.draft, plan.options.sample
 
-    stem = f"{design.name}-circuit_{design.design.revision}"
-    key = digest(("circuit drawing", shapes.made_by, design, draft, sample))
-    return _drawn(
-        [_Wanted(stem, "", key, lambda: CircuitOrder(design, draft, sample))], circuit_written, shapes, say
-    )
+    def make() -> Written:
+        from tactcad.drawing.circuit_sheets import CircuitOrder
 
+        written = family_of(plan.design).must("readout", "export").sheets.found
+        return written(CircuitOrder(plan.design, draft, sample))
 
-def _drawn(
-    wanted: Sequence[_Wanted],
-    make: Callable[..., Written],
-    shapes: Shapes,
-    say: Callable[[int, int, str], None],
-) -> list[Output]:
-    """Both files of each drawing. The first one that is needed makes all that the cache does not hold, in
-    parallel.
-    """
-    from tactcad.drawing.engine.workers import all_written
-
-    endings = ("pdf", "svg")
-    drawn: dict[str, Written] = {}
-
-    def made(key: str, ending: str) -> bytes:
-        if not drawn:
-            missing = [w for w in wanted if any(shapes.cache.get(f"{w.key} {e}") is None for e in endings)]
-            drawn.update(zip((w.key for w in missing), all_written([w.order() for w in missing], make, say)))
-        return getattr(drawn[key], ending)
-
-    return [
-        Output(f"drawings/{w.stem}.{e}", "drawing", w.part_no, f"{w.key} {e}", partial(made, w.key, e))
-        for w in wanted
-        for e in endings
-    ]
+    key = digest(("circuit drawing", plan.shapes.made_by, plan.design, draft, sample))
+    yield _drawing(f"{plan.design.name}-circuit_{plan.revision}", "", key, make, FILES, 100)
 
 
-def _made_from(part: Part, sources: Mapping[tuple[str, str], Output]) -> list[Output]:
-    """The files that a shop makes the part from: wire-cut parts from the DXF alone, others from the model,
-    and their blank from the DXF where there is one."""
-    kinds = ("dxf",) if part.process == "wire-cut" else ("step-part", "dxf")
-    return [sources[part.part_no, kind] for kind in kinds if (part.part_no, kind) in sources]
+def _tables(design: Design, *names: str) -> tuple:
+    """Of these tables those that the family's designs have."""
+    return tuple(getattr(design, name, None) for name in names)
 
 
-def part_facts(part: Part, shapes: Shapes, cache: Cache) -> dict:
+def _drawing(
+    stem: str, part_no: str, key: str, make: Callable[[], Written], turn: int, size: int = 0
+) -> Batch:
+    """Both files of a drawing."""
+
+    def both() -> Sequence[bytes]:
+        made = make()
+        return made.pdf, made.svg
+
+    files = (Output(f"drawings/{stem}.{e}", "drawing", part_no, f"{key} {e}") for e in ("pdf", "svg"))
+    return Batch(tuple(files), both, turn, size)
+
+
+def solid(part: Part, shapes: Shapes) -> bool:
+    """Leave the part's solid, and its measures, in the cache; whether it had to be built."""
+    before = len(shapes.built)
+    shapes.text_of(part)
+    part_facts(part, shapes)
+    return len(shapes.built) > before
+
+
+def part_facts(part: Part, shapes: Shapes) -> dict:
     """What the kernel measures on a part (mm): surface area, volume, centre, box; compared with the closed
     forms."""
     key = f"facts {shapes.made_by} {digest(part)}"
-    return json.loads(cache.get_or_make(key, lambda: json.dumps(_measured(part, shapes)).encode()))
+    return json.loads(shapes.cache.get_or_make(key, lambda: json.dumps(_measured(part, shapes)).encode()))
 
 
 def _measured(part: Part, shapes: Shapes) -> dict:
@@ -347,9 +367,3 @@ def _compare_box(part: Part, box: Sequence[Sequence[float]]) -> None:
     off = max(abs(a - b) for got, meant in zip(box, part_box(part)) for a, b in zip(got, meant))
     if off > 1e-6:
         raise CheckFailure(f"{part.part_no}: bounding box is {off:.3g} mm from the description's")
-
-
-def _scene_step(scene: Scene, shapes: Shapes, head: Header) -> bytes:
-    from .step_file import scene_step
-
-    return scene_step(scene, {part.part_no: shapes.of(part) for part in scene.parts}, head)

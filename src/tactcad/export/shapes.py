@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from OCP.TopoDS import TopoDS_Shape
 
     from tactcad.drawing.engine.picture import Viewpoint
-    from tactcad.parts.description import Part
+    from tactcad.parts.language.description import Part
     from tactcad.scenes.scene import Placement
 
 
@@ -32,7 +32,7 @@ class Shapes:
 
     def drawn(self, part: Part) -> TopoDS_Shape:
         """The part's shape for pictures of several parts."""
-        from tactcad.parts.library.screws import for_pictures
+        from tactcad.parts.bought.screws import for_pictures
 
         shown = for_pictures(part)
         return self.of(part) if shown is part else self._shape(shown, partial(_shape_bytes, shown))
@@ -46,7 +46,7 @@ class Shapes:
 
     def _shape(self, part: Part, make: Callable[[], bytes]) -> TopoDS_Shape:
         if part.part_no not in self._known:
-            from tactcad.solids.bytes import from_bytes
+            from tactcad.solids.step import from_bytes
 
             # always through the text, so that a shape from the cache and one just built give equal files
             self._known[part.part_no] = from_bytes(self.cache.get_or_make(self._key(part), make))
@@ -59,7 +59,7 @@ class Shapes:
 
 def _shape_bytes(part: Part) -> bytes:
     from tactcad.solids.build import build
-    from tactcad.solids.bytes import to_bytes
+    from tactcad.solids.step import to_bytes
 
     return to_bytes(build(part).wrapped)
 
@@ -74,8 +74,8 @@ def picture_bytes(
 ) -> bytes:
     """The placements in hidden lines, seen from `view`, as SVG; read back. `marked` are drawn in bold."""
     from tactcad.drawing.engine import picture
-    from tactcad.parts.library.screws import for_pictures
-    from tactcad.solids.place import placed_shape
+    from tactcad.parts.bought.screws import for_pictures
+    from tactcad.solids.occt import placed_shape
 
     eye: Viewpoint = picture.VIEWS[view]
 

@@ -14,7 +14,7 @@ from tactcad.design.files import read_json, read_text
 from tactcad.design.load import MOST_BYTES as MOST_TEXT
 from tactcad.design.load import find, from_table
 from tactcad.design.messages import InputError
-from tactcad.design.toml_text import parse_toml
+from tactcad.design.text_values import parse_toml
 from tactcad.parts.rules import refuse_broken
 
 from .difference import Change, differences

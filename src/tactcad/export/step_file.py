@@ -24,13 +24,12 @@ from OCP.TopExp import TopExp_Explorer
 from OCP.TopoDS import TopoDS_Shape
 from OCP.XCAFDoc import XCAFDoc_ColorSurf, XCAFDoc_DocumentTool, XCAFDoc_ShapeTool
 
-from tactcad.account import under_way
 from tactcad.design.messages import CheckFailure
-from tactcad.parts.description import Part
+from tactcad.parts.language.description import Part
+from tactcad.profiling import under_way
 from tactcad.scenes.scene import Placement, Scene
 from tactcad.solids.measure import volume
-from tactcad.solids.occt import TDF_LabelSequence
-from tactcad.solids.place import location
+from tactcad.solids.occt import TDF_LabelSequence, location
 from tactcad.solids.step import set_up_writer, silence
 
 from .step_text import AP214, AP242, Header, canonical

@@ -28,12 +28,11 @@ from OCP.XCAFDoc import (
 )
 
 from tactcad.design.messages import CheckFailure
-from tactcad.parts.description import Part
-from tactcad.parts.limits import Characteristic, Geometric
-from tactcad.parts.surface_pieces import Piece, measured, pieces
-from tactcad.solids.bytes import from_bytes
-from tactcad.solids.faces import FaceFinder
-from tactcad.solids.occt import TDF_LabelSequence
+from tactcad.parts.language.description import Part
+from tactcad.parts.language.limits import Characteristic, Geometric
+from tactcad.parts.language.surface import Piece, measured, pieces
+from tactcad.solids.occt import FaceFinder, TDF_LabelSequence
+from tactcad.solids.step import from_bytes
 
 from .step_file import add_prototype, assembly_in, check_part, new_document, read_document, written
 from .step_text import AP242, Header
@@ -82,7 +81,7 @@ def part_step_pmi(part: Part, shape: bytes, header: Header) -> bytes:
     part
         It has limits.
     shape
-        Its solid in its own frame (solids/bytes.py).
+        Its solid in its own frame (solids/step.py).
     header
         Entries of the file's header.
 

@@ -1,5 +1,5 @@
-"""The strength summary: a CSV file with what every element is rated for, and what it bears under the overload
-force."""
+"""What golden files keep of every element, and the strength summary: a CSV file with what it is rated
+for, and what it bears under the overload force."""
 
 from __future__ import annotations
 
@@ -8,11 +8,12 @@ import io
 
 import numpy as np
 
+from tactcad.design.tree import Design
 from tactcad.mechanics import ladder, strength
-from tactcad.parts.element import element_number
-from tactcad.parts.hinge_section import design_alloy, hinge_section
-from tactcad.parts.layout import Layout
-from tactcad.parts.overload import overloads
+from tactcad.parts.array.element import element_number
+from tactcad.parts.array.hinge_section import design_alloy, hinge_section
+from tactcad.parts.array.layout import Layout
+from tactcad.parts.array.stop_gap import overloads
 
 NAME = "strength.csv"
 COLUMNS = (
@@ -38,6 +39,29 @@ COLUMNS = (
     "yield_factor_at_overload",
     "not_known_because",
 )
+
+
+def elements(design: Design) -> dict[str, dict]:
+    """Hinge, stiffness (N/mm) and force at yield (N) of every element by the default rung; None outside its
+    range."""
+    layout = Layout(design)
+    hinges = hinge_section(layout, layout.elements)
+    known = ladder.evaluate(hinges, ladder.DEFAULT_RUNG)
+    at_yield = strength.yield_force_where_known(hinges, design_alloy(design))
+    return {
+        place.designator: {
+            "part_no": element_number(design, place),
+            "arm_mm": place.arm,
+            "load_arm_mm": place.load_arm,
+            "hinge_thickness_mm": place.hinge.t,
+            "hinge_length_mm": place.hinge.l,
+            "fillet_radius_mm": place.hinge.r,
+            "arm_height_mm": place.hinge.h,
+            "stiffness_n_per_mm": float(K) if valid else None,
+            "yield_force_n": float(force) if valid else None,
+        }
+        for place, K, force, valid in zip(layout.elements, known.stiffness, at_yield, known.valid)
+    }
 
 
 def strength_bytes(layout: Layout) -> bytes:

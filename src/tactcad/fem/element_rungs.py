@@ -15,9 +15,9 @@ PLANE_ORDER, SOLID_ORDER = 4, 3  # plane within 0.02 %, solid within 0.2 % of th
 def stiffnesses(s: HingeSection) -> dict[str, np.ndarray]:
     """K (N/mm) of every element by the rungs fem-plane and fem-solid, each element cut at its load line."""
     logging.getLogger("skfem").setLevel(logging.ERROR)  # it warns about the order of arrays in memory
-    from tactcad.fem.plane_elements import solve_plane
     from tactcad.fem.shape import reference_shape
-    from tactcad.fem.solid_elements import solve_solid
+
+    from .elements import solve_plane, solve_solid
 
     columns = [np.broadcast_to(getattr(s, f.name), s.shape) for f in fields(s)]
     distinct, index = np.unique(np.column_stack(columns).astype(float), axis=0, return_inverse=True)

@@ -10,9 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
-from .plane_elements import PlaneSolution
+from .elements import PlaneSolution, SolidSolution
 from .shape import ElementShape
-from .solid_elements import SolidSolution
 from .space import PlaneSpace, gauss, lagrange
 
 Array = NDArray[np.float64]

@@ -13,7 +13,7 @@ from typing import Literal
 from tactcad.contour import Arc, Contour, Corner, Line, rounded_polygon
 from tactcad.contour.cut import ON_LINE_MM, between, crossings, cut
 from tactcad.design.messages import CheckFailure
-from tactcad.design.plain_numbers import filling_radius
+from tactcad.design.text_values import filling_radius
 from tactcad.mechanics.section import HingeSection
 
 ANGLE = 1e-7  # rad: tangents closer than this to an axis count as parallel to it

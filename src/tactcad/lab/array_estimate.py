@@ -4,17 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from tactcad.design.messages import CheckFailure
-from tactcad.mechanics import friction, ladder, strain, strain_errors, strength
+from tactcad.design.tree import Design
+from tactcad.mechanics import friction, ladder, strain, strength
 from tactcad.mechanics.accuracy import Choice, choose, expected_error_of
 from tactcad.mechanics.section import Array, HingeSection
-from tactcad.mechanics.strain_errors import StrainErrors
-from tactcad.parts.element import element
-from tactcad.parts.hinge_section import design_alloy, hinge_section, not_reached
-from tactcad.parts.layout import ElementPlace, Layout
+from tactcad.mechanics.strain import StrainErrors
+from tactcad.parts.array.element import element
+from tactcad.parts.array.hinge_section import design_alloy, hinge_section, not_reached
+from tactcad.parts.array.layout import ElementPlace, Layout
+from tactcad.report.figures import Figure, Figures
 
 
 @dataclass(frozen=True)
@@ -43,6 +46,32 @@ class ElementEstimate:
     rated_force: float  # N, in use
     rated_deflection: float  # mm, never passed: overload and calibration stay below
     expected_error: float | None  # of the stiffness, relative, at most; None where none was measured
+
+
+ELEMENT = Figures(
+    ElementEstimate,
+    Figure("number", "no.", "", 1.0, "d"),
+    Figure("arm", "arm", "mm", 1.0, "g"),
+    Figure("load_arm", "load arm", "mm", 1.0, "g"),
+    Figure("stiffness", "K", "N/mm", 1.0, ".4g"),
+    Figure("expected_error", "error of K at most", "%", 100.0, ".2g"),
+    Figure("stiffness_ratio", "K_r/K_m", "", 1.0, ".3g"),
+    Figure("force", "force", "N", 1.0, "g"),
+    Figure("deflection", "deflection", "um", 1e3, ".4g"),
+    Figure("gauge_strain", "strain gauge", "1e-6", 1e6, ".0f"),
+    Figure("peak_strain", "strain fillet", "1e-6", 1e6, ".0f"),
+    Figure("stress", "stress", "MPa", 1.0, ".0f"),
+    Figure("gauge_strain_error", "gauge", "%", 100.0, ".1f"),
+    Figure("peak_strain_error", "fillet", "%", 100.0, ".1f"),
+    Figure("stress_error", "stress", "%", 100.0, ".1f"),
+    Figure("yield_factor_fillet", "yield/stress", "", 1.0, ".2f"),
+    Figure("yield_factor_face", "flat face", "", 1.0, ".2f"),
+    Figure("goodman_factor", "Goodman", "", 1.0, ".2f"),
+    Figure("yield_force", "yield at", "N", 1.0, ".3g"),
+    Figure("yield_deflection", "and", "um", 1e3, ".4g"),
+    Figure("rated_force", "rated", "N", 1.0, ".3g"),
+    Figure("rated_deflection", "at most", "um", 1e3, ".4g"),
+)
 
 
 def estimate(
@@ -85,7 +114,7 @@ def estimate(
     if rung not in ladder.FINITE_ELEMENTS:
         return _by_closed_form(layout, places, section, rung, force)
     K, per_newton = _by_elements(layout, places, section, rung, design.gauge.grid_length, mesh)
-    errors = strain_errors.stated(section, design.gauge.grid_length, rung)
+    errors = strain.stated(section, design.gauge.grid_length, rung)
     promised = expected_error_of(section, rung, mesh)
     return _estimates(layout, places, section, K, per_newton, promised, errors, force)
 
@@ -102,7 +131,7 @@ def _by_closed_form(
     layout: Layout, places: Sequence[ElementPlace], section: HingeSection, rung: str, force: float
 ) -> list[ElementEstimate]:
     K, grid = np.asarray(ladder.stiffness(section, rung)), layout.design.gauge.grid_length
-    errors = strain_errors.stated(section, grid, rung)
+    errors = strain.stated(section, grid, rung)
     strains = _closed_form_strains(section, rung, grid)
     return _estimates(layout, places, section, K, strains, expected_error_of(section, rung), errors, force)
 
@@ -171,7 +200,7 @@ def _by_elements(
     """Stiffness (N/mm) and strains by finite elements on each distinct contour, cut at clamp edge and load
     line."""
     from tactcad.fem import fem_ladder as elements
-    from tactcad.fem.convergence import SOLID_MESH
+    from tactcad.fem.fem_ladder import SOLID_MESH
     from tactcad.fem.shape import cut_element
 
     solved: dict[tuple, elements.ElementResult] = {}
@@ -264,9 +293,9 @@ def compare_uncut(layout: Layout) -> UncutComparison:
     The whole contour has pad, land and holes, is held between its spacers and pressed evenly on the pad; the
     model is held at the clamp edge, and its arm is cut off at the load line.
     """
-    from tactcad.fem.convergence import converged_plane
+    from tactcad.fem.fem_ladder import converged_plane
+    from tactcad.fem.free_mesh import uncut_compliance
     from tactcad.fem.shape import cut_element
-    from tactcad.fem.uncut import uncut_compliance
 
     place = min(layout.elements, key=lambda p: p.arm)
     d, part = layout.design, element(layout, place)
@@ -282,3 +311,28 @@ def compare_uncut(layout: Layout) -> UncutComparison:
         *material,
     )
     return UncutComparison(place.number, 1.0 / compliance, converged_plane(shape, *material).stiffness)
+
+
+def material_lines(design: Design, stiffness: Sequence[float]) -> list[str]:
+    """A line for each property that differs, with its source; for Young's modulus also the largest and the
+    smallest stiffness (N/mm) with either modulus."""
+    differing = [f"material: {d}" + (f" ({d.origin})" if d.origin else "") for d in design.differences]
+    factor = design.stiffness_factor
+    if factor is not None:
+        most, least = max(stiffness), min(stiffness)
+        differing.append(
+            f"with {design.material.alloy}'s own modulus every K is {factor - 1:+.1%}: {most * factor:.4g} "
+            f"instead of {most:.4g} N/mm"
+            + (f", {least * factor:.4g} instead of {least:.4g}" if least != most else "")
+        )
+    return differing
+
+
+def material_record(design: Design) -> dict[str, Any]:
+    """The differences for JSON: `material_differences`, and `stiffness_factor` where the modulus differs."""
+    differences = [
+        {"property": d.name, "value": d.value, "table": d.table, "relative": d.relative, "origin": d.origin}
+        for d in design.differences
+    ]
+    factor = design.stiffness_factor
+    return {"material_differences": differences} | ({"stiffness_factor": factor} if factor else {})

@@ -11,20 +11,37 @@ the lot, recast layer, clamp) enters with its tolerance. The model's own error i
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from math import hypot
+from typing import Any
 
 import numpy as np
 
-from tactcad.design.present import present
+from tactcad.design.fields import present
+from tactcad.design.tree import Design
 from tactcad.mechanics.as_built import in_clamp, without_layer
 from tactcad.mechanics.section import Array, HingeSection
-from tactcad.parts.hinge_section import hinge_section
-from tactcad.parts.layout import Layout
+from tactcad.parts.array.hinge_section import hinge_section
+from tactcad.parts.array.layout import Layout
+from tactcad.report.figures import Figure, aligned
 
-from .array_estimate import ElementEstimate, estimate_sections
+from .array_estimate import ELEMENT, ElementEstimate, estimate_sections, material_lines, material_record
 from .inspection_sheet import Reading
 
+THICKNESS = "hinge thickness"
+NO, ARM, K, STRAIN, RATED = ELEMENT.some("number", "arm", "stiffness", "gauge_strain", "rated_force")
+COLUMNS = (
+    (NO.heading, NO.unit),
+    (ARM.heading, ARM.unit),
+    ("t", "mm"),
+    (K.heading, K.unit),
+    *((heading, K.unit) for heading in ("from", "to", "nominal")),
+    ("as made", "%"),
+    (STRAIN.heading, STRAIN.unit),
+    ("nominal", STRAIN.unit),
+    (RATED.heading, RATED.unit),
+    *((heading, RATED.unit) for heading in ("from", "to", "nominal")),
+)
 INTERVALS = ("stiffness", "gauge_strain", "yield_force")
 
 
@@ -156,3 +173,105 @@ def _intervals(
     low, high = present(intervals["yield_force"])
     intervals["rated_force"] = (min(made.force, low / safety), min(made.force, high / safety))
     return intervals
+
+
+def report(design: Design, rung: str, rows: Sequence[AsMade]) -> str:
+    """A table of the elements; below it, dimensions outside their tolerance, undecided ones, those that were
+    not measured, and elements above yield."""
+    lines = [
+        f"{design.name} {design.design.revision} as made, {design.material.alloy}, rung {rung}, "
+        f"{rows[0].made.force:g} N on each pad; from and to: 95 %, without the model's error",
+        *aligned([*zip(*COLUMNS), *map(_cells, rows)]),
+    ]
+    lines += material_lines(design, [row.made.stiffness for row in rows])
+    readings = [r for row in rows for r in row.readings]
+    outside, undecided = ([r for r in readings if r.verdict == v] for v in ("outside", "undecided"))
+    lines += [f"outside its tolerance: {_said(r)}" for r in outside]
+    lines += [f"undecided, the uncertainty reaches across a limit: {_said(r)}" for r in undecided]
+    return "\n".join(lines + _missing(readings) + _plastic(rows))
+
+
+def _cells(row: AsMade) -> list[str]:
+    made, nominal = row.made, row.nominal
+    t = next(r for r in row.readings if r.dimension.name == THICKNESS)
+
+    def ranged(figure: Figure) -> list[str]:
+        ends = [figure.written(end) for end in present(row.intervals[figure.name])]
+        return [figure.text(made), *ends, figure.text(nominal)]
+
+    return [
+        NO.text(row),
+        ARM.text(made),
+        "blank" if t.measured is None else f"{t.measured:g}",
+        *ranged(K),
+        f"{made.stiffness / nominal.stiffness - 1:+.1%}".removesuffix("%"),
+        STRAIN.text(made, "invalid"),
+        STRAIN.text(nominal, "invalid"),
+        *ranged(RATED),
+    ]
+
+
+def _said(r: Reading) -> str:
+    d = r.dimension
+    spread = "" if r.uncertainty is None else f" +-{r.uncertainty:g}"
+    return f"no. {r.number}, {d.name} {r.measured:g}{spread}, {d.lower:g} to {d.upper:g} mm (line {r.line})"
+
+
+def _missing(readings: Sequence[Reading]) -> list[str]:
+    """A line for each dimension that was left blank, or measured without an uncertainty, on any element."""
+    lines = []
+    for name in dict.fromkeys(r.dimension.name for r in readings):
+        named = [r for r in readings if r.dimension.name == name]
+        blank = [r for r in named if r.measured is None]
+        bare = [r for r in named if r.measured is not None and r.uncertainty is None]
+        used = "nominal, with its tolerance" if named[0].dimension.enters else "not judged"
+        if blank:
+            lines.append(f"not measured: {name}, {_which(blank, named)}: {used}")
+        if bare and named[0].dimension.enters:
+            lines.append(f"no uncertainty given: {name}, {_which(bare, named)}: taken as exact")
+    return lines
+
+
+def _which(some: Sequence[Reading], all_: Sequence[Reading]) -> str:
+    return "every element" if len(some) == len(all_) else "no. " + ", ".join(str(r.number) for r in some)
+
+
+def _plastic(rows: Sequence[AsMade]) -> list[str]:
+    numbers = ", ".join(str(row.number) for row in rows if not row.made.elastic)
+    return [f"invalid: above yield at this force as made: no. {numbers}"] if numbers else []
+
+
+def document(design: Design, rung: str, rows: Sequence[AsMade]) -> dict[str, Any]:
+    """The record for JSON: elements with the fields of `tactcad estimate --json` as made, their `nominal`
+    estimates and `intervals` (95 %), and every reading."""
+    readings = [r for row in rows for r in row.readings]
+    return {
+        "design": design.name,
+        "revision": design.design.revision,
+        "model": rung,
+        "alloy": design.material.alloy,
+        "force_N": rows[0].made.force,
+        "units": {"length": "mm", "force": "N", "stiffness": "N/mm", "stress": "MPa", "strain": "1"},
+        "elements": [
+            {**asdict(row.made), "nominal": asdict(row.nominal), "intervals": row.intervals} for row in rows
+        ],
+        "readings": [_record(r) for r in readings],
+        **{v: sum(r.verdict == v for r in readings) for v in ("inside", "outside", "undecided", "blank")},
+        **material_record(design),
+    }
+
+
+def _record(r: Reading) -> dict[str, Any]:
+    d = r.dimension
+    return {
+        "number": r.number,
+        "characteristic": d.name,
+        "key": d.key,
+        "nominal": d.nominal,
+        "lower": d.lower,
+        "upper": d.upper,
+        "measured": r.measured,
+        "uncertainty": r.uncertainty,
+        "verdict": r.verdict,
+        "line": r.line,
+    }

@@ -108,8 +108,7 @@ def estimate_rows(section: HingeSection, rung: str, mesh: int | None = None) -> 
     if rung not in ladder.FINITE_ELEMENTS:
         result = ladder.evaluate(section, rung)
         return result.stiffness.ravel().tolist(), result.reason.ravel().tolist()
-    from tactcad.fem.convergence import SOLID_MESH
-    from tactcad.fem.fem_ladder import stiffness
+    from tactcad.fem.fem_ladder import SOLID_MESH, stiffness
 
     values, reasons = [], []
     for i in range(section.hinge_thickness.size):

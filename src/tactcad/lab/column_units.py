@@ -56,9 +56,9 @@ def against_design(
     from tactcad.lab.array_estimate import estimate  # a calibration without a design needs no part
     from tactcad.mechanics.ladder import DEFAULT_RUNG
     from tactcad.mechanics.readout import volts_per_strain
+    from tactcad.parts.array.hinge_section import design_readout
+    from tactcad.parts.array.layout import Layout
     from tactcad.parts.designs import load
-    from tactcad.parts.hinge_section import design_readout
-    from tactcad.parts.layout import Layout
 
     design, force_below_yield = load(source), 1e-6  # N: no strain is estimated above yield
     try:

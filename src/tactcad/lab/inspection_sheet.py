@@ -12,8 +12,8 @@ from pathlib import Path
 from tactcad.design.csv_table import Table, decimal_commas, number, read_table, require_columns
 from tactcad.design.messages import InputError
 from tactcad.export.inspection import COLUMNS, UNIT
-from tactcad.parts.layout import Layout
-from tactcad.parts.measurements import Measurement, measurements
+from tactcad.parts.array.layout import Layout
+from tactcad.parts.array.measurements import Measurement, measurements
 
 NEEDED = tuple(c for c in COLUMNS if c not in ("key", "where", "how"))
 LIMITS = ("nominal", "lower", "upper")

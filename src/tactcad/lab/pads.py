@@ -7,12 +7,18 @@ from math import inf
 
 import numpy as np
 
-from tactcad.design.messages import InputError
+from tactcad.contact.press import Pads
+from tactcad.design.family import family_of
+from tactcad.design.messages import CheckFailure, InputError
 from tactcad.design.tree import Design
 from tactcad.lab.readings import GraspReadings
+from tactcad.mechanics import gauge_signal, ladder, readout
 from tactcad.mechanics.sample_coupling import pad_stiffness, shares_between
+from tactcad.mechanics.strength import tip_compliance
+from tactcad.parts.array.hinge_section import design_gauge, design_readout, hinge_section, not_reached
+from tactcad.parts.array.layout import Layout
+from tactcad.parts.array.stop_gap import stop_gap
 from tactcad.parts.designs import load
-from tactcad.parts.layout import Layout
 
 INCOMPRESSIBLE = 0.5  # Poisson's ratio of soft tissue and rubber; a half-space's shares do not depend on it
 # Layers thinner than this share of a pad's side cannot give way sideways, so that the even pressure which the
@@ -44,7 +50,7 @@ def stiffness_per_modulus(design: Design, thickness: float, where: str) -> float
     InputError
         The layer is thinner than LEAST_LAYER of a pad's side.
     """
-    length, width = design.element.pad_length, design.sheet.thickness
+    *_, length, width = family_of(design).must("pads", where).places(design)
     least = LEAST_LAYER * (length * width) ** 0.5
     if not thickness >= least:
         raise InputError(
@@ -99,6 +105,42 @@ def coupling(source: str, readings: GraspReadings, share: float) -> np.ndarray |
 @lru_cache(maxsize=4)
 def _pads(source: str) -> tuple[np.ndarray, np.ndarray, np.ndarray, float, float]:
     design = load(source)
+    return family_of(design).must("pads", f"{source}: its contact with an object").places(design)
+
+
+def pads_of(design: Design) -> tuple[np.ndarray, np.ndarray, np.ndarray, float, float]:
+    """x, y and number of every pad of facing rows, and all pads' length and width, mm."""
     layout = Layout(design)
     number = np.array([p.number for p in layout.elements])
     return *places(layout), number, design.element.pad_length, design.sheet.thickness
+
+
+def springs_of(design: Design) -> tuple[Pads, np.ndarray]:
+    """The pads of facing rows on their elements, and the signal of each element over its pad's sink, V/mm.
+
+    A pad turns about its hinge as it sinks: a newton at its middle sinks it by 1/K and slopes it by 1/(K L),
+    up towards the hinge; a newton s further from the hinge does so (L + s)/L times. Its stop closes where the
+    nominal gap does, and is taken as rigid.
+
+    Raises
+    ------
+    CheckFailure
+        An element is out of the estimator's range.
+    """
+    layout = Layout(design)
+    at = layout.elements
+    section = hinge_section(layout, at)
+    if why := not_reached(layout, at, section, ladder.DEFAULT_RUNG):
+        raise CheckFailure(why)
+    K = np.broadcast_to(ladder.stiffness(section, ladder.DEFAULT_RUNG), len(at))
+    x, y = places(layout)
+    away = np.sign(x) / np.array([p.load_arm for p in at])  # hinges lie outside the pads
+    move = np.stack([np.ones(len(at)), -away, np.zeros(len(at))], axis=1)
+    compliance = move[:, :, None] * move[:, None, :] / K[:, None, None]
+    tip = tip_compliance(section, K, np.array([p.arm for p in at]))
+    stop = np.array([stop_gap(layout, p) for p in at]) / tip / K
+    height = np.zeros(len(at))
+    pads = Pads(x, y, design.element.pad_length, design.sheet.thickness, compliance, height, stop)
+    foil = gauge_signal.foil_strain_per_deflection(section, design_gauge(design))
+    volts = readout.volts_per_strain(design.gauge.factor, design_readout(design))
+    return pads, np.broadcast_to(volts * foil, len(at))

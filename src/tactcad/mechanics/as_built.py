@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from . import ladder
-from .derivative import elasticity
+from .ladder import elasticity
 from .section import Array, HingeSection
 
 if TYPE_CHECKING:

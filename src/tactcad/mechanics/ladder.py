@@ -1,12 +1,19 @@
-"""The closed-form rungs by name: stiffness of many designs at once, or a refusal."""
+"""The closed-form rungs by name: stiffness of many designs at once, or a refusal; how it follows one
+parameter, by the model's own derivative; and the hinge that gives a wanted stiffness.
+
+Beam theory's exponents (3 for the leaf's thickness, -2 for the arm) hold for a leaf between rigid blocks;
+body and arm of a real element give way too.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
 from tactcad.design.messages import CheckFailure
+from tactcad.mechanics import ladder
 
 from . import friction, validity
 from .register import BY_NAME, REGISTER
@@ -23,11 +30,16 @@ BLOCK = 8192  # designs evaluated together: their intermediate arrays stay in th
 
 @dataclass(frozen=True)
 class Result:
-    """Stiffness (N/mm, NaN where refused), and why refused ("" where not), for each design."""
+    """Stiffness (N/mm, NaN where refused), and why refused (a validity.Reason, or None), for each design."""
 
     stiffness: Array
     valid: np.ndarray
-    reason: np.ndarray
+    broken: np.ndarray
+
+    @property
+    def reason(self) -> np.ndarray:
+        """Why refused in words, "" where not."""
+        return validity.in_words(self.broken)
 
 
 def evaluate(s: HingeSection, rung: str = DEFAULT_RUNG) -> Result:
@@ -45,12 +57,12 @@ def evaluate(s: HingeSection, rung: str = DEFAULT_RUNG) -> Result:
     Result
         Arrays of the section's shape; out of the rung's range NaN and the first rule that is broken.
     """
-    reason = validity.reasons(s, rung)
-    valid = reason == ""
+    broken = validity.first_broken(s, rung)
+    valid = ~broken.astype(bool)
     stiffness = np.full(s.shape, np.nan)
     if valid.any():
         stiffness[valid] = _stiffness(s.rows(valid.reshape(-1)), rung)
-    return Result(stiffness, valid, reason)
+    return Result(stiffness, valid, broken)
 
 
 def stiffness(s: HingeSection, rung: str = DEFAULT_RUNG) -> Array:
@@ -82,7 +94,7 @@ def require_range(s: HingeSection, rung: str) -> None:
     for mask in validity.broken_rules(s, rung).values():
         first = np.flatnonzero(mask)[0]
         where = f" (design {first + 1} of {mask.size})" if mask.size > 1 else ""
-        why = validity.reasons(s, rung).ravel()[first]
+        why = validity.first_broken(s, rung).ravel()[first]
         raise CheckFailure(f"rung {rung} does not reach this design: {why}{where}")
 
 
@@ -107,3 +119,96 @@ def _stiffness(s: HingeSection, rung: str) -> Array:
         part = s.rows(block)
         result[block] = friction.factor(part) / compliance(part, rung)
     return result.reshape(s.shape)
+
+
+STEP = 1e-5  # relative; central differences then err by 1e-9 of the exponent
+
+
+def elasticity(s: HingeSection, parameter: str, rung: str = ladder.DEFAULT_RUNG) -> Array:
+    """Relative change of stiffness per relative change of a parameter: dln K/dln p.
+
+    Parameters
+    ----------
+    s
+        One design or many.
+    parameter
+        Name of a field of `HingeSection`.
+    rung
+        A closed-form rung.
+
+    Returns
+    -------
+    Array
+        Of the section's shape; 2.5 where 1 % more of the parameter gives 2.5 % more K.
+
+    Raises
+    ------
+    CheckFailure
+        Where a design is out of the rung's range; the steps beside it may lie just outside.
+    """
+    ladder.require_range(s, rung)
+    value = getattr(s, parameter)
+    moved = (s.with_(**{parameter: value * (1.0 + sign * STEP)}) for sign in (1.0, -1.0))
+    up, down = (friction.factor(m) / ladder.compliance(m, rung) for m in moved)
+    return np.log(up / down) / (2.0 * STEP)
+
+
+SEARCHED = {
+    "hinge_thickness": (0.005, 5.0),
+    "hinge_length": (0.01, 50.0),
+}  # mm, as a design file may have them
+GRID = 4001  # points, by logarithm, on which the rung's range is looked for
+
+
+def size(s: HingeSection, stiffness: float, parameter: str, rung: str = ladder.DEFAULT_RUNG) -> float:
+    """The hinge thickness or length that gives a stiffness, mm.
+
+    Stiffness grows with thickness and falls with length, so there is at most one answer.
+
+    Parameters
+    ----------
+    s
+        One design (scalars); its own value of the parameter is not used.
+    stiffness
+        Wanted at the tip, N/mm.
+    parameter
+        "hinge_thickness" or "hinge_length".
+    rung
+        A closed-form rung.
+
+    Raises
+    ------
+    CheckFailure
+        Where the rung's range holds no such design; says which stiffnesses can be reached.
+    """
+    low, high = SEARCHED[parameter]
+    values = np.geomspace(low, high, GRID)
+    result = ladder.evaluate(s.with_(**{parameter: values}), rung)
+    if not result.valid.any():
+        raise CheckFailure(f"no {parameter} lies in the range of rung {rung}: {result.reason[GRID // 2]}")
+    reached, reachable = values[result.valid], result.stiffness[result.valid]
+    if not reachable.min() <= stiffness <= reachable.max():
+        raise CheckFailure(
+            f"{stiffness:g} N/mm is out of reach: with {parameter} from {reached[0]:.3g} to "
+            f"{reached[-1]:.3g} mm, the range of rung {rung}, "
+            f"stiffness goes from {reachable.min():.4g} to {reachable.max():.4g} N/mm"
+        )
+    at = np.flatnonzero(np.diff(np.sign(reachable - stiffness)) != 0)[0] if reachable[0] != stiffness else 0
+    return _bisect(
+        lambda v: float(ladder.stiffness(s.with_(**{parameter: v}), rung)) - stiffness,
+        reached[at],
+        reached[at + 1],
+    )
+
+
+def _bisect(excess: Callable[[float], float], low: float, high: float) -> float:
+    """Root between low and high, where excess changes sign, to the last bit."""
+    rising = excess(high) > 0.0
+    while True:
+        middle = (low + high) / 2.0
+        if not low < middle < high:
+            return middle
+        if (excess(middle) > 0.0) == rising:
+            high = middle
+        else:
+            low = middle

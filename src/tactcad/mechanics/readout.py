@@ -1,17 +1,29 @@
-"""Quarter bridge, instrumentation amplifier and converter: from strain to volts.
+"""Quarter bridge, instrumentation amplifier and converter: from strain to volts, their noise, and what an
+element's read-out then shows.
 
-One active gauge R(1 + x) with three equal ones, x = GF strain + offset: the bridge gives
-U x/(4 + 2 x), exactly; x/4 is only its slope at zero (any text on Wheatstone bridges).
+One active gauge R(1 + x) with three equal ones, x = GF strain + offset: the bridge gives U x/(4 + 2 x),
+exactly; x/4 is only its slope at zero (any text on Wheatstone bridges).
+
+White noise e of the amplifier, referred to its input, and Johnson noise 4 k T R of what lies before it (any
+text on electronic noise), through one pole at the amplifier's bandwidth B:
+
+    e_out = G sqrt((e^2 + 4 k T R) pi/2 B)
+
+Flicker noise is left out: a reading lasts too short a time for it.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import pi, sqrt
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
-from .section import Array
+from tactcad.mechanics import gauge_signal, ladder, readout
+
+from .gauge_signal import Gauge
+from .section import Array, HingeSection
 
 
 @dataclass(frozen=True)
@@ -115,3 +127,79 @@ def volts_per_strain(factor: float, readout: ReadOut, strain: ArrayLike = 0.0) -
     """
     x = factor * np.asarray(strain, dtype=float) + readout.bridge_offset
     return readout.excitation * readout.gain * readout.transmission * factor * 4 / (4 + 2 * x) ** 2
+
+
+BOLTZMANN = 1.380649e-23  # J/K, SI 2019
+ROOM = 300.15  # K
+
+
+def sample_noise(gain: float, density: float, bandwidth: float, resistance: float) -> float:
+    """Rms of one sample at the amplifier's output, V.
+
+    Parameters
+    ----------
+    gain
+        Of the amplifier.
+    density
+        Its white noise referred to the input, V/rtHz.
+    bandwidth
+        -3 dB, Hz, of one pole.
+    resistance
+        Between its inputs, ohm: of a bridge of four equal arms R it is R, and two switches of the
+        multiplexer.
+    """
+    return gain * sqrt((density**2 + 4 * BOLTZMANN * ROOM * resistance) * pi / 2 * bandwidth)
+
+
+@dataclass(frozen=True)
+class Signal:
+    """Signals by element, as magnitudes: the sign depends on the arm of the bridge that the gauge is in."""
+
+    per_deflection: Array  # K_v, V/mm, at no load
+    per_force: Array  # K_v/K, V/N
+    strain: Array  # of the foil at the deflection asked for
+    volts: Array  # change of the amplifier's output there, exact bridge, held at its limits
+    nonlinearity: Array  # of the bridge there, relative
+    limited: NDArray  # whether a supply or the converter holds the output
+    resolution: Array  # N, two standard deviations of the averaged reading
+
+
+def predict(
+    s: HingeSection,
+    gauge: Gauge,
+    electronics: ReadOut,
+    deflection: ArrayLike,
+    rung: str = ladder.DEFAULT_RUNG,
+) -> Signal:
+    """Signals of all elements.
+
+    Parameters
+    ----------
+    s
+        The elements.
+    gauge, electronics
+        Alike for all elements.
+    deflection
+        Of each element at its tip, mm.
+    rung
+        A closed-form rung.
+
+    Raises
+    ------
+    CheckFailure
+        Where an element is out of the rung's range.
+    """
+    gain = readout.volts_per_strain(gauge.factor, electronics)
+    per_mm = gauge_signal.foil_strain_per_deflection(s, gauge, rung)
+    per_newton = gauge_signal.foil_strain_per_force(s, gauge, rung)
+    strain = per_mm * np.asarray(deflection, dtype=float)
+    volts = readout.output(strain, gauge.factor, electronics)
+    return Signal(
+        gain * per_mm,
+        gain * per_newton,
+        strain,
+        volts - readout.output(0.0, gauge.factor, electronics),
+        readout.bridge_nonlinearity(gauge.factor * strain),
+        volts != readout.unlimited_output(strain, gauge.factor, electronics),
+        2 * electronics.averaged_noise / (gain * per_newton),
+    )

@@ -1,4 +1,27 @@
-"""At which force the hinge yields or fatigues, and which force it is rated for."""
+"""At which force the hinge yields or fatigues, which force it is rated for, and the load on a hinge whose arm
+is pressed onto the overload stop by a force too large for the hinge alone.
+
+The stop holds the arm's tip, at `arm` (mm) from the hinge's centre; the force acts at L < arm. Three beams
+are joined end to end: the body, a cantilever of length Lb; the hinge, a leaf of length l; the arm beyond it,
+a cantilever. The deflection at i by a unit force at j is, for i <= j (mm from the hinge's centre, L or arm),
+
+  d_ij = C (i j + l^2/12) + rest_ij
+  rest_ij = (p q Lb + (p + q) Lb^2/2 + Lb^3/3)/(E b Hb^3/12) + u^2 (3 v - u)/(6 E b h^3/12)
+  p = i + l/2, q = j + l/2, u = i - l/2, v = j - l/2
+  C = (1/K - rest_LL)/(L^2 + l^2/12), K the stiffness at the load line; not below 0, which it would be where
+      the sheet is so wide that body and arm cannot curl sideways and are stiffer than rest_LL says
+
+Each newton beyond the force that closed the stop is met at the tip by the reaction
+
+  S = d_La/(d_aa + give), a = arm, with `give` the compliance of the stop in mm/N
+
+and reaches the hinge as the shear V = 1 - S and the moment M = L - S arm. M is negative where the body bends
+so far that the arm tilts back over the held tip. That this relieves the hinge at first is not counted; that
+it may bend the hinge the other way too far is.
+
+Of the stop's functions s is the element, `stiffness` (N/mm) is K, `arm` (mm) the tip's distance and `give`
+(mm/N) the stop's compliance; arrays broadcast together.
+"""
 
 from __future__ import annotations
 
@@ -61,3 +84,96 @@ def goodman(alloy: Alloy, peak_stress: Array | float) -> Array:
     ultimate = alloy.tensile_strength or alloy.yield_strength
     half = np.asarray(peak_stress) / 2.0
     return 1.0 / (half / (surface_factor(ultimate) * alloy.fatigue_strength) + half / ultimate)
+
+
+def tip_compliance(s: HingeSection, stiffness: Array, arm: Array) -> Array:
+    """d_La: deflection of the free arm's tip by a newton at the load line, mm/N."""
+    return _compliance(s, stiffness, s.load_arm, arm)
+
+
+def stop_share(s: HingeSection, stiffness: Array, arm: Array, give: float) -> Array:
+    """S: reaction of the closed stop to one newton at the load line, N/N."""
+    return tip_compliance(s, stiffness, arm) / (_compliance(s, stiffness, arm, arm) + give)
+
+
+def stress_share(s: HingeSection, stiffness: Array, arm: Array, give: float) -> Array:
+    """Force at a free arm's load line (N) that stresses the fillet as one newton does on a closed stop.
+
+    The bending moment where the stress is largest, at w from the hinge's centre, is M + V w on the stop and
+    L + w by a newton at a free arm's load line; their ratio is returned, with M not below 0.
+    """
+    L, w, S = s.load_arm, strain.peak_position(s), stop_share(s, stiffness, arm, give)
+    return (np.maximum(L - S * arm, 0.0) + (1.0 - S) * w) / (L + w)
+
+
+def back_share(s: HingeSection, stiffness: Array, arm: Array, give: float) -> Array:
+    """As `stress_share`, of the stress in the fillet on the hinge's other side where M bends the hinge back,
+    or of that bending's angle: the larger. The force that closed the stop bends the other way; it is left
+    out."""
+    L, w, S = s.load_arm, strain.peak_position(s), stop_share(s, stiffness, arm, give)
+    return np.maximum((S * arm - L + (1.0 - S) * w) / (L + w), S * arm / L - 1.0)
+
+
+def deflection_share(s: HingeSection, stiffness: Array, arm: Array, give: float) -> Array:
+    """Force at a free arm's load line (N) that bends the hinge by as large an angle as one newton does on a
+    closed stop: M/L."""
+    return np.maximum(1.0 - stop_share(s, stiffness, arm, give) * arm / s.load_arm, 0.0)
+
+
+def largest_closing_force(
+    s: HingeSection, stiffness: Array, arm: Array, give: float, overload: float, limit: Array
+) -> Array:
+    """Largest force at the load line that may close the stop, so that the hinge bears an overload.
+
+    F + share (overload - F) = limit.
+
+    Parameters
+    ----------
+    s, stiffness, arm, give
+        As above.
+    overload : float
+        Force at the load line, N.
+    limit : array
+        Force at a free arm's load line whose angle and stress the hinge may have at most, N.
+
+    Returns
+    -------
+    array
+        N, at most `limit`. 0 or less where a stop that is closed from the start would not protect the hinge:
+        its share of the overload alone exceeds the limit, or bends the hinge back too far.
+    """
+    share = _share(s, stiffness, arm, give)
+    closing = limit - share / (1.0 - share) * np.maximum(overload - limit, 0.0)
+    back = back_share(s, stiffness, arm, give) * overload > limit
+    return np.where(back & (overload > limit), 0.0, closing)
+
+
+def largest_overload(
+    s: HingeSection, stiffness: Array, arm: Array, give: float, closing: Array, limit: Array
+) -> Array:
+    """Largest overload (N) that the hinge bears with a stop that closes at `closing` (N): the inverse of
+    `largest_closing_force`."""
+    share = _share(s, stiffness, arm, give)
+    back = np.maximum(limit / np.maximum(back_share(s, stiffness, arm, give), 1e-9), limit)
+    return np.minimum((limit - (1.0 - share) * closing) / np.maximum(share, 1e-9), back)
+
+
+def _share(s: HingeSection, stiffness: Array, arm: Array, give: float) -> Array:
+    """The larger of stress and angle on a closed stop, in newtons at a free arm's load line per newton; less
+    than 1, since S is positive."""
+    return np.maximum(stress_share(s, stiffness, arm, give), deflection_share(s, stiffness, arm, give))
+
+
+def _compliance(s: HingeSection, stiffness: Array, i: Array, j: Array) -> Array:
+    """d_ij, mm/N."""
+    L, sideways = s.load_arm, s.hinge_length**2 / 12.0
+    C = np.maximum(1.0 / stiffness - _rest(s, L, L), 0.0) / (L**2 + sideways)
+    return C * (i * j + sideways) + _rest(s, i, j)
+
+
+def _rest(s: HingeSection, i: Array, j: Array) -> Array:
+    """rest_ij, mm/N."""
+    Lb, half, Eb = s.body_length, s.hinge_length / 2.0, s.youngs_modulus * s.width / 12.0
+    p, q, u, v = i + half, j + half, i - half, j - half
+    body = (p * q * Lb + (p + q) * Lb**2 / 2.0 + Lb**3 / 3.0) / (Eb * s.body_height**3)
+    return body + u**2 * (3.0 * v - u) / (6.0 * Eb * s.arm_height**3)

@@ -8,7 +8,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from tactcad.design.plain_numbers import NINE_DIGITS
+from tactcad.design.text_values import NINE_DIGITS
 
 from . import friction
 from .constants import ladder_data
@@ -36,6 +36,17 @@ class RangeRule:
     broken: Callable[[HingeSection], np.ndarray]
     fields: tuple[str, ...]
     each: Callable[[HingeSection, str], np.ndarray] | None = None
+
+
+@dataclass(frozen=True)
+class Reason:
+    """Why a rung does not reach a design: the rule that it breaks, and the parameters to look at."""
+
+    rule: str
+    fields: tuple[str, ...]
+
+    def __str__(self) -> str:
+        return f"{self.rule} ({', '.join(self.fields)})"
 
 
 def _each(name: str, fields: tuple[str, ...], breaks: Callable[[HingeSection, str], np.ndarray]) -> RangeRule:
@@ -232,13 +243,25 @@ def within(s: HingeSection, rung: str) -> np.ndarray:
 def reasons(s: HingeSection, rung: str) -> np.ndarray:
     """For each design the first rule it breaks and the fields to look at, "rule (field, field)", or an empty
     string; array of str of the section's shape."""
-    reason = np.full(s.shape, "", dtype=object)
+    return in_words(first_broken(s, rung))
+
+
+def in_words(broken: np.ndarray) -> np.ndarray:
+    """`first_broken` as `reasons` says it."""
+    words = np.empty(broken.shape, dtype=object)
+    words.reshape(-1)[:] = ["" if one is None else str(one) for one in broken.reshape(-1)]
+    return words
+
+
+def first_broken(s: HingeSection, rung: str) -> np.ndarray:
+    """For each design the `Reason` of the first rule it breaks, or None; array of the section's shape."""
+    reason = np.full(s.shape, None, dtype=object)
     broken = broken_rules(s, rung)
     for rule in reversed([rule for rule in rules(rung) if rule.name in broken]):
         if rule.each is None:
-            reason[broken[rule.name]] = f"{rule.name} ({', '.join(rule.fields)})"
+            reason[broken[rule.name]] = Reason(rule.name, rule.fields)
             continue
         for field in reversed(rule.fields):
             with np.errstate(all="ignore"):
-                reason[np.broadcast_to(rule.each(s, field), s.shape)] = f"{rule.name} ({field})"
+                reason[np.broadcast_to(rule.each(s, field), s.shape)] = Reason(rule.name, (field,))
     return reason

@@ -9,15 +9,14 @@ import numpy as np
 from tactcad.design.materials import modulus_per_kelvin
 from tactcad.design.messages import InputError
 from tactcad.design.tree import Design, Tolerance
-from tactcad.fem.layered_leaf import Layer
+from tactcad.fem.bonded_leaf import Layer
 from tactcad.lab import pads
-from tactcad.mechanics.gauge_signal import Gauge
+from tactcad.mechanics.gauge_signal import Gauge, Power
 from tactcad.mechanics.readout import ReadOut
 from tactcad.mechanics.section import HingeSection
-from tactcad.mechanics.self_heating import Power
-from tactcad.parts.bridge_figures import power_of
-from tactcad.parts.hinge_section import design_gauge, design_readout, hinge_section
-from tactcad.parts.layout import Layout
+from tactcad.parts.array.bridge_figures import power_of
+from tactcad.parts.array.hinge_section import design_gauge, design_readout, hinge_section
+from tactcad.parts.array.layout import Layout
 
 
 @dataclass(frozen=True)

@@ -11,12 +11,28 @@ from dataclasses import dataclass
 import numpy as np
 
 from tactcad.lab.regression import t_quantile
-from tactcad.mechanics import gauge_signal, ladder, readout, self_heating
+from tactcad.mechanics import gauge_signal, ladder, readout
+from tactcad.mechanics.readout import Signal, predict
 from tactcad.mechanics.section import HingeSection
-from tactcad.mechanics.signal import Signal, predict
 from tactcad.paper.array_model import ArrayModel
 from tactcad.paper.published import Published
 from tactcad.paper.residuals import matched
+from tactcad.report import plots as d
+from tactcad.report.report import (
+    Cell,
+    Marked,
+    Picture,
+    ReportSection,
+    ReportTable,
+    exact,
+    interval,
+    listed,
+    percent,
+    sig,
+    signed_percent,
+)
+
+from .prose import drawn, section, table, tabulated
 
 LENGTHS = np.linspace(0.7, 1.5, 17)  # mm
 
@@ -40,8 +56,8 @@ class GainFit:
     scatter_at_length: np.ndarray
     per_length_exponent: float  # dlnG/dln(effective length of K): near 1 only gain over length is determined
     signal: Signal  # with the design's own read-out, at the paper's largest deflection
-    always_on: self_heating.Heating
-    switched: self_heating.Heating
+    always_on: gauge_signal.Heating
+    switched: gauge_signal.Heating
     drift_always_on: np.ndarray  # N, force equivalent of the drift, by element
     drift_switched: np.ndarray
 
@@ -71,7 +87,7 @@ def fit(data: Published, array: ArrayModel) -> GainFit:
     signal = predict(s, array.gauge, array.readout, t1.deflection.value[here] * 1e-3)
     on, off = (
         how(array.readout.excitation, array.gauge, array.power)
-        for how in (self_heating.continuous, self_heating.switched)
+        for how in (gauge_signal.continuous, gauge_signal.switched)
     )
     newtons = [
         abs(h.drift) * float(readout.volts_per_strain(1.0, array.readout)) / signal.per_force
@@ -115,3 +131,154 @@ def _effective(s: HingeSection) -> float:
     """Mean E b t^3/(12 K L^2): length of a short hinge with this stiffness, which Table 1's K determines."""
     K = ladder.stiffness(s)
     return float((s.youngs_modulus * s.width * s.hinge_thickness**3 / (12 * K * s.load_arm**2)).mean())
+
+
+def page(g: GainFit, array: ArrayModel) -> ReportSection:
+    return section(
+        "gain", findings(g, array), (_by_element(g), _lengths(g), _heating(g, array)), (_plot(g),), g
+    )
+
+
+def findings(g: GainFit, array: ArrayModel) -> tuple[str, ...]:
+    far = np.abs(g.residual) > 2 * g.scatter
+    inside = g.fitted_low <= g.design_gain <= g.fitted_high
+    change = g.scatter_at_length.max() / g.scatter_at_length.min() - 1
+    sentences = [
+        f"One gain of {sig(g.fitted_gain)} V per unit of strain (95 % "
+        f"{interval(g.fitted_low, g.fitted_high)}) leaves a scatter of {percent(g.scatter)} in K_v. "
+        f"Excitation {array.readout.excitation:g} V × amplifier {array.readout.gain:g} × gauge factor "
+        f"{array.gauge.factor:g}/4 gives {sig(g.design_gain)}, {'inside' if inside else 'OUTSIDE'} that "
+        "interval.",
+        "What the data identify is gain over hinge length, not the gain: over slot lengths from "
+        f"{g.lengths[0]:.2f} to {g.lengths[-1]:.2f} mm the fitted gain runs from "
+        f"{sig(g.gain_at_length[0])} to {sig(g.gain_at_length[-1])} V (as the effective length that K fixes "
+        f"to the power {g.per_length_exponent:.2f}; a grid longer than the leaf keeps it below 1), while the "
+        f"scatter changes by {percent(change)} of itself.",
+        (
+            f"Element{'s' if far.sum() > 1 else ''} {listed(f'no. {n}' for n in g.element[far])} "
+            f"lie{'' if far.sum() > 1 else 's'} more than two standard deviations off."
+            if far.any()
+            else "No element lies more than two standard deviations off: gauge place and bonding scatter "
+            "over all of them alike."
+        ),
+    ]
+    if g.signal.limited.any():
+        sentences.append(
+            "At the paper's largest deflections the read-out of "
+            f"{listed(f'no. {n}' for n in g.element[g.signal.limited])} reaches a supply's or the "
+            "converter's limit."
+        )
+    sentences.append(
+        f"The quarter bridge is non-linear by up to {percent(np.abs(g.signal.nonlinearity).max())} at the "
+        f"paper's largest deflections (strains up to {percent(g.signal.strain.max())}); two standard "
+        "deviations of the averaged reading are "
+        f"{interval(g.signal.resolution.min() * 1e3, g.signal.resolution.max() * 1e3, 2)} mN, "
+        "with the noise that the design assumes."
+    )
+    sentences.append(
+        f"With power on all the time a grid stays {sig(g.always_on.rise, 2)} K warmer than its leaf at "
+        f"{sig(g.always_on.power_density, 2)} kW/m² and reads up to "
+        f"{sig(g.drift_always_on.max() * 1e3, 2)} mN too much; powered only while reading, "
+        f"{sig(g.switched.rise, 2)} K and {sig(g.drift_switched.max() * 1e3, 2)} mN remain at the end of "
+        f"a reading, with {percent(g.switched.power / g.always_on.power)} of the heat."
+    )
+    return tuple(sentences)
+
+
+def _heating(g: GainFit, array: ArrayModel) -> ReportTable:
+    switched = f"on for {array.power.on_time * 1e3:g} ms in every {array.power.period:g} s"
+    return tabulated(
+        "gain heating",
+        (("power on all the time", g.always_on, g.drift_always_on), (switched, g.switched, g.drift_switched)),
+        ("", "", lambda row: row[0]),
+        ("mean power", "mW", lambda row: row[1].power * 1e3),
+        ("per grid area", "kW/m²", lambda row: row[1].power_density),
+        ("grid over leaf", "K", lambda row: row[1].rise),
+        ("drift dR/R", "10⁻⁶", lambda row: f"{row[1].drift * 1e6:.1f}".replace("-", "−")),
+        ("reads as, least", "mN", lambda row: row[2].min() * 1e3),
+        ("largest", "mN", lambda row: row[2].max() * 1e3),
+    )
+
+
+def _by_element(g: GainFit) -> ReportTable:
+    def fitted(i: int) -> Cell:
+        return Marked(g.predicted[i]) if abs(g.residual[i]) > 2 * g.scatter else g.predicted[i]
+
+    return tabulated(
+        "gain by_element",
+        range(len(g.element)),
+        ("element", "", lambda i: int(g.element[i])),
+        ("arm a", "mm", lambda i: exact(g.arm[i])),
+        ("foil strain per deflection", "%/mm", lambda i: g.strain_per_deflection[i] * 100),
+        ("K_v printed", "V/mm", lambda i: exact(g.measured[i])),
+        ("K_v, fitted gain", "V/mm", fitted),
+        ("printed over fitted", "−1", lambda i: signed_percent(np.expm1(g.residual[i]))),
+        ("K_v/K printed", "V/N", lambda i: exact(g.measured_per_force[i])),
+        ("K_v/K, design's gain", "V/N", lambda i: g.signal.per_force[i]),
+        ("signal at largest deflection", "V", lambda i: g.signal.volts[i]),
+        ("bridge non-linearity", "", lambda i: percent(g.signal.nonlinearity[i])),
+        ("resolution", "mN", lambda i: g.signal.resolution[i] * 1e3),
+    )
+
+
+def _lengths(g: GainFit) -> ReportTable:
+    pick = np.unique(np.linspace(0, len(g.lengths) - 1, 7).round().astype(int))
+    return table(
+        "gain lengths",
+        (("slot length", "mm"), *((f"{g.lengths[i]:.2f}", "") for i in pick)),
+        (
+            ("fitted gain, V", *(sig(g.gain_at_length[i]) for i in pick)),
+            ("scatter of ln K_v", *(f"{g.scatter_at_length[i]:.4f}" for i in pick)),
+        ),
+    )
+
+
+def _plot(g: GainFit) -> Picture:
+    with d.panels(1, 2, size=(11.2, 4.4)) as (figure, (left, right)):
+        span = np.array([g.predicted.min() * 0.7, g.predicted.max() * 1.4])
+        left.fill_between(
+            span,
+            span * np.exp(-g.scatter),
+            span * np.exp(g.scatter),
+            color=d.SKY,
+            alpha=0.35,
+            lw=0,
+            label="± one standard deviation",
+        )
+        left.plot(span, span, color=d.BLACK, lw=1.2)
+        left.plot(g.predicted, g.measured, "o", color=d.RED, ms=8, mec="white")
+        used: list[tuple[float, float]] = []
+        for x, y, n in zip(g.predicted, g.measured, g.element):
+            shift = 9 if not any(abs(x - a) < 0.05 * x and abs(y - b) < 0.06 * y for a, b in used) else -22
+            d.note(left, f"{n}", (x, y), (shift, -4), fontsize=10)
+            used.append((x, y))
+        for axis in (left.xaxis, left.yaxis):
+            axis.axes.set_xscale("log")
+            axis.axes.set_yscale("log")
+        d.log_ticks(left.xaxis, (3, 4, 5, 6, 8, 10))
+        d.log_ticks(left.yaxis, (2, 3, 4, 6, 8, 10))
+        left.set(
+            xlim=span,
+            xlabel="K_v predicted with one gain, V/mm",
+            ylabel="K_v printed, V/mm",
+            title="by element number",
+        )
+        left.legend(loc="upper left")
+        right.plot(g.lengths, g.gain_at_length, "-", color=d.BLUE, lw=2)
+        right.axhline(g.design_gain, color=d.RED, ls="--", lw=1.6)
+        d.note(
+            right,
+            "the design's read-out",
+            (g.lengths[-1], g.design_gain),
+            (0, -15),
+            ha="right",
+            color=d.RED,
+            fontsize=10,
+        )
+        right.set(
+            xlabel="slot length l, mm",
+            ylabel="gain that fits K_v best, V per unit strain",
+            title="gain and length: every point on the line fits equally well",
+            ylim=0,
+        )
+        return drawn(figure, "gain")

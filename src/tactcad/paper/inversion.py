@@ -9,8 +9,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from tactcad.lab.regression import t_quantile
-from tactcad.mechanics import fieller, lumped
+from tactcad.mechanics import lumped
 from tactcad.paper.reference_stiffness import Table2Study, solve
+from tactcad.report import plots as d
+from tactcad.report.report import Marked, Picture, ReportSection, ReportTable, interval, percent, sig
+
+from .prose import drawn, section, table
 
 
 @dataclass(frozen=True)
@@ -92,7 +96,7 @@ def _estimate(study: Table2Study, K_r: float) -> np.ndarray:
 def _invert(study: Table2Study, K_r: float, K_r_se: float, spread: float) -> Inverted:
     k, x, R = study.measuring[:, None], study.object_printed[None, :], study.ratio
     var = (spread * R) ** 2
-    interval = fieller.ratio_interval(
+    interval = lumped.ratio_interval(
         K_r - R * k, R - 1, k * k * var + K_r_se**2, var, -k * var, quantile=t_quantile(0.95, R.size - 1)
     )
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -105,3 +109,217 @@ def _spearman(a: np.ndarray, b: np.ndarray) -> float:
         return np.argsort(np.argsort(v.ravel(), kind="stable"), kind="stable").astype(float)
 
     return float(np.corrcoef(rank(a), rank(b))[0, 1])
+
+
+WELL = 5.0  # |condition number| below which a pair is called well conditioned
+FACTOR = 1.5  # an estimate within this factor of the sample's K_obj is called right
+
+
+def page(v: Inversion) -> ReportSection:
+    sentences = findings(v)
+    return section(
+        "inversion",
+        sentences,
+        (_table(v, v.supported), _table(v, v.printed)),
+        (_plot(v),),
+        v,
+        (sentences[0], sentences[-1]),
+    )
+
+
+def findings(v: Inversion) -> tuple[str, ...]:
+    x = v.object_stiffness
+    n = x.size * len(v.measuring)
+    printed, supported = (_right(w.estimate, x) for w in (v.printed, v.supported))
+    held = v.supported.holds(x)
+    well = np.abs(v.supported.condition) < WELL
+    lost = ~v.supported.physical()
+    rows_lost = [f"{k:g}" for k, bad in zip(v.measuring, lost) if bad.any()]
+    sentences = [
+        f"With the printed K_r = {v.printed.reference:g} N/mm {printed.sum()} of {n} readings "
+        f"give a K_obj within a factor {FACTOR:g} of the sample's, with K_r = "
+        f"{sig(v.supported.reference)} N/mm {supported.sum()}; the median is "
+        f"{sig(_median(v.printed, x))} and {sig(_median(v.supported, x))} times the sample's"
+        + _median_of_positive(v, x)
+        + ".",
+        _without_its_own(v),
+        _without_reading(v),
+        f"With the supported K_r {lost.sum()} readings give no positive K_obj at all"
+        + (f" (K_m = {', '.join(rows_lost)} N/mm)." if lost.any() else ".")
+        + f" The 95 % interval (R scatters by {percent(v.ratio_error)}) holds the sample's K_obj for "
+        f"{held.sum()} of {n}"
+        + f", and is bounded for {(v.supported.bounded & (v.supported.low > 0)).sum()}.",
+    ]
+    if well.any() and (~well).any():
+        sentences.append(_by_condition(v, well))
+    return tuple(sentences)
+
+
+def _without_its_own(v: Inversion) -> str:
+    """How many are right where the K_r is fitted without the reading that it is tried on."""
+    x = v.object_stiffness
+    left_out, *ends = (_right(e, x).sum() for e in (v.left_out, *v.at_ends))
+    same = f"{ends[0]} with either end" if ends[0] == ends[1] else f"{ends[0]} and {ends[1]} with the ends"
+    return (
+        "That K_r is fitted to these very readings: with the one that all others support, without the "
+        "reading's "
+        f"own element and sample, {left_out} are within the factor; {same} of its 95 % interval."
+    )
+
+
+def _without_reading(v: Inversion) -> str:
+    """How many would be right with the samples' geometric mean as the answer to all, without any reading."""
+    x, elements = v.object_stiffness, len(v.measuring)
+    log = np.log(x)
+    one = np.exp(log.mean())
+    of_others = np.exp((log.sum() - log) / (len(x) - 1)) if len(x) > 1 else x
+    return (
+        f"Always answering {sig(one)} N/mm, the samples' geometric mean, without any reading is within the "
+        f"factor for {elements * _near(one, x).sum()}, the mean of the other samples for "
+        f"{elements * _near(of_others, x).sum()}."
+    )
+
+
+def _by_condition(v: Inversion, well: np.ndarray) -> str:
+    x = v.object_stiffness
+    error = np.abs(np.log(np.where(v.supported.physical(), v.supported.estimate, np.nan) / x))
+    inside, outside = (_typical(error, m) for m in (well, ~well))
+    supported, left_out = (_right(e, x) for e in (v.supported.estimate, v.left_out))
+    mean = np.broadcast_to(_near(np.exp(np.log(x).mean()), x), well.shape)
+    least = np.abs(v.supported.condition).min()
+    return (
+        f"The condition number says beforehand which readings count: below {WELL:g} {supported[well].sum()} "
+        f"of {well.sum()} are within the factor ({left_out[well].sum()} with the K_r that the others "
+        f"support, "
+        f"{mean[well].sum()} without any reading), above it {supported[~well].sum()} of {(~well).sum()}. The "
+        f"typical error is {inside} below and {outside} above; rank correlation of condition number and "
+        f"error "
+        f"{v.rank_correlation:.2f}. Least is {sig(least)}, so that {percent(v.ratio_error)} in R are at best "
+        f"{percent(v.ratio_error * least)} in K_obj."
+    )
+
+
+def _near(estimate: np.ndarray, x: np.ndarray) -> np.ndarray:
+    return np.abs(np.log(estimate / x)) <= np.log(FACTOR)
+
+
+def _right(estimate: np.ndarray, x: np.ndarray) -> np.ndarray:
+    positive = np.isfinite(estimate) & (estimate > 0)
+    return positive & _near(np.where(positive, estimate, 1.0), x)
+
+
+def _median(w: Inverted, x: np.ndarray) -> float:
+    """Median of estimate over K_obj; near R = 1 an estimate that is not positive counts as infinitely
+    stiff.
+    """
+    return float(np.median(np.where(w.physical(), w.estimate, np.inf) / x))
+
+
+def _median_of_positive(v: Inversion, x: np.ndarray) -> str:
+    """The supported median over positive estimates, where the others make a difference to it."""
+    positive = v.supported.physical()
+    if positive.all() or not positive.any():
+        return ""
+    median = float(np.median((v.supported.estimate / x)[positive]))
+    return f" where what is not positive counts as infinite ({sig(median)} the latter without it)"
+
+
+def _typical(error: np.ndarray, where: np.ndarray) -> str:
+    """Median error of a group as a factor; 'without bound' where half of the group has no estimate."""
+    middle = np.median(np.where(np.isnan(error[where]), np.inf, error[where]))
+    return f"a factor {np.exp(middle):.2f}" if np.isfinite(middle) else "without bound"
+
+
+def _table(v: Inversion, w: Inverted) -> ReportTable:
+    rows = []
+    for i, k in enumerate(v.measuring):
+        cells = []
+        for j, x in enumerate(v.object_stiffness):
+            low, high, value = w.low[i, j], w.high[i, j], w.estimate[i, j]
+            if not w.bounded[i, j]:
+                text = f"{sig(value, 2)} (open)"
+            else:
+                text = (
+                    f"{sig(value, 2)} ({interval(max(low, 0.0), high, 2)})"
+                    if high > 0
+                    else f"{sig(value, 2)} (none ≥ 0)"
+                )
+            cells.append(text if _right(value, x) else Marked(text))
+        rows.append((f"{k:g}", *cells))
+        rows.append(("condition", *(f"{c:.1f}" for c in w.condition[i])))
+    return table(
+        "inversion table",
+        (("K_m", "N/mm"), *((f"sample {x:g}", "N/mm") for x in v.object_stiffness)),
+        tuple(rows),
+        reference=sig(w.reference),
+        factor=FACTOR,
+    )
+
+
+def _plot(v: Inversion) -> Picture:
+    x = v.object_stiffness
+    with d.panels(1, 3, size=(11.2, 4.9)) as (figure, axes):
+        for ax, w, title in (
+            (axes[0], v.printed, f"K_r = {v.printed.reference:g}, printed"),
+            (axes[1], v.supported, f"K_r = {sig(v.supported.reference)}, supported"),
+        ):
+            span = np.array([1.6, 14.0])
+            ax.plot(span, span, color=d.BLACK, lw=1.2)
+            for i in range(len(v.measuring)):
+                ok = w.physical()[i] & w.bounded[i]
+                shift = np.exp(0.018 * (i - 2.5))
+                low = np.clip(w.low[i][ok], 0.3, None)
+                bars = np.maximum(np.array([w.estimate[i][ok] - low, w.high[i][ok] - w.estimate[i][ok]]), 0)
+                ax.errorbar(
+                    x[ok] * shift,
+                    w.estimate[i][ok],
+                    yerr=bars,
+                    fmt=d.MARKERS[i],
+                    color=d.SERIES[i],
+                    ms=6,
+                    lw=0.9,
+                    capsize=2,
+                    alpha=0.95,
+                )
+                d.series(ax, i, x[~ok] * shift, np.full((~ok).sum(), 0.36), hollow=True, ms=6)
+            d.log_axes(ax, x=(2, 3, 4, 5, 7, 10), y=(0.5, 1, 2, 5, 10, 20, 50, 100))
+            ax.set(xlim=(2.0, 12), ylim=(0.3, 170), title=title, xlabel="K_obj of the sample, N/mm")
+        axes[0].set_ylabel("K_obj by equation (3), N/mm")
+        right = axes[2]
+        for i in range(len(v.measuring)):
+            ok = v.supported.physical()[i]
+            condition = np.abs(v.supported.condition[i])
+            off = np.exp(np.abs(np.log(v.supported.estimate[i][ok] / x[ok])))
+            d.series(right, i, condition[ok], off)
+            d.series(right, i, np.minimum(condition[~ok], 600), np.full((~ok).sum(), 8.5), hollow=True)
+        grid = np.geomspace(2, np.log(9) / v.ratio_error, 50)
+        right.plot(
+            grid,
+            np.exp(grid * v.ratio_error),
+            color=d.BLACK,
+            lw=1.2,
+            ls="--",
+            label="condition × scatter of R",
+        )
+        d.log_axes(right, x=(2, 5, 10, 50, 200, 600), y=(1, 1.5, 2, 3, 5, 8))
+        right.set(
+            ylim=(0.97, 10),
+            xlabel="|condition number| of K_obj in R",
+            ylabel="off by this factor, supported K_r",
+            title="what was to be expected",
+        )
+        right.legend(loc="lower right", fontsize=9)
+        from matplotlib.lines import Line2D
+
+        handles = [
+            Line2D([], [], marker=d.MARKERS[i], color=d.SERIES[i], ls="", ms=7, label=f"K_m = {k:g}")
+            for i, k in enumerate(v.measuring)
+        ]
+        figure.legend(
+            handles=handles,
+            loc="outside lower center",
+            ncols=len(handles),
+            columnspacing=1.2,
+            handletextpad=0.3,
+        )
+        return drawn(figure, "inversion")

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from tactcad.report import plots, report
-from tactcad.report.report import Cell, Figure, ReportSection, ReportTable
+from tactcad.report.report import Cell, Picture, ReportSection, ReportTable
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure as Canvas
@@ -26,7 +26,7 @@ def section(
     key: str,
     findings: tuple[str, ...],
     tables: tuple[ReportTable, ...],
-    figures: tuple[Figure, ...],
+    figures: tuple[Picture, ...],
     values: object,
     headline: tuple[str, ...] = (),
     **said: object,
@@ -51,7 +51,7 @@ def tabulated(
     return report.tabulated(text["title"].format(**said), items, *columns, note=note)
 
 
-def drawn(figure: Canvas, name: str, **said: object) -> Figure:
+def drawn(figure: Canvas, name: str, **said: object) -> Picture:
     return plots.drawn(figure, name, _pages()["caption"][name].format(**said))
 
 

@@ -16,6 +16,23 @@ from tactcad.mechanics.as_built import in_clamp, without_layer
 from tactcad.mechanics.section import HingeSection
 from tactcad.paper.array_model import ArrayModel
 from tactcad.paper.published import Published
+from tactcad.parts.array.element import WIRE_TOLERANCE
+from tactcad.report import plots as d
+from tactcad.report.report import (
+    Cell,
+    Marked,
+    Picture,
+    ReportSection,
+    ReportTable,
+    exact,
+    interval,
+    listed,
+    percent,
+    sig,
+    signed_percent,
+)
+
+from .prose import drawn, section, table, tabulated
 
 DRAWS = 40_000  # the bands' ends repeat within 0.5 %
 EDGE = 0.02  # ln K closer than this to a band's end is reported at its edge, neither inside nor outside
@@ -192,3 +209,221 @@ def _one_each(s: HingeSection, draws: int) -> HingeSection:
         value = getattr(s, name)
         changes[name] = np.broadcast_to(value, (draws, *s.shape)) if value.size > 1 else value
     return s.with_(**changes)
+
+
+SMALL_FACTOR = 0.05  # a common factor closer to 1 than this is not reported
+
+
+def page(r: Residuals, array: ArrayModel) -> ReportSection:
+    sentences = findings(r, array)
+    return section(
+        "stiffness",
+        sentences,
+        (_rungs(r), _explained(r, array)),
+        (_bands(r), _needed(r)),
+        r,
+        (sentences[0], sentences[2]),
+    )
+
+
+def findings(r: Residuals, array: ArrayModel) -> tuple[str, ...]:
+    """Sentences chosen by the residuals and the bands."""
+    e = r.element
+    worst = r.furthest
+    out_cut, out_pad = r.outside(r.band_cut), r.outside(r.band_pad)
+    common = (
+        f"no common factor is left (mean {signed_percent(np.expm1(r.mean))})"
+        if abs(r.mean) < SMALL_FACTOR
+        else f"all of them together are {signed_percent(np.expm1(r.mean))} off"
+    )
+    others = f"; {percent(r.scatter_of_others)} without no. {e[worst]}" if len(e) > 2 else ""
+    sentences = [
+        f"With the hinge of the design {array.name}, {common}, but single elements scatter by "
+        f"{percent(r.scatter)} (standard deviation of ln K{others}), "
+        "whichever rung is used: the model's own error is far below that.",
+        f"Furthest off is no. {e[worst]}: {sig(np.exp(r.residual[worst]))} times the prediction. Alone, "
+        + _cause(r, worst, array)
+        + ".",
+    ]
+    if out_cut.any():
+        sentences.append(
+            f"{out_cut.sum()} of {len(e)} elements (nos. {listed(e[out_cut])}) lie outside the 95 % band "
+            "that cutting and clamping tolerances leave. With the contact anywhere on the pad, "
+            + (
+                f"still outside: {listed(f'no. {n}' for n in e[out_pad])}."
+                if out_pad.any()
+                else f"none is outside{_edge(r)}: where a flat sensor tip touches a flat pad is the widest "
+                f"single uncertainty of Table 1."
+            )
+        )
+    else:
+        sentences.append(
+            f"All {len(e)} elements lie inside the 95 % band that cutting and clamping tolerances leave."
+        )
+    sentences += _equal_arms(r)
+    return tuple(sentences)
+
+
+def _edge(r: Residuals) -> str:
+    edge = r.element[r.at_edge(r.band_pad)]
+    return f" (at the edge: {listed(f'no. {n}' for n in edge)})" if len(edge) else ""
+
+
+def _place(r: Residuals, band: np.ndarray, i: int) -> str:
+    return "at its edge" if r.at_edge(band)[i] else "outside" if r.outside(band)[i] else "inside"
+
+
+def _cause(r: Residuals, i: int, array: ArrayModel) -> str:
+    t, dt, dl = r.thickness_needed[i], r.thickness_change[i], r.load_arm_change[i]
+    wide = [name for name, half in WIRE_TOLERANCE.items() if abs(dt) <= half]
+    thick = (
+        f"a hinge of {sig(t)} mm ({dt * 1e3:+.0f} µm, "
+        + (
+            f"within {wide[-1]} of the wire)"
+            if wide
+            else f"{sig(abs(dt) / max(WIRE_TOLERANCE.values()), 2)} times what even one pass of the "
+            f"wire leaves)"
+        )
+        if np.isfinite(t)
+        else "no hinge thickness within the model's range"
+    )
+    load = (
+        f"a load point {abs(dl):.2f} mm {'nearer to' if dl < 0 else 'further from'} the hinge "
+        + ("(still on the pad)" if abs(dl) <= r.pad_half else "(off the pad)")
+        if np.isfinite(dl)
+        else "no load point"
+    )
+    return f"{thick} or {load} would explain it"
+
+
+def _equal_arms(r: Residuals) -> list[str]:
+    """The largest ratio between elements of equal arm."""
+    best, pair = 1.0, None
+    for i in range(len(r.element)):
+        for j in range(len(r.element)):
+            ratio = r.measured[i] / r.measured[j]
+            if r.arm[i] == r.arm[j] and ratio > best:
+                best, pair = ratio, (r.element[i], r.element[j])
+    if pair is None:
+        return []
+    return [
+        f"Nominally equal elements differ by up to {sig(best)} (nos. {pair[0]} and {pair[1]}): no model "
+        "that knows only the arm length can fit both."
+    ]
+
+
+def _rungs(r: Residuals) -> ReportTable:
+    rows = tuple(
+        (
+            int(n),
+            exact(r.arm[i]),
+            exact(r.measured[i]),
+            *(values[i] for values in r.predicted.values()),
+            signed_percent(np.expm1(r.residual[i])),
+        )
+        for i, n in enumerate(r.element)
+    )
+    logs = {name: np.log(r.measured / values) for name, values in r.predicted.items()}
+    mean = ("mean", "", "", *(signed_percent(np.expm1(v.mean())) for v in logs.values()), "")
+    scatter = ("scatter", "", "", *(percent(v.std(ddof=1)) for v in logs.values()), "")
+    columns = (
+        ("element", ""),
+        ("arm a", "mm"),
+        ("measured K", "N/mm"),
+        *((f"{name}", "N/mm") for name in r.predicted),
+        (f"measured over {r.rung}", "−1"),
+    )
+    return table("stiffness rungs", columns, (*rows, mean, scatter))
+
+
+def _explained(r: Residuals, array: ArrayModel) -> ReportTable:
+    def change(text: str, beyond: bool) -> Cell:
+        text = text.replace("-", "−")
+        return Marked(text) if beyond else text
+
+    def thicker(i: int) -> Cell:
+        um = r.thickness_change[i] * 1e3
+        return change(f"{um:+.1f}", abs(um) > WIRE_TOLERANCE["1 pass"] * 1e3)
+
+    def longer(i: int) -> Cell:
+        mm = r.load_arm_change[i]
+        return change(f"{mm:+.2f}", not abs(mm) <= r.pad_half)
+
+    wire = ", ".join(f"{name} ±{half * 1e3:g} µm" for name, half in WIRE_TOLERANCE.items())
+    return tabulated(
+        "stiffness explained",
+        range(len(r.element)),
+        ("element", "", lambda i: int(r.element[i])),
+        ("arm a", "mm", lambda i: exact(r.arm[i])),
+        ("measured K", "N/mm", lambda i: exact(r.measured[i])),
+        ("band, cutting", "N/mm", lambda i: interval(*r.band_cut[:, i])),
+        ("", "", lambda i: _place(r, r.band_cut, i)),
+        ("band, and pad", "N/mm", lambda i: interval(*r.band_pad[:, i])),
+        ("", "", lambda i: _place(r, r.band_pad, i)),
+        ("hinge change", "µm", thicker),
+        ("load point change", "mm", longer),
+        pad_length=array.pad_length,
+        wire=wire,
+    )
+
+
+def _bands(r: Residuals) -> Picture:
+    order = np.lexsort((r.element, r.arm))
+    x = np.arange(len(order))
+    with d.panels(size=(11.2, 4.7)) as (figure, ax):
+        pad, cut = r.band_pad[:, order], r.band_cut[:, order]
+        ax.bar(
+            x,
+            pad[1] - pad[0],
+            0.5,
+            pad[0],
+            color=d.SKY,
+            alpha=0.35,
+            label="95 %: contact anywhere on the pad",
+        )
+        ax.bar(
+            x,
+            cut[1] - cut[0],
+            0.5,
+            cut[0],
+            color=d.BLUE,
+            alpha=0.55,
+            label="95 %: cutting and clamping tolerances",
+        )
+        ax.hlines(
+            r.predicted[r.rung][order],
+            x - 0.25,
+            x + 0.25,
+            color=d.BLACK,
+            lw=1.6,
+            label=f"predicted, rung {r.rung}",
+        )
+        ax.plot(x, r.measured[order], "o", color=d.RED, ms=9, mec="white", label="Table 1", zorder=5)
+        for i, k in zip(x, order):
+            d.note(ax, f"{r.measured[k]:g}", (i + 0.25, r.measured[k]), (4, -3), fontsize=9.5, color=d.RED)
+        d.log_axes(ax, y=(5, 10, 20, 40, 80))
+        ax.set_ylim(min(pad[0].min(), r.measured.min()) * 0.85, max(pad[1].max(), r.measured.max()) * 1.15)
+        ax.set_xticks(x, [f"no. {r.element[k]}\na = {r.arm[k]:g} mm" for k in order])
+        ax.set(xlim=(-0.6, len(x) - 0.2), ylabel="stiffness K, N/mm")
+        ax.legend(loc="upper right")
+        ax.grid(axis="x", visible=False)
+        return drawn(figure, "stiffness-bands")
+
+
+def _needed(r: Residuals) -> Picture:
+    order = np.lexsort((r.element, r.arm))[::-1]
+    y = np.arange(len(order))
+    with d.panels(1, 2, size=(11.2, 4.2), sharey=True) as (figure, (left, right)):
+        for half, shade in zip(WIRE_TOLERANCE.values(), (0.18, 0.28, 0.42)):
+            left.axvspan(-half * 1e3, half * 1e3, color=d.BLUE, alpha=shade, lw=0)
+        left.plot(r.thickness_change[order] * 1e3, y, "o", color=d.RED, ms=8)
+        left.set_xlabel("change of hinge thickness that gives the measured K, µm")
+        left.set_title("hinge thickness alone (bands: wire tolerance, 1, 2–3, 4+ passes)", fontsize=10.5)
+        right.axvspan(-r.pad_half, r.pad_half, color=d.BLUE, alpha=0.18, lw=0)
+        right.plot(r.load_arm_change[order], y, "s", color=d.RED, ms=8)
+        right.set_xlabel("change of load arm that gives the measured K, mm")
+        right.set_title("load point alone (band: the pad)", fontsize=10.5)
+        left.set_yticks(y, [f"no. {r.element[k]}, a = {r.arm[k]:g}" for k in order])
+        for ax in (left, right):
+            ax.axvline(0, color=d.BLACK, lw=1)
+        return drawn(figure, "stiffness-needed")

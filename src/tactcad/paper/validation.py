@@ -16,19 +16,9 @@ from tactcad.paper import (
     reference_stiffness,
     residuals,
     table1_check,
+    table2,
 )
 from tactcad.paper.array_model import ArrayModel
-from tactcad.paper.pages import (
-    budget_page,
-    gain_page,
-    grasp_page,
-    hinge_page,
-    inversion_page,
-    reference_page,
-    stiffness_page,
-    table1_page,
-    table2_page,
-)
 from tactcad.paper.published import Published
 from tactcad.report.report import ValidationReport, sig
 
@@ -60,15 +50,15 @@ def validate(data: Published, array: ArrayModel) -> ValidationReport:
     effects = budget.budget(data, array, ratios)
     inverted = inversion.invert(ratios)
     sections = (
-        stiffness_page.page(K, array),
-        hinge_page.page(fit, array),
-        gain_page.page(signal, array),
-        table1_page.page(own, data),
-        table2_page.page(ratios, data, K, reference),
-        grasp_page.page(six, seven, array),
-        reference_page.page(reference),
-        budget_page.page(effects),
-        inversion_page.page(inverted),
+        residuals.page(K, array),
+        hinge.page(fit, array),
+        gain.page(signal, array),
+        table1_check.page(own, data),
+        table2.page(ratios, data, K, reference),
+        grasp_figures.page(six, seven, array),
+        reference_element.page(reference),
+        budget.page(effects),
+        inversion.page(inverted),
     )
     by_key = {s.key: s for s in sections}
     summary = tuple(

@@ -1,5 +1,4 @@
-"""What is made and bought: one file a part, from parameters to its contour, features and limits, without a
-CAD kernel.
+"""What is made and bought: from parameters to contour, features and limits, without a CAD kernel.
 
 In: a design. Out: its layout (where everything of the array stands), the rules that it must keep, and parts.
 """

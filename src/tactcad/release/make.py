@@ -7,27 +7,24 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from tactcad.checks.goes_together import check_assembly
+from tactcad.checks.described.goes_together import check_assembly
 from tactcad.checks.shop import load_shop
 from tactcad.design.files import refuse_overwriting, scratch_folder
 from tactcad.design.messages import CheckFailure
 from tactcad.design.tree import Design
 from tactcad.export.contents import sha256_of
+from tactcad.export.formats import ExportOptions, part_formats
 from tactcad.export.golden_file import check_golden, golden_path
 from tactcad.export.manifest import FileRecord, read_manifest
-from tactcad.export.pipeline import ExportOptions, Progress, export
+from tactcad.export.pipeline import Progress, export
 from tactcad.export.publication import REFUSE
 from tactcad.scenes import make_scene, scene_names
 
-from .archive import archive_bytes, replaced_content
-from .ordered import Sets
-from .package_readme import package_readme
+from .archive import Foreign, archive_bytes, looked_at, replaced_content, replacing
 from .packages import PACKAGES, packed
-from .places import Foreign, looked_at, replacing
-from .readme import readme_bytes
-from .release_contents import ReleaseContents
-from .verify import README, check_archive
-from .verify_packages import check_packages
+from .readme import package_readme, readme_bytes
+from .release_contents import ReleaseContents, Sets
+from .verify import README, check_archive, check_packages, read_back
 
 QUOTED = ("wire-cut", "machining")  # checks whose flags are reported to the shop
 
@@ -124,7 +121,17 @@ def release(
     ]
     contents = ReleaseContents(design, scenes, flags, failures, terms.draft, terms.sample, terms.sets)
     with scratch_folder("release") as folder:
-        files = _exported(design, tuple(scene.name for scene in scenes), folder / "export", progress, terms)
+        options = ExportOptions(
+            tuple(scene.name for scene in scenes),
+            guides=True,
+            drawings=True,
+            draft=terms.draft,
+            sample=terms.sample,
+        )
+        export(design, options, folder / "export", progress)
+        chosen = {_path_in_zip(file): file for file in read_manifest(folder / "export").files}
+        digests = {path: file.sha256 for path, file in chosen.items() if path}
+        files = {path: (folder / "export" / chosen[path].path).read_bytes() for path in sorted(digests)}
     files = {README: readme_bytes(contents, list(files)), **files}
     data, date, shop = archive_bytes(files, design.design.date), design.design.date, load_shop(shop_file)
     target = places[0]
@@ -140,7 +147,10 @@ def release(
         parts = [folder / place.name for place in targets]
         for part, content in zip(parts, (data, *zips)):
             part.write_bytes(content)
-        wrong = check_archive(parts[0], contents) or check_packages(parts[1:], packages, parts[0], contents)
+        every, wrong = read_back(parts[0], digests)
+        wrong = (
+            wrong or check_archive(every, contents) or check_packages(parts[1:], packages, every, contents)
+        )
         if wrong:
             raise CheckFailure(
                 f"{target}: the finished release does not hold: {'; '.join(wrong)}; nothing was changed"
@@ -180,21 +190,12 @@ def _refuse(design: Design, failures: Sequence[str], draft: bool, progress: Prog
         raise NotReleased(design.name, failures)
 
 
-def _exported(
-    design: Design, scenes: tuple[str, ...], folder: Path, progress: Progress, terms: Terms
-) -> dict[str, bytes]:
-    """The export's files that go to the shop, by their path in the zip."""
-    options = ExportOptions(scenes, guides=True, drawings=True, draft=terms.draft, sample=terms.sample)
-    export(design, options, folder, progress)
-    paths = {_path_in_zip(file): file.path for file in read_manifest(folder).files}
-    return {name: (folder / path).read_bytes() for name, path in sorted(paths.items()) if name}
-
-
 def _path_in_zip(file: FileRecord) -> str:
     """Path of an exported file in the zip; "" where it is of no use to a shop or a builder."""
     if file.path.startswith("guide/"):
         return file.path
-    if file.kind in ("dxf", "step-part", "step-pmi", "step-assembly", "inspection", "netlist", "wiring"):
+    parts = {form.kind for form in part_formats() if form.released}
+    if file.kind in parts | {"step-assembly", "inspection", "netlist", "wiring"}:
         return file.path
     if file.kind == "drawing" and file.path.endswith(".pdf"):
         return f"pdf/{Path(file.path).name}"

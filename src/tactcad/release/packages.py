@@ -1,4 +1,5 @@
-"""A zip for each way of making: what that supplier needs, out of the whole zip, and nothing else."""
+"""A zip for each way of making: what that supplier needs, out of the whole zip, and nothing else; with the
+time on the wire-cutting machine."""
 
 from __future__ import annotations
 
@@ -7,20 +8,18 @@ import io
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
-from tactcad.checks.shop import Shop
+from tactcad.checks.shop import Feed, Shop
 from tactcad.design.tree import Design
 from tactcad.drawing.engine.extent import part_box
 from tactcad.export import inspection
 from tactcad.export.contents import sha256_of
-from tactcad.parts.cut_section import cut_section
-from tactcad.parts.description import Part
-from tactcad.parts.electronic_parts import BOARD
-from tactcad.parts.limits import FACES
-from tactcad.parts.supply import ELECTRONIC, MECHANICAL
+from tactcad.parts.array.element import least_passes
+from tactcad.parts.bought.electronic_parts import BOARD
+from tactcad.parts.bought.supply import ELECTRONIC, MECHANICAL
+from tactcad.parts.language.description import Part, cut_section
+from tactcad.parts.language.limits import FACES
 
-from .ordered import OrderLine
-from .release_contents import ReleaseContents
-from .wire_time import wire_time
+from .release_contents import OrderLine, ReleaseContents
 
 ORDER = "order.csv"
 PART_INSPECTION = "inspection-parts.csv"
@@ -231,3 +230,33 @@ def _of_parts(table: bytes, lines: Iterable[OrderLine]) -> bytes:
     numbers = {line.row.part_no for line in lines}
     rows = [row for row in table_rows(table) if row["part_no"] in numbers]
     return table_bytes(rows) if rows else b""
+
+
+PASSES = {"one pass": 1, "three passes": 3, "four passes": 4}
+
+
+@dataclass(frozen=True)
+class WireTime:
+    """Of one piece: length of all contours mm, height mm, contours, passes, minutes."""
+
+    length: float
+    height: float
+    contours: int
+    passes: int
+    minutes: float
+
+
+def wire_time(part: Part, feed: Feed) -> WireTime:
+    """The time of one piece, cut by itself.
+
+    Every contour is cut in as many passes as the part's closest limit asks for; the main cut advances by
+    feed.area over the height, at most feed.most, further passes by feed.skim; every contour is threaded once.
+    """
+    section = cut_section(part)
+    if section is None:
+        raise TypeError(f"{part.part_no} is not wire-cut")
+    passes = PASSES[least_passes(min((c.upper - c.lower for c in part.characteristics), default=2.0) / 2)]
+    length, height, contours = section.cut_length, section.thickness, 1 + len(section.openings)
+    main = length / min(feed.area / height, feed.most)
+    minutes = main + (passes - 1) * length / feed.skim + contours * feed.threading
+    return WireTime(length, height, contours, passes, minutes)

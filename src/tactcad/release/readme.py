@@ -1,34 +1,36 @@
-"""README.txt of a release, which a shop reads first. Plain ASCII apart from the design's own texts, 96
-columns.
+"""README.txt of a release, which a shop reads first, and of each supplier's package.
+
+Plain ASCII apart from the design's own texts, 96 columns.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from textwrap import wrap
 
 from tactcad import __version__
+from tactcad.checks.shop import Shop
+from tactcad.design.family import family_of
 from tactcad.design.materials import ELECTROLYSIS, family
 from tactcad.drawing.engine.extent import part_box
 from tactcad.export import inspection
 from tactcad.export import strength_table as strength
-from tactcad.parts.description import Characteristic, Part
-from tactcad.parts.hinge_section import thickness_elasticity
-from tactcad.parts.layout import Layout
+from tactcad.export.formats import part_formats
+from tactcad.parts.array.hinge_section import thickness_elasticity
+from tactcad.parts.array.layout import Layout
+from tactcad.parts.bought.electronic_parts import BOARD
+from tactcad.parts.language.description import Characteristic, Part
+from tactcad.scenes.rig import ARRAY
 
 from .archive import MANIFEST
-from .ordered import SETS, SPARES
-from .plain_text import as_bytes, heading, numbered, paragraph, table
-from .release_contents import PROCESSES, ReleaseContents
+from .packages import MACHINING, ORDER, PART_INSPECTION, SHEET, WIRE, Packed, table_rows
+from .release_contents import PROCESSES, SETS, SPARES, ReleaseContents
 
 MARK = "PRELIMINARY"
 DRAFT = f"{MARK}: for discussion only. Do not make anything from these files."
 SAMPLE = "SAMPLE, NOT FOR ORDER: nobody has asked for these parts, and nobody answers for them."
 FOLDERS = {
-    "dxf/": "cut files, exact nominal contours, millimetres, one part a file: the wire-cut parts whole, of "
-    "milled and ground "
-    "plates the blank with its plain through holes. Compensation for wire and spark gap is yours.",
-    "step/": "every part as a solid, and every assembly (AP214, millimetres); NAME-ap242.step: the same "
-    "part with its limits and datums on its faces, for machines to read (AP242)",
+    **{f.folder: f.released for f in sorted(part_formats(), key=lambda f: -f.ordered) if f.released},
     "circuit/": "the circuit that reads the array: KiCad netlist, the same as a table and as a SPICE "
     "deck, and the list of leads to cut",
     "pdf/": "a drawing sheet for every part made, and an assembly sheet with parts list for every scene",
@@ -53,7 +55,7 @@ def readme_bytes(contents: ReleaseContents, paths: Sequence[str]) -> bytes:
         ("WHAT TO MAKE", _to_make(contents)),
         ("KEY CHARACTERISTICS", keys(contents, made)),
         ("HOW TO MAKE IT", how(contents, made)),
-        ("WHICH FILE IS WHAT", _files(paths)),
+        ("WHICH FILE IS WHAT", _files(paths, FOLDERS) + paragraph(AGREE)),
         ("WITH YOUR QUOTATION PLEASE TELL US", numbered([*wire_questions(contents), *QUOTE])),
         ("WHAT OUR CHECKS OF CUTTING AND MACHINING FLAGGED", _flags(contents)),
         ("CONTACT", contact(contents)),
@@ -93,12 +95,21 @@ def _draft(contents: ReleaseContents) -> list[str]:
 
 
 def _what(contents: ReleaseContents) -> list[str]:
-    design, layout = contents.design, Layout(contents.design)
-    count = len(layout.elements)
+    design = contents.design
+    family = family_of(design)
+    text = family.about(family.layout(design))
+    others = [scene.name for scene in contents.scenes if scene.name != ARRAY]
+    if others:
+        text += f" The set-ups that it is used in are here too: {', '.join(others)}."
+    return paragraph(text)
+
+
+def facing_rows(layout: Layout) -> str:
+    """What an array of facing rows is, for the shop."""
+    design, count = layout.design, len(layout.elements)
     thinnest = min(layout.elements, key=lambda place: place.hinge.t)
     per_hundredth = thickness_elasticity(layout, thinnest) * 0.01 / thinnest.hinge.t
-    others = [scene.name for scene in contents.scenes if scene.name != "array"]
-    text = (
+    return (
         f"A tactile sensor array of {count} sensing element{'s' if count > 1 else ''}, wire-cut from "
         f"{design.sheet.thickness:g} mm "
         f"{design.material.alloy} sheet. Each has a hinge {thinnest.hinge.t:g} mm thin, whose thickness "
@@ -106,9 +117,6 @@ def _what(contents: ReleaseContents) -> list[str]:
         "one hundredth of a millimetre more or less is "
         f"{100 * per_hundredth:.0f} % more or less stiffness. Everything else is ordinary plate work."
     )
-    if others:
-        text += f" The set-ups that it is used in are here too: {', '.join(others)}."
-    return paragraph(text)
 
 
 def _to_make(contents: ReleaseContents) -> list[str]:
@@ -180,22 +188,23 @@ def how(contents: ReleaseContents, parts: Sequence[Part]) -> list[str]:
     return numbered(notes)
 
 
-def _files(paths: Sequence[str]) -> list[str]:
+def _files(paths: Sequence[str], known: Mapping[str, str]) -> list[str]:
+    """What each of the files is, of the folders and names that are known."""
     lines = []
-    for start, text in FOLDERS.items():
+    for start, text in known.items():
         count = sum(path.startswith(start) for path in paths)
         if count or start == MANIFEST:
             shown = (
                 f"{start} ({count} files)" if start.endswith("/") else "bom*.csv" if start == "bom" else start
             )
             lines += paragraph(text, " " * 24, f"  {shown:22}")[:-1]
-    return [*lines, ""] + paragraph(
-        "A part's files carry its part number and the revision. Drawing and STEP file agree; where you find "
-        "that they do "
-        "not, the drawing holds and we want to know."
-    )
+    return [*lines, ""]
 
 
+AGREE = (
+    "A part's files carry its part number and the revision. Drawing and STEP file agree; where you find "
+    "that they do not, the drawing holds and we want to know."
+)
 QUOTE = ("Price and delivery for the quantities above, and for twice the elements.",)
 
 
@@ -218,4 +227,182 @@ def wire_questions(contents: ReleaseContents) -> list[str]:
 def _flags(contents: ReleaseContents) -> list[str]:
     if not contents.flags:
         return ["Nothing.", ""]
-    return numbered(list(dict.fromkeys(str(f).removeprefix("flag: ") for f in contents.flags)))
+    return numbered(list(dict.fromkeys(f.said for f in contents.flags)))
+
+
+PACKAGE_FOLDERS = {
+    ORDER: "what is ordered, a line each, with the files that it is made from and their SHA-256",
+    "dxf/": "cut files, exact nominal contours, millimetres, one part a file; tool compensation is yours",
+    "pdf/": "drawing sheets",
+    "circuit/": "netlist of the boards (KiCad, and the same as a table, a row a pin)",
+    "step/": "solids (AP214, millimetres); NAME-ap242.step with limits and datums on the faces (AP242)",
+    "inspection.csv": "what to measure on every numbered element: fill in `measured` and send it back",
+    PART_INSPECTION: "what to measure on the other parts",
+    MANIFEST: f"SHA-256 of every file; `sha256sum -c {MANIFEST}` checks them",
+}
+
+
+BOARDS = (
+    "No layout comes with this order: who makes the boards lays them out by the netlist, which names no "
+    "footprints, and by the circuit sheets. The netlist holds the circuits of all boards: U, J and C of a "
+    "board begin with its number, Q and R with that of the element that it reads. All boards are alike, with "
+    "room for every channel of the multiplexer, and for a link from each of its inputs to GND, which the "
+    "netlist has where no element is read: there Q and R stay off. Leads W, gauges B and terminals X are not "
+    "on them. Keep the lines between lead header, resistors and multiplexer short, those of + and - alike."
+)
+
+
+def package_readme(contents: ReleaseContents, one: Packed, whole: str, shop: Shop) -> bytes:
+    """The text.
+
+    Parameters
+    ----------
+    contents, one
+        The release, and the package.
+    whole
+        Name of the zip that the package was taken from, with its SHA-256.
+    shop
+        Whose feed the wire's time was estimated with.
+    """
+    lines = first_lines(contents, one.package.title)
+    lines += paragraph(
+        f"Taken from {whole}. What this order does not need is left out; ask for the rest if you miss it."
+    )
+    for head, body in (
+        ("WHAT IS ORDERED", _to_order(contents, one)),
+        *_sections(contents, one, shop),
+        ("WHICH FILE IS WHAT", _files([*one.files], PACKAGE_FOLDERS)),
+        ("CONTACT", contact(contents)),
+    ):
+        if body:
+            lines += [*heading(head), *body]
+    return as_bytes(lines)
+
+
+def _parts(one: Packed) -> list[Part]:
+    return [line.part for line in one.lines if line.part is not None]
+
+
+def _to_order(contents: ReleaseContents, one: Packed) -> list[str]:
+    if one.package in (WIRE, MACHINING):
+        lines = parts_table(contents, _parts(one))
+    elif one.package is SHEET:
+        lines = _sheet_table(one)
+    else:
+        rows = [
+            (f"{r.order:g} {r.row.unit}", f"{r.row.spares:g}", r.row.standard_designation or r.row.mpn)
+            for r in one.lines
+        ]
+        lines = table(("order", "of these spares", "designation"), [("", rows)])
+    return lines + paragraph(f"Quantities are for {SETS[contents.sets]}.") + paragraph(SPARES)
+
+
+def _sections(contents: ReleaseContents, one: Packed, shop: Shop) -> Sequence[tuple[str, list[str]]]:
+    parts = _parts(one)
+    if any(line.row.part_no == BOARD for line in one.lines):
+        return (("CIRCUIT BOARD", paragraph(BOARDS)),)
+    if one.package is WIRE:
+        return (
+            ("TIME ON THE MACHINE", _wire_time(one, shop)),
+            ("KEY CHARACTERISTICS", keys(contents, parts)),
+            ("HOW TO MAKE IT", how(contents, parts)),
+            ("WITH YOUR QUOTATION PLEASE TELL US", numbered([*wire_questions(contents), *QUOTE])),
+        )
+    if one.package is MACHINING:
+        return (
+            ("KEY CHARACTERISTICS", keys(contents, parts)),
+            ("HOW TO MAKE IT", how(contents, parts)),
+            (
+                "WITH YOUR QUOTATION PLEASE TELL US",
+                numbered(["Price and delivery for the quantities above."]),
+            ),
+        )
+    return ()
+
+
+def _wire_time(one: Packed, shop: Shop) -> list[str]:
+    rows = table_rows(one.files[ORDER])
+    minutes = sum(float(row["minutes"]) for row in rows)
+    length = sum(float(row["cut_length_mm"]) * float(row["order"]) for row in rows)
+    heights = sorted({float(row["height_mm"]) for row in rows})
+    feed, source = shop.feed, shop.feed_source
+    return paragraph(
+        f"About {minutes / 60:.1f} h for {length / 1000:.2f} m of contour, heights "
+        f"{', '.join(f'{h:g}' for h in heights)} mm, one piece at a time; {ORDER} has it by part. Estimated "
+        f"with a main cut of {feed.area:g} mm2/min ({source['area']}), at most {feed.most:g} mm/min "
+        f"({source['most']}), every further pass {feed.skim:g} mm/min ({source['skim']}), and "
+        f"{feed.threading:g} min for each contour's start ({source['threading']}). Limits of {shop.name}; "
+        "your own figures hold."
+    )
+
+
+def _sheet_table(one: Packed) -> list[str]:
+    """Blanks by material and thickness, and how much sheet they are in all."""
+    groups: dict[str, list[tuple[str, ...]]] = {}
+    area: dict[str, float] = {}
+    for row in table_rows(one.files[ORDER]):
+        material = f"{row['material']}, {row['standard']}" if row["standard"] else row["material"]
+        title = f"{row['thickness_mm']} mm {material}"
+        blank = float(row["length_mm"]) * float(row["width_mm"])
+        area[title] = area.get(title, 0.0) + blank * float(row["order"])
+        cells = (row["part_no"], row["order"], f"{row['length_mm']} x {row['width_mm']}", _blank_for(row))
+        groups.setdefault(title, []).append(cells)
+    titled = [(f"{title} ({area[title] / 100:.0f} cm2 net)", rows) for title, rows in groups.items()]
+    lines = table(("for part", "pieces", "at least, mm", "how"), titled)
+    return lines + paragraph(
+        "Sizes are the parts' own: what the cut and the clamping take comes on top, as who cuts them says. "
+        "Thickness with limits: picked from rolled sheet that measures so. Plate that is milled: at least "
+        "that thickness, more where the drawing asks for both faces machined. Round and block "
+        "stock is its shop's."
+    )
+
+
+def _blank_for(row: Mapping[str, str]) -> str:
+    limits = f"{row['least_mm']} to {row['most_mm']} mm thick; " if row["least_mm"] else ""
+    if row["for"] != "wire-cut":
+        return f"blank by its DXF (laser, water jet or saw), to be {row['for']}"
+    return f"{limits}as sheet, to the wire cutter"
+
+
+WIDTH = 96
+
+
+def paragraph(text: str, indent: str = "", first: str | None = None) -> list[str]:
+    """The text in lines, and an empty one after it; `first` begins the first line where not `indent`."""
+    start = indent if first is None else first
+    return [*wrap(text, WIDTH, initial_indent=start, subsequent_indent=indent, break_on_hyphens=False), ""]
+
+
+def numbered(texts: Sequence[str]) -> list[str]:
+    lines: list[str] = []
+    for n, text in enumerate(texts, start=1):
+        lines += paragraph(text, "    ", f"{n:2}. ")[:-1]
+    return [*lines, ""]
+
+
+def heading(text: str, line: str = "-") -> list[str]:
+    return [text, line * len(text)]
+
+
+def table(heads: Sequence[str], groups: Sequence[tuple[str, Sequence[Sequence[str]]]]) -> list[str]:
+    """Rows below their heads, group by group, each with its title; the last column is wrapped."""
+    rows = [row for _, group in groups for row in group]
+    widths = [max(len(row[i]) for row in (heads, *rows)) for i in range(len(heads) - 1)]
+    left = "  " + " " * sum(w + 2 for w in widths)
+
+    def line(row: Sequence[str]) -> list[str]:
+        start = "  " + "".join(cell.ljust(w + 2) for cell, w in zip(row, widths))
+        last = wrap(row[-1], max(WIDTH - len(start), 24)) or [""]
+        return [(start + last[0]).rstrip(), *(left + more for more in last[1:])]
+
+    lines = line(heads)
+    for title, group in groups:
+        lines += ["", f"{title}:"] if title else []
+        for row in group:
+            lines += line(row)
+    return [*lines, ""]
+
+
+def as_bytes(lines: Sequence[str]) -> bytes:
+    """UTF-8 with line ends that every editor shows."""
+    return ("\r\n".join(lines).rstrip() + "\r\n").encode()

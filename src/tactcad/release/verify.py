@@ -1,4 +1,5 @@
-"""Reads a release back, and reports how the zip differs from the design."""
+"""Reads a release back, and reports how the zip differs from the design, and the suppliers' packages from
+the zip."""
 
 from __future__ import annotations
 
@@ -10,22 +11,21 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path, PurePosixPath
 
 from tactcad.drawing.assemblies.assembly_sheets import assembly_faults
+from tactcad.drawing.engine.paper import SAMPLE as STATUS
 from tactcad.drawing.engine.sheet_files import pdf_runs
-from tactcad.drawing.engine.title import SAMPLE as STATUS
 from tactcad.drawing.guide import page_path
 from tactcad.drawing.parts.part_sheet import key_faults
 from tactcad.export import inspection
 from tactcad.export import strength_table as strength
+from tactcad.export.contents import sha256_of
 from tactcad.export.dxf import check_dxf
-from tactcad.export.formats import has_limits
-from tactcad.export.manifest import sha256_of
-from tactcad.parts.cut_section import cut_section
-from tactcad.parts.description import Part
+from tactcad.export.formats import has_limits, part_formats
+from tactcad.parts.language.description import NOT_ORDERED, Part, cut_section
 from tactcad.scenes import bom
 from tactcad.scenes.scene import Scene
 
 from .archive import MANIFEST, MODE
-from .packages import table_rows
+from .packages import ORDER, PART_INSPECTION, SHEET, Packed, table_rows
 from .readme import DRAFT, MARK, SAMPLE
 from .release_contents import ReleaseContents
 
@@ -33,10 +33,9 @@ README = "README.txt"
 AP242 = "-ap242"  # ends the name of a model with limits
 
 
-def check_archive(path: Path, contents: ReleaseContents) -> list[str]:
-    """What is wrong with the written zip; empty where nothing is."""
-    files, wrong = read_back(path)
-    return wrong or [
+def check_archive(files: Mapping[str, bytes], contents: ReleaseContents) -> list[str]:
+    """What is wrong with the whole zip's files (`read_back`); empty where nothing is."""
+    return [
         *_part_faults(files, contents),
         *(fault for scene in contents.scenes for fault in _scene_faults(files, contents, scene)),
         *_sheet_faults(files, contents),
@@ -46,14 +45,20 @@ def check_archive(path: Path, contents: ReleaseContents) -> list[str]:
     ]
 
 
-def read_back(path: Path) -> tuple[dict[str, bytes], list[str]]:
-    """The zip's files, and what is wrong with its form and checksums."""
+def read_back(path: Path, exported: Mapping[str, str] | None = None) -> tuple[dict[str, bytes], list[str]]:
+    """The zip's files, each verified once by its checksum, and what is wrong with form and checksums.
+
+    `exported`: checksums of files that have to be as an export's manifest lists them.
+    """
+    files: dict[str, bytes] = {}
     try:
         with zipfile.ZipFile(path) as archive:
-            if broken := archive.testzip():
-                return {}, [f"{broken}: damaged"]
-            files = {name: archive.read(name) for name in archive.namelist()}
-            return files, [*_form_faults(archive.infolist()), *_manifest_faults(files)]
+            for name in archive.namelist():
+                try:
+                    files[name] = archive.read(name)
+                except zipfile.BadZipFile:
+                    return {}, [f"{name}: damaged"]
+            return files, [*_form_faults(archive.infolist()), *_checksum_faults(files, exported or {})]
     except (zipfile.BadZipFile, zlib.error, EOFError, OSError, NotImplementedError, RuntimeError) as error:
         return {}, [f"not readable as a zip: {error}"]
 
@@ -69,16 +74,22 @@ def _form_faults(entries: Sequence[zipfile.ZipInfo]) -> list[str]:
     return wrong
 
 
-def _manifest_faults(files: Mapping[str, bytes]) -> list[str]:
+def _checksums(files: Mapping[str, bytes]) -> dict[str, str]:
+    """SHA-256 by path, as the zip's own list has them, which `read_back` has verified."""
+    lines = files[MANIFEST].decode().splitlines()
+    return {path: digest for digest, _, path in (line.partition("  ") for line in lines)}
+
+
+def _checksum_faults(files: Mapping[str, bytes], exported: Mapping[str, str]) -> list[str]:
     if MANIFEST not in files:
         return [f"no {MANIFEST}"]
-    lines = files[MANIFEST].decode().splitlines()
-    listed = {path: digest for digest, _, path in (line.partition("  ") for line in lines)}
+    listed = _checksums(files)
     wrong = [f"{path}: not in {MANIFEST}" for path in files if path != MANIFEST and path not in listed]
     for path, digest in listed.items():
         if path not in files or sha256_of(files[path]) != digest:
             wrong.append(f"{path}: not as {MANIFEST} has it")
-    return wrong
+    changed = (path for path, digest in exported.items() if listed.get(path) != digest)
+    return wrong + [f"{path}: not as it was exported" for path in changed]
 
 
 def _part_faults(files: Mapping[str, bytes], contents: ReleaseContents) -> Iterator[str]:
@@ -92,7 +103,7 @@ def _part_faults(files: Mapping[str, bytes], contents: ReleaseContents) -> Itera
             yield from _step_part_faults(files, f"step/{part.part_no}_{revision}{AP242}.step", revision)
         if cut_section(part) is not None:
             yield from _dxf_faults(files, f"dxf/{part.part_no}_{revision}.dxf", part)
-    for folder in ("step/", "dxf/", "pdf/"):
+    for folder in sorted({"pdf/", *(form.folder for form in part_formats() if form.released)}):
         for path in files:
             if path.startswith(folder) and not PurePosixPath(path).stem.removesuffix(AP242).endswith(
                 f"_{revision}"
@@ -151,7 +162,7 @@ def _scene_faults(files: Mapping[str, bytes], contents: ReleaseContents, scene: 
     for row in rows:
         if row.make_buy == "make" and row.rev != revision:
             yield f"{bill}: {row.part_no} is of revision {row.rev!r}"
-        if row.file and sha256_of(files.get(row.file, b"")) != row.sha256:
+        if row.file and _checksums(files).get(row.file) != row.sha256:
             yield f"{bill}: {row.file} is not here as it stands there"
 
 
@@ -176,7 +187,7 @@ def _sheet_faults(files: Mapping[str, bytes], contents: ReleaseContents) -> Iter
             if part.process == "wire-cut"
             else f"step/{part.part_no}_{revision}.step"
         )
-        if sha256_of(files.get(source, b"")) not in "".join(pages[0]).replace(" ", ""):
+        if _checksums(files).get(source, "no file") not in "".join(pages[0]).replace(" ", ""):
             yield f"{path}: does not have the SHA-256 of {source}"
         yield from _page_faults(path, pages, contents)
     for scene in contents.scenes:
@@ -259,3 +270,91 @@ def mark_faults(files: Mapping[str, bytes], contents: ReleaseContents) -> Iterat
     for kind, mark, meant in (("draft", DRAFT, contents.draft), ("sample", SAMPLE, contents.sample)):
         if (mark in said) != meant:
             yield f"{README}: {'does not say' if meant else 'says'} that it is a {kind}"
+
+
+OWN = (README, MANIFEST, ORDER, PART_INSPECTION, inspection.NAME)
+
+
+def check_packages(
+    paths: Sequence[Path], packages: Sequence[Packed], every: Mapping[str, bytes], contents: ReleaseContents
+) -> list[str]:
+    """What is wrong with the written packages; empty where nothing is.
+
+    Parameters
+    ----------
+    paths, packages
+        The written zips, and what they are to hold, in the same order.
+    every
+        The whole zip's files, found right.
+    contents
+        What the release is about.
+    """
+    wrong, orders = [], []
+    for path, one in zip(paths, packages, strict=True):
+        files, faults = read_back(path)
+        faults = faults or [*_package_faults(files, every, one, contents)]
+        wrong += [f"{one.package.name}: {fault}" for fault in faults]
+        if one.package is not SHEET and ORDER in files:  # its lines are made by others
+            orders += table_rows(files[ORDER])
+    return wrong or [*_order_faults(orders, every, contents)]
+
+
+def _package_faults(
+    files: Mapping[str, bytes], every: Mapping[str, bytes], one: Packed, contents: ReleaseContents
+) -> Iterator[str]:
+    """As in the whole zip, named by a line of the order, and every file that a line names."""
+    named = dict(_named(files.get(ORDER, b"")))
+    for path, data in files.items():
+        if path in OWN:
+            continue
+        if data != every.get(path):
+            yield f"{path}: not as in the whole zip"
+        if path not in named:
+            yield f"{path}: no line of {ORDER} names it"
+    for path, digest in named.items():
+        if _checksums(files).get(path) != digest:
+            yield f"{path}: not here as {ORDER} has it"
+    if inspection.NAME in files and files[inspection.NAME] != every.get(inspection.NAME):
+        yield f"{inspection.NAME}: not as in the whole zip"
+    listed = table_rows(every.get(PART_INSPECTION, b""))
+    yield from (
+        f"{PART_INSPECTION}: {row['part_no']}: not as in the whole zip"
+        for row in table_rows(files.get(PART_INSPECTION, b""))
+        if row not in listed
+    )
+    identity = contents.design.design
+    title = f"{identity.name}, revision {identity.revision}: {one.package.title}"
+    if files.get(README, b"").decode().splitlines()[:1] != [title]:
+        yield f"{README}: its first line is not {title!r}"
+    yield from mark_faults(files, contents)
+
+
+def _named(order: bytes) -> Iterator[tuple[str, str]]:
+    for row in table_rows(order):
+        for name, path in row.items():
+            if path and f"{name}_sha256" in row:
+                yield path, row[f"{name}_sha256"]
+
+
+def _order_faults(
+    orders: Sequence[Mapping[str, str]], every: Mapping[str, bytes], contents: ReleaseContents
+) -> Iterator[str]:
+    """Every line of the bills stands in one package, once, with at least what the largest set-up needs (for
+    one set just that), and its spares."""
+    needed: dict[str, float] = {}
+    spares: dict[str, float] = {}
+    for scene in contents.scenes:
+        for row in bom.rows_from_csv(every[bill_of(scene)]):
+            if row.process not in NOT_ORDERED:
+                needed[row.part_no] = max(needed.get(row.part_no, 0.0), row.qty)
+                spares[row.part_no] = row.spares
+    counts = Counter(row["part_no"] for row in orders)
+    yield from (f"{n} of the bills is in {counts[n]} packages" for n in needed if counts[n] != 1)
+    yield from (f"{n} of an order stands in no bill" for n in counts if n not in needed)
+    for line in orders:
+        number, qty = line["part_no"], float(line["qty"])
+        least = needed.get(number, 0.0)
+        if qty < least or (contents.sets == "one" and qty != least):
+            yield f"{number}: {qty:g} ordered, {least:g} needed"
+        if float(line["order"]) != round(qty + spares.get(number, 0.0), 6):
+            yield f"{number}: {line['order']} with spares, not {qty:g} and {spares.get(number, 0.0):g}"

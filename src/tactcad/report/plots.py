@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from numpy.typing import ArrayLike
 
-from tactcad.report.report import Figure
+from tactcad.report.report import Picture
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -83,9 +83,9 @@ def svg(figure: Canvas, name: str) -> str:
     return re.sub(r"[ \t]+\n", "\n", text)
 
 
-def drawn(figure: Canvas, name: str, caption: str) -> Figure:
+def drawn(figure: Canvas, name: str, caption: str) -> Picture:
     """The picture for a report, under that name."""
-    return Figure(name, svg(figure, name), caption)
+    return Picture(name, svg(figure, name), caption)
 
 
 def log_ticks(axis: Axis, ticks: Iterable[float]) -> None:

@@ -50,7 +50,7 @@ def tabulated(
 
 
 @dataclass(frozen=True)
-class Figure:
+class Picture:
     """An SVG picture as text; name is the file's without its ending."""
 
     name: str
@@ -65,7 +65,7 @@ class ReportSection:
     question: str
     findings: tuple[str, ...]
     tables: tuple[ReportTable, ...] = ()
-    figures: tuple[Figure, ...] = ()
+    figures: tuple[Picture, ...] = ()
     values: object = None  # the study's dataclass, for JSON
     headline: tuple[str, ...] = ()  # the findings that stand at the top of the report too
 
@@ -155,7 +155,7 @@ def to_text(report: ValidationReport) -> str:
     return "\n".join(lines).rstrip()
 
 
-def standalone(figure: Figure) -> str:
+def standalone(figure: Picture) -> str:
     """The picture as a file of its own, on white."""
     start = figure.svg.index(">") + 1
     return (

@@ -7,11 +7,11 @@ what it states, and is a consequence. Texts that mean the same design differ in 
 from __future__ import annotations
 
 import copy
-import dataclasses
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
+from tactcad.design.family import all_families, family_with, optional_tables
 from tactcad.design.load import from_table
 from tactcad.design.messages import InputError
 from tactcad.design.tree import Design
@@ -23,9 +23,6 @@ CauseKind = Literal["value", "title block", "note"]
 
 ABSENT: Any = None  # of a field that the text does not state; TOML has no null
 IDENTITY = ("revision", "date", "title", "author", "organisation")  # of [design]: in title blocks only
-# Tables that a design may do without: there or not is one edit.
-RIGS = tuple(f.name for f in dataclasses.fields(Design) if f.default is None)
-_SECTIONS = {f.name for f in dataclasses.fields(Design)}
 
 
 @dataclass(frozen=True)
@@ -109,11 +106,12 @@ def _causes(edits: Sequence[Edit]) -> Iterator[Cause]:
 
 def _edits(old: Table, new: Table) -> Iterator[Edit]:
     """Fields that differ; a rig that only one text has is one edit."""
-    for rig in RIGS:
+    rigs = optional_tables(family_with(new).spec)
+    for rig in rigs:
         if (rig in old) != (rig in new):
             yield Edit((rig,), old.get(rig, ABSENT), new.get(rig, ABSENT))
     before, after = (
-        dict(_fields({k: v for k, v in table.items() if k not in RIGS or (k in old and k in new)}))
+        dict(_fields({k: v for k, v in table.items() if k not in rigs or (k in old and k in new)}))
         for table in (old, new)
     )
     for path in [*before, *(p for p in after if p not in before)]:
@@ -156,7 +154,8 @@ def _take_out(table: Table, path: FieldPath) -> None:
         table.pop(first, None)
     elif first in table:
         _take_out(table[first], tuple(rest))
-        if not table[first] and first not in _SECTIONS:
+        known = {"origin", *(name for family in all_families().values() for name in family.tables)}
+        if not table[first] and first not in known:
             del table[first]
 
 

@@ -96,8 +96,8 @@ class _Solids:
 
     def mesh_of(self, shape: TopoDS_Shape) -> str:
         """The name of the shape's mesh."""
-        from tactcad.solids.bytes import to_bytes
         from tactcad.solids.measure import volume
+        from tactcad.solids.step import to_bytes
 
         if id(shape) not in self.known:
             name = sha256(to_bytes(shape)).hexdigest()

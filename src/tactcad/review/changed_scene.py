@@ -11,7 +11,7 @@ import numpy as np
 from tactcad.design.messages import CheckFailure
 from tactcad.design.tree import Design
 from tactcad.export.shapes import Shapes
-from tactcad.parts.description import Part, Vector, vector
+from tactcad.parts.language.description import Part, Vector, vector
 from tactcad.scenes import chosen_scenes, make_scene
 from tactcad.scenes.scene import Placement, Rotation, Scene, rotation
 
@@ -94,7 +94,7 @@ def changed_scene(
         Each of before and after. The shapes' makers must be two: equal numbers may mean other parts.
     """
     from tactcad.solids.changed import ChangedMaterial, changed
-    from tactcad.solids.place import placed_shape
+    from tactcad.solids.occt import placed_shape
 
     known: dict[tuple[object, ...], ChangedMaterial] = {}
 

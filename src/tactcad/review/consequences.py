@@ -6,7 +6,7 @@ taken back alone in the new one.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, replace
 from math import log, prod
 from typing import Any, Literal
@@ -14,13 +14,13 @@ from typing import Any, Literal
 from tactcad.design.load import from_table
 from tactcad.design.messages import CheckFailure, InputError
 from tactcad.design.tree import Design
+from tactcad.export.difference import Change
 from tactcad.export.geometry import Record
 from tactcad.export.sides import Side, comparable
 from tactcad.parts.rules import refuse_broken
 
 from .causes import Cause, Table, causes
-from .effect import SensorEffect, by_name, effect, reviewed_effect
-from .sensor_state import Reviewed, recorded_state
+from .effect import Reviewed, SensorEffect, by_name, effect, recorded_state, reviewed_effect
 
 How = Literal["alone", "taken back", "together only", "code"]
 # What the causes do together beyond what each does alone, as a share of K; chosen: a tenth of what 5 um of a
@@ -97,7 +97,9 @@ def meaning(old: Side, new: Side) -> Meaning:
     if old.table is None or new.table is None or untold:
         return _recorded(old, new, untold)
     before, after = (
-        Reviewed(d, told=_made_here(side)) for d, side in zip(designs, (old, new)) if isinstance(d, Design)
+        Reviewed(d, told=_made_here(side))
+        for d, side in zip(designs, (old, new))
+        if d is not None and not isinstance(d, str)
     )
     code = _of_code(old, new, before)
     if before.design == after.design:
@@ -239,3 +241,54 @@ def _interactions(told: Sequence[Consequence], together: SensorEffect) -> list[s
                 f"{100 * (whole - 1):+.3g} % together"
             )
     return lines
+
+
+@dataclass(frozen=True)
+class Compared:
+    """Two sides with what changed and what it means."""
+
+    old: Side
+    new: Side
+    changes: Sequence[Change]
+    meaning: Meaning
+
+
+def _geometry(c: Compared) -> bool:
+    """A part, a placement or a line of a bill."""
+    return any(change.path[0] in ("parts", "scenes") for change in c.changes)
+
+
+def _stiffness(c: Compared) -> bool:
+    """K of an element."""
+    for side in (c.old, c.new):
+        if "elements" not in side.record and not c.meaning.checked:
+            raise InputError("--fail-on", f"{side.source} holds no stiffness", value="stiffness")
+    return any(element.stiffness for effect in c.meaning.effects for element in effect.elements)
+
+
+def _checks(c: Compared) -> bool:
+    """A check or rule fails that did not."""
+    if not c.meaning.checked:
+        legal = "sides that hold a design which keeps its rules"
+        raise InputError("--fail-on", "nothing to check on both sides", value="checks", legal=legal)
+    return any(effect.now_fails for effect in c.meaning.effects)
+
+
+def _revision(c: Compared) -> bool:
+    """The letter stands for one content of every part number."""
+    same_letter = (c.old.design, c.old.revision) == (c.new.design, c.new.revision)
+    return same_letter and any(effect.parts_revised for effect in c.meaning.effects)
+
+
+KINDS: dict[str, Callable[[Compared], bool]] = {
+    "changes": lambda c: bool(c.changes),
+    "geometry": _geometry,
+    "stiffness": _stiffness,
+    "checks": _checks,
+    "revision": _revision,
+}
+
+
+def held(kinds: Collection[str], compared: Compared) -> list[str]:
+    """Those of the kinds that the comparison holds. Raises InputError where the sides do not tell."""
+    return [kind for kind in kinds if KINDS[kind](compared)]

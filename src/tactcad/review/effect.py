@@ -1,19 +1,34 @@
-"""From one state of a sensor to another: what becomes of each element, the array, its parts and sheets."""
+"""A sensor as a reviewer sees it, and from one state to another what becomes of each element, the array, its
+parts and sheets.
+
+Closed forms only: no kernel. Parts and scenes are those of the record of geometry (`export.geometry`).
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
 from difflib import SequenceMatcher
+from functools import cached_property
 from math import isclose
+from typing import Any
 
-from tactcad.assembly.virtual_build import LEAST_YIELD
+from tactcad.checks.check import Job, described, of_rigs, run_each
+from tactcad.checks.check_report import Report
+from tactcad.checks.described.goes_together import COUNT
+from tactcad.design.family import family_of
+from tactcad.design.messages import CheckFailure
 from tactcad.design.tree import Design
 from tactcad.export.difference import SHARE, differences
-from tactcad.parts.finding import Finding
-from tactcad.parts.layout import Layout
-
-from .sensor_state import ElementFigures, Reviewed, SensorState, too_few
+from tactcad.export.geometry import Record, geometry
+from tactcad.mechanics import readout
+from tactcad.parts.array.hinge_section import design_gauge, design_readout, hinge_section
+from tactcad.parts.array.layout import Layout
+from tactcad.parts.language.description import NOT_MADE, Part
+from tactcad.parts.language.finding import Finding
+from tactcad.scenes import left_out, make_scene, scene_names
+from tactcad.scenes.scene import Scene
+from tactcad.stacks.virtual_build import LEAST_YIELD, sensor
 
 # What is compared of an element, with the name that a reader sees.
 FIGURES = {
@@ -22,6 +37,161 @@ FIGURES = {
     "signal_per_force": "signal per force",
     "stop_gap": "stop gap",
 }
+
+
+@dataclass(frozen=True)
+class ElementFigures:
+    """One element; None where the models do not reach it, or the side does not tell."""
+
+    stiffness: float | None  # N/mm
+    rated_force: float | None  # N, in use
+    signal_per_force: float | None  # V/N
+    stop_gap: float | None  # mm
+
+
+@dataclass(frozen=True)
+class MadePart:
+    """A part that is made: all that its sheet shows, and its shape, each a description or plain data."""
+
+    sheet: Part | Record
+    shape: tuple | Record
+
+
+# Of a line of a bill, what belongs to the scene and not to the part; of a part's record too.
+OF_USE = ("qty", "spares", "designators")
+SHAPE = ("contours", "holes", "pockets", "volume_mm3", "box_mm")
+
+
+@dataclass(frozen=True)
+class SensorState:
+    """One state of a sensor.
+
+    elements     by designator
+    mass         of the array with its fasteners, g
+    cut_length   of all wire-cut pieces of the array, mm
+    made         every part that is made and has a sheet, by number
+    scenes       by name: placements and bill of the record of geometry
+    """
+
+    elements: Mapping[str, ElementFigures]
+    mass: float
+    cut_length: float
+    made: Mapping[str, MadePart]
+    scenes: Mapping[str, Record]
+
+
+def recorded_state(record: Record, design: Design | None) -> SensorState:
+    """What a record of geometry tells; the rated force follows with the design's rating."""
+    parts, rating = record["parts"], getattr(design, "rating", None)
+
+    def figures(element: Mapping[str, Any]) -> ElementFigures:
+        at_yield, rated = element.get("yield_force_n"), None
+        if rating is not None and at_yield is not None:
+            rated = min(rating.force, at_yield / rating.yield_factor)
+        gap = parts[element["part_no"]].get("limits", {}).get("stop gap", {}).get("nominal_mm")
+        return ElementFigures(element.get("stiffness_n_per_mm"), rated, None, gap)
+
+    scenes = record["scenes"]
+    rows = scenes["array"]["bom"]
+    lines = {number: line for scene in scenes.values() for number, line in scene["bom"].items()}
+    return SensorState(
+        {name: figures(element) for name, element in record.get("elements", {}).items()},
+        sum(row["qty"] * (row["mass_g"] or 0.0) for row in rows.values()),
+        sum(row["qty"] * (parts[n]["cut_length_mm"] or 0.0) for n, row in rows.items() if n in parts),
+        {n: _made(part, lines.get(n, {})) for n, part in parts.items() if part["process"] not in NOT_MADE},
+        scenes,
+    )
+
+
+def _made(part: Record, line: Record) -> MadePart:
+    own = {name: value for name, value in part.items() if name not in OF_USE}
+    listed = {name: value for name, value in line.items() if name not in OF_USE}
+    return MadePart({"part": own, "listed": listed}, {name: part[name] for name in SHAPE if name in part})
+
+
+@dataclass(frozen=True)
+class Reviewed:
+    """A design that keeps its rules, by the present code; `known` keeps findings of parts that designs
+    share, `told` is its record of geometry where that was made already."""
+
+    design: Design
+    known: dict[str, tuple[Part, list[Finding]]] = field(default_factory=dict, repr=False)
+    told: Record | None = None
+
+    @cached_property
+    def scenes(self) -> Sequence[Scene]:
+        return [make_scene(self.design, name) for name in scene_names(self.design)]
+
+    @cached_property
+    def parts(self) -> dict[str, Part]:
+        """By number."""
+        return {part.part_no: part for scene in self.scenes for part in scene.parts}
+
+    @cached_property
+    def record(self) -> Record:
+        """Of geometry."""
+        return geometry(self.design, self.scenes) if self.told is None else self.told
+
+    @cached_property
+    def state(self) -> SensorState:
+        told = recorded_state(self.record, self.design)
+        made = {n: p for n, p in self.parts.items() if p.process not in NOT_MADE}
+        return replace(
+            told,
+            elements={
+                name: replace(figures, signal_per_force=volts)
+                for (name, figures), volts in zip(told.elements.items(), self._signals(len(told.elements)))
+            },
+            made={number: MadePart(part, (part.body, part.features)) for number, part in made.items()},
+        )
+
+    def _signals(self, count: int) -> list[float | None]:
+        """V/N of every element; None for all where one is out of the model's range, or nothing reads them."""
+        readout = family_of(self.design).readout
+        try:
+            return readout.signals(self.design) if readout else [None] * count
+        except CheckFailure:
+            return [None] * count
+
+    @cached_property
+    def yield_share(self) -> float:
+        """Share of virtual arrays that meet every requirement, as `tactcad check` builds them."""
+        return sensor(self.design, self.scenes).built(COUNT).share
+
+    @cached_property
+    def findings(self) -> list[Finding]:
+        """Of every check that needs no kernel and no virtual builds."""
+        report, design = Report(), self.design
+        job = Job(design, [scene.name for scene in self.scenes], self.scenes)
+        quick = [check for check in described(design) if check.quick]
+        run_each(report, [*quick, *of_rigs(design, self.scenes)], "design", design, job)
+        of_parts = [f for part in self.parts.values() for f in self._about(part, job)]
+        missing = [
+            Finding("scene", "flag", f"scene {left.scene} left out", (), 0, 0, left.reason)
+            for left in left_out(design)
+        ]
+        return [*report.findings, *of_parts, *missing]
+
+    def _about(self, part: Part, job: Job) -> list[Finding]:
+        if part.part_no not in self.known or self.known[part.part_no][0] != part:
+            report = Report()
+            run_each(report, described(self.design), "part", part, job)
+            self.known[part.part_no] = (part, report.findings)
+        return self.known[part.part_no][1]
+
+
+def signals(design: Design) -> list[float]:
+    """V/N of every element of facing rows. Raises CheckFailure where one is out of the model's range."""
+    layout, gauge, electronics = Layout(design), design_gauge(design), design_readout(design)
+    read = readout.predict(hinge_section(layout, layout.elements), gauge, electronics, 0.0)
+    return [float(volts) for volts in read.per_force]
+
+
+def too_few(share: float) -> bool:
+    """Whether `tactcad check` fails at that share of arrays."""
+    return share < LEAST_YIELD
+
+
 Pairs = Sequence[tuple[str | None, str | None]]  # designators before and after
 
 
@@ -107,7 +277,9 @@ class SensorEffect:
 def same_elements(old: Design, new: Design) -> Pairs:
     """Which element of the new array is which of the old one, in their order: place by place in rows that are
     as long as they were; else by their arms, so that one put in between moves no other."""
-    before, after = (Layout(d).elements for d in (old, new))
+    before, after = (family_of(d).layout(d).elements for d in (old, new))
+    if type(old) is not type(new):
+        return [*((p.designator, None) for p in before), *((None, p.designator) for p in after)]
     pairs: list[tuple[str | None, str | None]] = []
     for row in (1, 2):
         was, now = ([p for p in places if p.row == row] for places in (before, after))
@@ -161,17 +333,17 @@ def reviewed_effect(old: Reviewed, new: Reviewed, build: bool) -> SensorEffect:
     now = [f for who, f in after.items() if who not in before and not _comes_or_goes(f, numbers)]
     gone = [f for who, f in before.items() if who not in after and not _comes_or_goes(f, numbers)]
     said, silent = [str(f) for f in now], [str(f) for f in gone]
+    fails = any(f.severity == "fail" for f in now)
     if share is not None and too_few(share.old) != too_few(share.new):
         line = f"fail: assembly: fewer than {100 * LEAST_YIELD:g} % of virtual arrays meet all requirements"
         (said if too_few(share.new) else silent).append(line)
-    fails = any(line.startswith("fail: ") for line in said)
+        fails |= too_few(share.new)
     return replace(found, yield_share=share, now=tuple(said), no_longer=tuple(silent), now_fails=fails)
 
 
 def _who(finding: Finding, names: Mapping[str, str]) -> tuple[str, str, str]:
     """What a finding is about: of an element its designator, as it is called now, whatever its part is."""
-    about = finding.part.split(" (")[0]
-    return finding.check, finding.severity, names.get(about, about)
+    return finding.check, finding.severity, names.get(finding.part, finding.part)
 
 
 def _comes_or_goes(finding: Finding, numbers: set[str]) -> bool:

@@ -1,13 +1,23 @@
-"""A design file followed while it is written: the last good model, and what is wrong with the text since."""
+"""A design file followed while it is written: the last good model, what is wrong with the text since, and the
+page of it on this machine's own address, for who has the token and for nobody else.
+
+The server answers two requests: the page, and what changed since a version. No request names a file, and none
+is read for one.
+"""
 
 from __future__ import annotations
 
+import hmac
 import importlib
+import json
+import re
+import secrets
 import threading
 import time
 import traceback
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import asdict, dataclass
+from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
 from typing import Any
 
@@ -15,13 +25,41 @@ from tactcad.design.files import read_text
 from tactcad.design.load import MOST_BYTES, parse
 from tactcad.design.messages import CheckFailure, InputError
 from tactcad.design.tree import Design
+from tactcad.export.inputs import flattened
 from tactcad.export.shapes import Shapes
+from tactcad.lab.array_estimate import ELEMENT
 from tactcad.parts.rules import refuse_broken
-from tactcad.scenes import chosen_scenes
+from tactcad.scenes import chosen_scenes, make_scene
 
-from .live_record import live_record, number_changes
+from .facts import estimate_facts, part_facts, scene_facts
+from .mesh_pack import mesh_pack
+from .review_page import ViewerLibrary, review_page
+from .review_record import record_head
 
 POLL = 0.1  # s between two looks at the file; chosen: a tenth of the second in which a change is to be seen
+ADDRESS = "127.0.0.1"
+WAIT = 20.0  # s that a question is held; chosen: below what browsers and their helpers end by themselves
+TIMEOUT = 10.0  # s for a reader or writer that stands still; chosen
+HEADERS = {
+    "Cache-Control": "no-store",
+    "X-Content-Type-Options": "nosniff",
+    "X-Frame-Options": "DENY",
+    "Referrer-Policy": "no-referrer",
+    "Cross-Origin-Resource-Policy": "same-origin",
+}
+# Of each element, as the page's panel calls them.
+NUMBERS = (*ELEMENT.some("stiffness", "rated_force"), ELEMENT["yield_force"].said(heading="yields at"))
+LEFT_OUT = "Left out while live; `tactcad review` has it."
+
+
+@dataclass(frozen=True)
+class NumberChange:
+    """A number of the model before and after, None where there is none; `about` names the designators."""
+
+    about: str
+    what: str
+    before: Any
+    after: Any
 
 
 @dataclass(frozen=True)
@@ -134,3 +172,163 @@ class Live:
         with self.changed:
             self.shown = shown
             self.changed.notify_all()
+
+
+def live_record(design: Design, scene_name: str, shapes: Shapes) -> tuple[dict[str, Any], bytes]:
+    """As `review_record` of one scene, without what takes seconds: checks, virtual builds and with them each
+    requirement's variance, pictures of strain.
+
+    Parameters
+    ----------
+    design
+        Must keep its rules.
+    scene_name
+        The scene.
+    shapes
+        Makes solids, or takes them from its cache: parts that did not change are not meshed again.
+    """
+    scene = make_scene(design, scene_name)
+    parts = list({part.part_no: part for part in scene.parts}.values())
+    pack = mesh_pack(parts, shapes)
+    array = estimate_facts(design)
+    elements = {p.part.part_no for p in scene.placements if p.designator in array.elements}
+    record = record_head(design) | {
+        "parts": [
+            asdict(part_facts(part, {}, []))
+            | {"mesh": pack.table[part.part_no], "box": pack.boxes[part.part_no]}
+            for part in parts
+        ],
+        "scenes": [asdict(scene_facts(design, scene))],
+        "array": asdict(array),
+        "strains": {number: {"why_not": LEFT_OUT} for number in sorted(elements)},
+        "findings": [],
+        "sheets": {},
+    }
+    return record, pack.block
+
+
+def number_changes(
+    old: tuple[Design, Mapping[str, Any]], new: tuple[Design, Mapping[str, Any]]
+) -> list[NumberChange]:
+    """What differs between two designs and their records: fields first, then the elements' estimates, equal
+    changes of several elements as one, then masses."""
+    before, after = (flattened(design) for design, _ in (old, new))
+    fields = [
+        NumberChange("", path, before.get(path), after.get(path))
+        for path in (*after, *(p for p in before if p not in after))
+        if before.get(path) != after.get(path)
+    ]
+    return [*fields, *_estimates(old[1], new[1]), *_masses(old[1], new[1])]
+
+
+def _estimates(old: Mapping[str, Any], new: Mapping[str, Any]) -> Iterator[NumberChange]:
+    before, after = (record["array"]["elements"] for record in (old, new))
+    for figure in NUMBERS:
+        same: dict[tuple[Any, Any], list[str]] = {}
+        for designator in (*after, *(d for d in before if d not in after)):
+            pair = (_number(before, designator, figure.name), _number(after, designator, figure.name))
+            if pair[0] != pair[1]:
+                same.setdefault(pair, []).append(designator)
+        yield from (
+            NumberChange(" ".join(who), f"{figure.heading}, {figure.unit}", *pair)
+            for pair, who in same.items()
+        )
+
+
+def _number(elements: Mapping[str, Any], designator: str, name: str) -> float | None:
+    estimate = elements.get(designator, {}).get("estimate")
+    return estimate[name] if estimate else None
+
+
+def _masses(old: Mapping[str, Any], new: Mapping[str, Any]) -> Iterator[NumberChange]:
+    before, after = (_mass(record) for record in (old, new))
+    if before != after:
+        yield NumberChange(new["scenes"][0]["name"], "mass, g", before, after)
+
+
+def _mass(record: Mapping[str, Any]) -> float:
+    """Of all parts of the scene, g, to a milligram: the sum's last digits depend on the order."""
+    mass = {part["part_no"]: part["mass_g"] for part in record["parts"]}
+    return round(sum(mass[p["part_no"]] for p in record["scenes"][0]["placed"]), 3)
+
+
+class LiveServer(ThreadingHTTPServer):
+    """Answers for one live design; `url` is the page's address, with the token that every request needs."""
+
+    daemon_threads = True
+
+    def __init__(self, live: Callable[[], Live], library: ViewerLibrary, port: int) -> None:
+        """`port` 0 takes a free one; `live`, which takes seconds, is made once the port is this server's.
+
+        Raises InputError where the port is taken or not allowed, and what `live` raises."""
+        self.library = library
+        self.token = secrets.token_urlsafe(24)
+        try:
+            super().__init__((ADDRESS, port), _Answer)
+        except (OSError, OverflowError) as error:
+            why = getattr(error, "strerror", None) or str(error)
+            legal = "a free port from 1024 to 65535, or 0 for any"
+            raise InputError("--port", f"cannot be used: {why}", value=port, legal=legal) from None
+        try:
+            self.live = live()
+        except BaseException:
+            self.server_close()
+            raise
+        # a page elsewhere whose name is made to mean this machine asks under that name
+        self.hosts = {f"{name}:{self.server_port}" for name in (ADDRESS, "localhost")}
+
+    @property
+    def url(self) -> str:
+        return f"http://{ADDRESS}:{self.server_port}/{self.token}/"
+
+    def page(self) -> bytes:
+        """The page as it is now."""
+        shown, record, block = self.live.state()
+        return review_page(record | {"live": asdict(shown)}, block, self.library)
+
+    def news(self, version: int, model: int) -> bytes:
+        """What is to be shown once it is no longer that version, at most after WAIT: a line of JSON; where
+        the model is another one, its record is in it and its block follows."""
+        shown, record, block = self.live.after(version, WAIT)
+        if shown.model == model:
+            return _line(shown, None)
+        return _line(shown, record) + block
+
+
+def _line(shown: LiveState, record: dict[str, Any] | None) -> bytes:
+    return json.dumps({"live": asdict(shown), "record": record}, allow_nan=False).encode() + b"\n"
+
+
+class _Answer(BaseHTTPRequestHandler):
+    server: LiveServer
+    timeout = TIMEOUT
+
+    def do_GET(self) -> None:
+        if self.headers.get("Host", "") not in self.server.hosts:
+            self._send(403, "text/plain", b"not this machine's address\n")
+            return
+        token, slash, rest = self.path.removeprefix("/").partition("/")
+        known = hmac.compare_digest(token.encode(), self.server.token.encode())
+        asked = re.fullmatch(r"events\?version=(\d{1,9})&model=(\d{1,9})", rest, re.ASCII)
+        if known and slash and not rest:
+            self._send(200, "text/html; charset=utf-8", self.server.page())
+        elif known and asked:
+            self._send(200, "application/octet-stream", self.server.news(int(asked[1]), int(asked[2])))
+        else:
+            self._send(404, "text/plain", b"nothing here\n")
+
+    def _send(self, status: int, kind: str, data: bytes) -> None:
+        try:
+            self.send_response(status)
+            for name, value in {**HEADERS, "Content-Type": kind, "Content-Length": str(len(data))}.items():
+                self.send_header(name, value)
+            self.end_headers()
+            self.wfile.write(data)
+        except OSError:
+            pass  # the reader has gone, or stands still
+
+    def version_string(self) -> str:
+        return "tactcad"
+
+    def log_message(self, format: str, *args: object) -> None:
+        """Nothing: a request's address holds the token."""

@@ -12,7 +12,7 @@ import numpy as np
 from tactcad.export.cache import Cache
 from tactcad.export.inputs import digest
 from tactcad.export.shapes import Shapes
-from tactcad.parts.description import Part
+from tactcad.parts.language.description import Part
 
 if TYPE_CHECKING:
     from OCP.TopoDS import TopoDS_Shape
@@ -63,7 +63,7 @@ def mesh_bytes(content: str, shape: Callable[[], TopoDS_Shape], cache: Cache) ->
     that content."""
 
     def make() -> bytes:
-        from tactcad.solids.facets import facets  # loads the kernel
+        from tactcad.solids.triangles import facets
 
         f = facets(shape(), LINEAR, ANGULAR)
         found = (

@@ -9,19 +9,14 @@ from typing import Any
 import numpy as np
 
 from tactcad import __version__
+from tactcad.design.family import family_of
 from tactcad.design.messages import CheckFailure
 from tactcad.design.tree import Design
 from tactcad.export.shapes import Shapes
-from tactcad.parts.element import element_number
-from tactcad.parts.layout import Layout
 from tactcad.scenes import make_scene
 
-from .element_facts import element_facts
-from .finding_facts import finding_facts
+from .facts import element_facts, finding_facts, part_facts, scene_facts
 from .mesh_pack import MeshPack, mesh_pack
-from .part_facts import part_facts
-from .scene_facts import scene_facts
-from .strain_field import strain_field
 
 SCHEMA = "tactcad-review-1"
 IDENTITY = ("name", "title", "revision", "date", "author", "organisation")
@@ -83,10 +78,12 @@ def record_head(design: Design) -> dict[str, Any]:
 
 def _strains(design: Design, pack: MeshPack) -> tuple[dict[str, Any], bytes]:
     """By element part number the strain field's arrays in the block, which it continues."""
-    layout, block = Layout(design), pack.block
+    family, block = family_of(design), pack.block
+    layout, strain_field = family.layout(design), family.estimate.strain
     table: dict[str, Any] = {}
-    for place in layout.elements:
-        number = element_number(design, place)
+    if strain_field is None:
+        return table, block
+    for place, number, _ in family.parts(layout):
         if number in table:
             continue
         try:

@@ -20,11 +20,10 @@ from tactcad.scenes import chosen_scenes, make_scene
 
 from .change_record import change_record
 from .consequences import meaning
-from .review_page import review_page
+from .facts import scene_facts
+from .review_page import review_page, viewer_library
 from .review_record import review_record
-from .scene_facts import scene_facts
 from .subject import shapes_of, subject
-from .viewer_library import viewer_library
 
 HEIGHT = (
     720  # px of a page in a notebook; chosen: the whole page is seen beside its cell on a laptop's screen

@@ -8,12 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from tactcad.fem.plane_elements import PlaneSolution, solve_plane
+from tactcad.fem.elements import PlaneSolution, solve_plane
 from tactcad.fem.shape import cut_element
 from tactcad.fem.space import lagrange
-from tactcad.parts.element import element
-from tactcad.parts.hinge_section import design_alloy
-from tactcad.parts.layout import ElementPlace, Layout
+from tactcad.parts.array.element import element
+from tactcad.parts.array.hinge_section import design_alloy
+from tactcad.parts.array.layout import ElementPlace, Layout
 
 DENSITY = 4  # of the mesh; chosen: facets of a hundredth of a millimetre at the fillets, 3000 of them
 

@@ -12,13 +12,15 @@ from tactcad.design.load import find, from_table
 from tactcad.design.messages import InputError
 from tactcad.design.tree import Design
 from tactcad.export.cache import Cache, default_root
+from tactcad.export.formats import ExportOptions
 from tactcad.export.inputs import Inputs, digest, inputs_from_json, inputs_of, nested, reasons
 from tactcad.export.manifest import read_export
-from tactcad.export.pipeline import DRAWN_WITH, LIBRARIES, ROOMS
-from tactcad.export.products import drawing_products, part_products
+from tactcad.export.pipeline import DRAWN_WITH, LIBRARIES, ROOMS, made_files
+from tactcad.export.products import Plan, part_sheets
 from tactcad.export.shapes import Shapes
-from tactcad.parts.description import Part
+from tactcad.export.workers import relayed
 from tactcad.parts.designs import load
+from tactcad.scenes.scene import Scene
 
 
 @dataclass(frozen=True)
@@ -74,13 +76,13 @@ def _only(before: Inputs, values: dict[str, Any]) -> Inputs:
 def shapes_of(design: Design, say: Callable[[str], None]) -> Shapes:
     """Makes solids, or takes them from the cache that a full export fills; `say` hears of damaged entries."""
     inputs = inputs_of(design, ROOMS, (*LIBRARIES, *DRAWN_WITH))
-    return Shapes(Cache(default_root(), say), digest((inputs.sources, inputs.libraries)))
+    return Shapes(Cache(default_root(), relayed(say)), digest((inputs.sources, inputs.libraries)))
 
 
 def drawn_sheets(
-    design: Design, parts: Sequence[Part], shapes: Shapes, say: Callable[[int, int, str], None]
+    design: Design, scenes: Sequence[Scene], shapes: Shapes, say: Callable[[int, int, str], None]
 ) -> dict[str, str]:
     """The drawing sheet of every part made here, as SVG by part number."""
-    files = [product for part in parts for product in part_products(design, part, shapes)]
-    drawn = [p for p in drawing_products(design, parts, shapes, files, say) if p.path.endswith(".svg")]
-    return {p.part_no: shapes.cache.get_or_make(p.key, p.make).decode() for p in drawn}
+    plan = Plan(design, ExportOptions(tuple(scene.name for scene in scenes)), scenes, shapes)
+    made = made_files(plan, [*part_sheets(plan)], say, shapes.cache.say)
+    return {file.part_no: data.decode() for file, data, _ in made if file.path.endswith(".svg")}

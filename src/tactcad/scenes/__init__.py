@@ -10,14 +10,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from tactcad.account import making
+from tactcad.design.family import family_of
 from tactcad.design.messages import InputError, one_of
 from tactcad.design.tree import Design
-from tactcad.parts.finding import Finding
-from tactcad.parts.layout import Layout
+from tactcad.parts.language.finding import Finding
 from tactcad.parts.rules.rule import misfit
+from tactcad.profiling import making
 
-from .rig import Rig, all_rigs
+from .rig import Rig, all_rigs, rig_of
 
 if TYPE_CHECKING:
     from .scene import Pose, Scene
@@ -41,17 +41,23 @@ class LeftOut:
 
 def scene_names(design: Design) -> tuple[str, ...]:
     """Names of the scenes that this design has: the tables are there, and the rig takes the array."""
-    return tuple(rig.name for rig in _with_tables(design) if misfit(Layout(design), rig.rules) is None)
+    layout = family_of(design).layout(design)
+    return tuple(rig.name for rig in _with_tables(design) if misfit(layout, rig.rules) is None)
 
 
 def left_out(design: Design) -> list[LeftOut]:
     """Scenes whose tables the design has and that are not among its scenes."""
-    found = ((rig.name, misfit(Layout(design), rig.rules)) for rig in _with_tables(design))
+    layout = family_of(design).layout(design)
+    found = ((rig.name, misfit(layout, rig.rules)) for rig in _with_tables(design))
     return [LeftOut(name, why) for name, why in found if why is not None]
 
 
 def _with_tables(design: Design) -> list[Rig]:
-    return [rig for rig in all_rigs().values() if all(getattr(design, t) is not None for t in rig.tables)]
+    return [
+        rig
+        for rig in all_rigs(type(design)).values()
+        if all(getattr(design, t) is not None for t in rig.tables)
+    ]
 
 
 def chosen_scenes(design: Design, wanted: list[str] | None) -> tuple[str, ...]:
@@ -89,4 +95,4 @@ def make_scene(design: Design, name: str, pose: Pose | None = None) -> Scene:
     from .scene import REST
 
     with making("scene", name):
-        return all_rigs()[name].make(design, pose or REST)
+        return rig_of(design, name).make(design, pose or REST)

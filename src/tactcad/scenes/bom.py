@@ -14,9 +14,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, fields
 from typing import Any
 
-from tactcad.design.plain_numbers import as_number, as_whole
-from tactcad.parts.description import Part, Purchase
-from tactcad.parts.supply import Supply
+from tactcad.design.text_values import as_number, as_whole
+from tactcad.parts.bought.supply import Supply
+from tactcad.parts.language.description import Part, Purchase
 from tactcad.scenes.scene import Scene
 
 SCHEMA = "tactcad-bom-1"

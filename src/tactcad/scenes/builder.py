@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import replace
 
-from tactcad.parts.description import Part, Vector, vector
-from tactcad.parts.library import screws
-from tactcad.parts.supply import Supply
+from tactcad.parts.bought import screws
+from tactcad.parts.bought.supply import Supply
+from tactcad.parts.language.description import Part, Vector, vector
 
 from .scene import (
     AGAINST_Y,

@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+from tactcad.design.family import family_of
 from tactcad.design.messages import InputError, one_of
-from tactcad.design.plain_numbers import as_number, as_whole
+from tactcad.design.text_values import as_number, as_whole
 from tactcad.design.tree import Design
 
-from .rig import all_rigs
+from .rig import rig_of
 from .scene import Pose
 
 LEAST = 1e-3  # mm; less is more likely a typing error, and the CAD kernel drops edges that short
@@ -17,19 +18,20 @@ LEAST = 1e-3  # mm; less is more likely a typing error, and the CAD kernel drops
 
 def poses(design: Design, name: str) -> tuple[Pose, ...]:
     """Every pose of a scene that is checked, apart from its rest pose."""
-    return tuple(all_rigs()[name].poses(design))
+    return tuple(rig_of(design, name).poses(design))
 
 
 def pose_of(given: Sequence[str], design: Design) -> Pose | None:
     """The pose that KEY=VALUE texts describe; None where there are none. Raises InputError where they
     describe none.
     """
+    grasping, cart = (getattr(design, table, None) for table in ("grasping", "cart"))
     limits = {
-        "element": (1, sum(len(row) for row in design.array.row_arms)),
+        "element": (1, len(family_of(design).layout(design).elements)),
         "deflection": (0.0, 5.0),
-        "weights": (0, design.grasping.weights if design.grasping else 0),
-        "height": (0.0, max(design.grasping.lift if design.grasping else 0.0, 5.0)),
-        "cart": (-design.cart.roll, design.cart.roll) if design.cart else (0.0, 0.0),
+        "weights": (0, grasping.weights if grasping else 0),
+        "height": (0.0, max(grasping.lift if grasping else 0.0, 5.0)),
+        "cart": (-cart.roll, cart.roll) if cart else (0.0, 0.0),
     }
     values: dict[str, Any] = {}
     for text in given:

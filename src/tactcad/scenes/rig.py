@@ -1,25 +1,27 @@
 """A rig: a scene with all that hangs on it, declared once, beside the function that makes it.
 
-Every module in scenes/rigs declares one, its `RIG`; nothing lists them. A module without, a declaration that
-lacks something, or two of one name are refused when they are imported.
+A family of sensors names the folder or module of its rigs (facing rows: scenes/rigs). Every module there
+declares one, its `RIG`; nothing lists them. A module without, a declaration that lacks something, or two of
+one name are refused when they are imported.
 """
 
 from __future__ import annotations
 
 import pkgutil
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from functools import cache
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from tactcad.design.tree import Design
-from tactcad.parts.layout import Layout
+from tactcad.design.family import all_families
+from tactcad.design.tree import CommonTables, Design
+from tactcad.parts.array.layout import Layout
+from tactcad.parts.array.stiffness_table import Lines
 from tactcad.parts.rules.rule import Rule
-from tactcad.parts.stiffness_table import Lines
 
 if TYPE_CHECKING:
-    from tactcad.parts.finding import Finding
+    from tactcad.parts.language.finding import Finding
 
     from .requirement import DimensionLimits, Requirement
     from .scene import Pose, Scene
@@ -53,9 +55,6 @@ class Rig:
     checks: tuple[tuple[str, Callable[[Design, Scene], list[Finding]]], ...]
 
     def __post_init__(self) -> None:
-        sections = [f.name for f in fields(Design)]
-        if wrong := [table for table in self.tables if table not in sections]:
-            raise TypeError(f"rig {self.name}: a design has no table {', '.join(wrong)}")
         if wrong := [r.name for r in self.rules if not (isinstance(r, Rule) and r.fit)]:
             raise TypeError(f"rig {self.name}: {', '.join(wrong)} must be marked @fits")
 
@@ -65,20 +64,33 @@ def none(*_: Any) -> tuple[()]:
     return ()
 
 
-@cache
-def all_rigs() -> dict[str, Rig]:
-    """Every rig by name: the array, then in the order in which their tables stand in a design."""
-    from . import rigs as folder
+def all_rigs(spec: type[CommonTables] = Design) -> dict[str, Rig]:
+    """Every rig of the family whose designs are of that class, by name: the array, then in the order in which
+    their tables stand in a design."""
+    return _rigs(next(f.name for f in all_families().values() if f.spec is spec))
 
-    modules = [
-        import_module(f"{folder.__name__}.{name}") for _, name, _ in pkgutil.iter_modules(folder.__path__)
-    ]
+
+@cache
+def _rigs(name: str) -> dict[str, Rig]:
+    family = all_families()[name]
+    folder = import_module(family.scenes)
+    inside = pkgutil.iter_modules(getattr(folder, "__path__", ()))
+    modules = [import_module(f"{folder.__name__}.{name}") for _, name, _ in inside] or [folder]
     if without := [m.__name__ for m in modules if not isinstance(getattr(m, "RIG", None), Rig)]:
         raise TypeError(f"no RIG is declared in {', '.join(without)}")
-    found = [m.RIG for m in modules]
-    sections = [f.name for f in fields(Design)]
+    found, sections = [m.RIG for m in modules], [*family.tables]
+    for rig in found:
+        if wrong := [table for table in rig.tables if table not in sections]:
+            raise TypeError(f"rig {rig.name}: a design has no table {', '.join(wrong)}")
     found.sort(key=lambda rig: max(map(sections.index, rig.tables), default=-1))
     by_name = {rig.name: rig for rig in found}
     if len(by_name) < len(found):
         raise TypeError(f"two rigs have one name, of {', '.join(rig.name for rig in found)}")
+    if ARRAY not in by_name:
+        raise TypeError(f"family {family.name}: none of its rigs is called {ARRAY}")
     return by_name
+
+
+def rig_of(design: CommonTables, scene: str) -> Rig:
+    """The rig that declares a scene of this design."""
+    return all_rigs(type(design))[scene]

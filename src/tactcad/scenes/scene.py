@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import floor
 from typing import Literal
 
-from tactcad.parts.description import Part, Vector, vector
-from tactcad.parts.supply import Supply
+from tactcad.parts.bought.supply import Supply
+from tactcad.parts.language.description import Part, Vector, envelope, vector
 
 Rotation = tuple[Vector, Vector, Vector]  # rows of the matrix that turns local into scene directions
 
@@ -171,3 +171,12 @@ class Scene:
 
     def count(self, part: Part) -> int:
         return sum(p.part.part_no == part.part_no for p in self.placements)
+
+
+def at_detail(scene: Scene, detail: str) -> Scene:
+    """The scene with every part `full` or as its `envelope`."""
+    if detail == "full":
+        return scene
+    parts = {part.part_no: envelope(part) for part in scene.parts}
+    placed = tuple(replace(p, part=parts[p.part.part_no]) for p in scene.placements)
+    return replace(scene, placements=placed)

@@ -9,7 +9,7 @@ from math import pi
 
 import numpy as np
 
-from tactcad.parts.description import Extrusion, Hole, Part, Revolution
+from tactcad.parts.language.description import Extrusion, Hole, Part, Revolution
 from tactcad.scenes.scene import Placement
 
 # A screw stands in its hole's axis within this (mm and radians).

@@ -9,7 +9,7 @@ from OCP.TopoDS import TopoDS_Shape
 
 from tactcad.scenes.scene import Placement, Scene
 
-from .place import placed_shape
+from .occt import placed_shape
 
 Leaf = tuple[tuple[str, ...], Shape]  # the sub-assemblies that hold it, the outer one first; the part
 

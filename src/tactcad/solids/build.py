@@ -8,9 +8,8 @@ from build123d import Axis, Edge, Face, Plane, Solid, Vector, Wire
 from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge, BRepBuilderAPI_MakeVertex, BRepBuilderAPI_MakeWire
 from OCP.gp import gp_Ax2, gp_Circ, gp_Pnt
 
-from tactcad.account import making
 from tactcad.contour import Contour, Line, Point
-from tactcad.parts.description import (
+from tactcad.parts.language.description import (
     Extrusion,
     Feature,
     Hole,
@@ -20,8 +19,9 @@ from tactcad.parts.description import (
     Revolution,
     drill_point_height,
 )
+from tactcad.profiling import making
 
-from .step_models import read_step_solid
+from .step import read_step_solid
 
 # The kernel's volume agrees with the closed form within this share, or the build is refused.
 VOLUME_AGREES = 1e-6

@@ -15,11 +15,11 @@ from pathlib import Path
 import cadquery as cq
 
 from tactcad.design.messages import InputError
-from tactcad.parts.description import Material, Part, Purchase
+from tactcad.parts.language.description import Material, Part, Purchase
 from tactcad.scenes.scene import Scene
 
 from .build import build
-from .place import location
+from .occt import location
 
 
 def workplane(part: Part) -> cq.Workplane:
@@ -57,14 +57,14 @@ def bought_from_step(
     path
         The STEP file, mm.
     part_no, name, material, purchase
-        Of the part, see `tactcad.parts.description.Part`.
+        Of the part, see `tactcad.parts.language.description.Part`.
 
     Raises
     ------
     InputError
         Where the file does not hold exactly one solid.
     """
-    from .step_models import model_file
+    from .step import model_file
 
     return Part(part_no, name, "bought", material, model_file(path), purchase=purchase)
 
@@ -86,7 +86,7 @@ def bought_from_cadquery(
     path
         Where it is written (STEP) and from then on read.
     part_no, name, material, purchase
-        Of the part, see `tactcad.parts.description.Part`.
+        Of the part, see `tactcad.parts.language.description.Part`.
 
     Raises
     ------

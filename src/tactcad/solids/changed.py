@@ -14,10 +14,9 @@ from OCP.Standard import Standard_Failure
 from OCP.TopAbs import TopAbs_SOLID
 from OCP.TopoDS import TopoDS_Shape
 
-from .explore import subshapes
 from .measure import measure, volume
-from .polyhedron import polyhedra
-from .triangles import triangles
+from .occt import subshapes
+from .triangles import polyhedra, triangles
 
 AGREES = 1e-6  # share of a volume by which the pieces may miss the whole, as volumes elsewhere
 SLIVER = 1e-6  # mm3: less is the rounding of touching faces, as in checks/interference

@@ -1,12 +1,25 @@
-"""What the kernel measures on a shape."""
+"""What the kernel measures on shapes: size, the faces that come near a box, how near two sets of faces
+come."""
 
 from __future__ import annotations
 
+from math import inf
+
+import numpy as np
+from numpy.typing import ArrayLike
 from OCP.Bnd import Bnd_Box
+from OCP.BRep import BRep_Builder
 from OCP.BRepBndLib import BRepBndLib
+from OCP.BRepExtrema import BRepExtrema_DistShapeShape
 from OCP.BRepGProp import BRepGProp
 from OCP.GProp import GProp_GProps
-from OCP.TopoDS import TopoDS_Shape
+from OCP.TopAbs import TopAbs_FACE
+from OCP.TopoDS import TopoDS_Compound, TopoDS_Shape
+
+from tactcad.parts.language.description import Vector
+from tactcad.scenes.scene import Placement
+
+from .occt import location, subshapes
 
 
 def measure(shape: TopoDS_Shape) -> dict:
@@ -43,3 +56,94 @@ def bounding_box(shape: TopoDS_Shape) -> list[list[float]]:
     BRepBndLib.AddOptimal_s(shape, box, False, False)
     low, high, gap = box.CornerMin(), box.CornerMax(), box.GetGap()
     return [[low.X() + gap, low.Y() + gap, low.Z() + gap], [high.X() - gap, high.Y() - gap, high.Z() - gap]]
+
+
+class Faces:
+    """A shape's faces, and a box (n, 2, 3) around each in the shape's own frame, mm; the kernel's boxes are a
+    little too large, never too small."""
+
+    def __init__(self, shape: TopoDS_Shape) -> None:
+        self.faces = subshapes(shape, TopAbs_FACE)
+        self.boxes = np.array([_box(face) for face in self.faces])
+
+
+def faces_within(faces: Faces, place: Placement, box: np.ndarray, reach: float) -> TopoDS_Compound | None:
+    """The faces of a placed shape that come near a box.
+
+    Parameters
+    ----------
+    faces
+        In the shape's own frame.
+    place
+        Where the shape stands.
+    box : ndarray, shape (2, 3)
+        Least and largest corner in the scene, mm.
+    reach
+        How near a face's own box has to come, mm.
+
+    Returns
+    -------
+    TopoDS_Compound or None
+        The faces at their place; None where none comes near.
+    """
+    low, high = np.moveaxis(boxed(faces.boxes, np.array(place.rotation), np.array(place.origin)), -2, 0)
+    near = np.flatnonzero(np.all((low <= box[1] + reach) & (high >= box[0] - reach), axis=1))
+    if not len(near):
+        return None
+    compound, make = TopoDS_Compound(), BRep_Builder()
+    make.MakeCompound(compound)
+    for i in near:
+        make.Add(compound, faces.faces[i])
+    return compound.Located(location(place.origin, place.rotation))
+
+
+def nearest(first: TopoDS_Shape | None, second: TopoDS_Shape | None) -> tuple[float, Vector]:
+    """Distance between two sets of faces.
+
+    Parameters
+    ----------
+    first, second
+        As `faces_within` gives them; None for an empty set.
+
+    Returns
+    -------
+    tuple
+        The distance, mm, infinite where a set is empty; and the point of the first set where it is taken.
+    """
+    if first is None or second is None:
+        return inf, (0.0, 0.0, 0.0)
+    nearest_points = BRepExtrema_DistShapeShape(first, second)
+    point = nearest_points.PointOnShape1(1)
+    return nearest_points.Value(), (point.X(), point.Y(), point.Z())
+
+
+def boxed(boxes: ArrayLike, rotation: np.ndarray, origin: np.ndarray) -> np.ndarray:
+    """Boxes around turned and moved boxes.
+
+    The middle moves along; each half extent becomes the sum of what the turned edges reach along an axis.
+
+    Parameters
+    ----------
+    boxes : ndarray, shape (..., 2, 3)
+        Least and largest corners, mm.
+    rotation : ndarray, shape (3, 3)
+        Scene direction = rotation x local direction.
+    origin : ndarray, shape (3,)
+        mm.
+
+    Returns
+    -------
+    ndarray, shape (..., 2, 3)
+        Least and largest corners in the scene, mm.
+    """
+    ends = np.asarray(boxes)
+    middle, half = ends.mean(axis=-2), (ends[..., 1, :] - ends[..., 0, :]) / 2
+    centre, reach = middle @ rotation.T + origin, half @ np.abs(rotation).T
+    return np.stack([centre - reach, centre + reach], axis=-2)
+
+
+def _box(face: TopoDS_Shape) -> list[list[float]]:
+    box = Bnd_Box()
+    BRepBndLib.Add_s(face, box, False)
+    low, high = box.CornerMin(), box.CornerMax()
+    return [[low.X(), low.Y(), low.Z()], [high.X(), high.Y(), high.Z()]]

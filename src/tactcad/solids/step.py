@@ -1,14 +1,29 @@
-"""A shape alone through a STEP file (AP214, mm) and back."""
+"""Shapes as bytes and back: STEP files (AP214, mm), bought shapes from them, and for caches the kernel's own
+text (BREP).
+
+The text drops the sign of zero, so a shape that went through it may give other bytes in a STEP file than the
+one just built: for equal files both must be taken from the text.
+"""
 
 from __future__ import annotations
 
+import hashlib
 from io import BytesIO
+from pathlib import Path
 
+from build123d import Solid, import_step
+from OCP.BRep import BRep_Builder
+from OCP.BRepTools import BRepTools
 from OCP.IFSelect import IFSelect_RetDone
 from OCP.Interface import Interface_Static
 from OCP.Message import Message
 from OCP.STEPControl import STEPControl_AsIs, STEPControl_Reader, STEPControl_Writer
 from OCP.TopoDS import TopoDS_Shape
+
+from tactcad.design.messages import InputError
+from tactcad.parts.language.description import ModelFile
+
+from .measure import measure
 
 
 def write_step(shape: TopoDS_Shape) -> bytes:
@@ -49,3 +64,56 @@ def silence() -> None:
     messenger = Message.DefaultMessenger_s()
     for printer in list(messenger.Printers()):
         messenger.RemovePrinter(printer)
+
+
+def read_step_solid(model: ModelFile) -> Solid:
+    """The one solid of a STEP file. Raises InputError where file, hash or solid are not as described."""
+    if _sha256(model.path) != model.sha256:
+        raise InputError(
+            model.path, "the STEP file has changed since it was described", legal=f"sha256 {model.sha256}"
+        )
+    return _only_solid(model.path)
+
+
+def model_file(path: str | Path) -> ModelFile:
+    """Describe a STEP file as a bought part's body: its hash, and its solid's volume (mm3) and box (mm).
+
+    Raises InputError where there is no such file, or not one solid in it.
+    """
+    sha256 = _sha256(str(path))
+    facts = measure(_only_solid(str(path)).wrapped)
+    low, high = facts["box"]
+    return ModelFile(str(path), sha256, facts["volume"], (tuple(low), tuple(high)))
+
+
+def _sha256(path: str) -> str:
+    if not Path(path).is_file():
+        raise InputError(path, "no such STEP file")
+    return hashlib.sha256(Path(path).read_bytes()).hexdigest()
+
+
+def _only_solid(path: str) -> Solid:
+    try:
+        solids = list(import_step(path).solids())
+    except Exception as error:  # the importer raises many kinds of exceptions
+        raise InputError(path, f"cannot be read as STEP: {error}") from None
+    if len(solids) != 1:
+        raise InputError(path, "not one solid", value=len(solids), legal="a STEP file with one solid")
+    return solids[0]
+
+
+def to_bytes(shape: TopoDS_Shape) -> bytes:
+    """The shape without triangulation."""
+    stream = BytesIO()
+    BRepTools.Clean_s(shape)
+    BRepTools.Write_s(shape, stream)
+    return stream.getvalue()
+
+
+def from_bytes(data: bytes) -> TopoDS_Shape:
+    """The shape that `to_bytes` wrote. Raises ValueError where the bytes hold none."""
+    shape = TopoDS_Shape()
+    BRepTools.Read_s(shape, BytesIO(data), BRep_Builder())
+    if shape.IsNull():
+        raise ValueError("not a shape")
+    return shape

@@ -1,11 +1,13 @@
-"""Closed forms of many designs, one vector call for each rung and element."""
+"""Closed forms of many designs, one vector call for each rung and element; and which designs are refused."""
 
 from __future__ import annotations
 
 import json
 from collections.abc import Iterator, Mapping
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tactcad.design.load import from_table
 from tactcad.design.materials import differences
@@ -14,14 +16,50 @@ from tactcad.design.tree import Design
 from tactcad.mechanics import ladder, strain
 from tactcad.mechanics.accuracy import expected_error_of
 from tactcad.mechanics.section import HingeSection
+from tactcad.parts.array.hinge_section import element_section
+from tactcad.parts.array.layout import Layout
 
 from .designs_taken import Column, table_of
-from .refused import ALL, Refused, Rows
+from .field_paths import with_value
 from .study import STRENGTH, Study
-from .vector_sections import Floats, VectorDesigns
+
+Floats = NDArray[np.float64]
 
 STIFFNESS = ("stiffness", "expected_error")  # N/mm; relative, at most
 FORCES = ("yield_force", "rated_force", "rated_deflection")  # N, N, mm
+
+
+# Of a chunk: all of them, which takes views instead of copies, or those of an index.
+Rows = slice | NDArray[np.int64]
+ALL = slice(None)
+
+
+class Refused:
+    """Of `count` designs, which are `valid`, and of the others `reason` ("" of a valid one)."""
+
+    def __init__(self, count: int) -> None:
+        self.valid = np.ones(count, bool)
+        self._reason: NDArray[Any] | None = None  # made when one is refused: mostly none is
+
+    @property
+    def reason(self) -> NDArray[Any]:
+        if self._reason is None:
+            self._reason = np.full(len(self.valid), "", object)
+        return self._reason
+
+    def add(self, rows: Rows, why: NDArray[Any] | str) -> None:
+        """Refuse those of the rows that are not refused yet and have a reason that is not ""."""
+        index = np.arange(len(self.valid))[rows]
+        first = self.valid[index]
+        self.reason[index[first]] = np.broadcast_to(why, len(index))[first]
+        self.valid[index] = self.reason[index] == ""
+
+    def left(self, rows: Rows) -> Rows:
+        """Those of the rows that are not refused."""
+        if isinstance(rows, slice) and self.valid.all():
+            return rows
+        index = np.arange(len(self.valid))[rows]
+        return index[self.valid[index]]
 
 
 def names_of(study: Study, rung: str, number: int) -> list[str]:
@@ -48,14 +86,12 @@ def closed_forms(
     rungs = [rung for rung in study.measure.rungs if rung in ladder.CLOSED_FORMS]
     if not rungs:
         return
-    for rows, design, numbers in _alike(study, columns, refused):
-        many = VectorDesigns(design, numbers)
-        there = len(many.layout.elements)
+    for rows, many in alike(study, columns, refused):
         for number in study.elements:
-            if number > there:
+            if number > len(many.elements):
                 refused.add(rows, f"the design has no element {number}")
                 continue
-            section = many.section(number)
+            section = element_section(many, many.elements[number - 1])
             for rung in rungs:
                 result = ladder.evaluate(section, rung)
                 all_valid = result.valid.all()
@@ -64,21 +100,21 @@ def closed_forms(
                     refused.add(rows, np.array(said, object))
                 values = [result.stiffness, expected_error_of(section, rung)]
                 if STRENGTH in study.measure.what:
-                    values += _forces(many, section, rung, result)
+                    values += _forces(many.design, section, rung, result)
                 for name, column in zip(names_of(study, rung, number), values):
                     results[name][rows] = column if all_valid else np.where(result.valid, column, np.nan)
 
 
-def _forces(many: VectorDesigns, section: HingeSection, rung: str, result: ladder.Result) -> list[Floats]:
+def _forces(d: Design, section: HingeSection, rung: str, result: ladder.Result) -> list[Floats]:
     """In the order of FORCES, each over all designs; NaN where out of the rung's range."""
     per_newton = np.full(section.shape, np.nan)
     if result.valid.any():
         per_newton[result.valid] = _stress(section.rows(result.valid.reshape(-1)), rung)
-    yield_force = many.of("material.yield_strength") / per_newton
+    yield_force = d.material.yield_strength / per_newton
     return [
         yield_force,
-        np.minimum(many.of("rating.force"), yield_force / many.of("rating.yield_factor")),
-        yield_force / many.of("rating.deflection_factor") / result.stiffness,
+        np.minimum(d.rating.force, yield_force / d.rating.yield_factor),
+        yield_force / d.rating.deflection_factor / result.stiffness,
     ]
 
 
@@ -89,11 +125,9 @@ def _stress(section: HingeSection, rung: str) -> Floats:
     return strain.peak(section, 1.0, rung) * section.youngs_modulus
 
 
-def _alike(
-    study: Study, columns: dict[str, Column], refused: Refused
-) -> Iterator[tuple[Rows, Design, dict[str, Floats]]]:
-    """Rows that differ in numbers only, a design that has all else of theirs, and those numbers. Designs
-    that cannot be read are refused."""
+def alike(study: Study, columns: dict[str, Column], refused: Refused) -> Iterator[tuple[Rows, Layout]]:
+    """Rows that differ in numbers only, and the layout of all of them at once. Designs that cannot be read
+    are refused."""
     numbers = {path: column for path, column in columns.items() if column.dtype != object}
     others = {path: column for path, column in columns.items() if column.dtype == object}
     alike: dict[str, list[int]] = {}
@@ -112,7 +146,9 @@ def _alike(
             refused.add(rows, _misnamed(design, material))
         rows = refused.left(rows)
         if refused.valid[rows].any():
-            yield rows, design, {path: column[rows] for path, column in numbers.items()}
+            for path, column in numbers.items():
+                design = with_value(design, path, column[rows])
+            yield rows, Layout(design)
 
 
 def _misnamed(design: Design, material: dict[str, Floats]) -> Column:

@@ -3,14 +3,18 @@
 
 from __future__ import annotations
 
+import dataclasses
 import re
+from dataclasses import replace
 from typing import Any
 
+from tactcad.design.family import family_of
 from tactcad.design.fields import NumberRows, Numbers, Spec
-from tactcad.design.load import SECTION_TYPES, paths
+from tactcad.design.load import paths
 from tactcad.design.tree import Design, Hinge
 
 _PLACE = re.compile(r"(?P<field>[^\[\]]+)(?P<places>(?:\[(?:0|[1-9][0-9]{0,3})\])*)")
+_OVERRIDE = re.compile(r"override\.(?P<number>[1-9][0-9]{0,3})\.(?P<name>\w+)")
 
 
 def spec_at(design: Design, path: str) -> Spec | None:
@@ -19,7 +23,7 @@ def spec_at(design: Design, path: str) -> Spec | None:
     if not found:
         return None
     field, places = found["field"], _places(path)
-    spec = _spec(field)
+    spec = _spec(design, field)
     value: Any = paths(design).get(field) if places else None
     for place in places:
         if not isinstance(spec, (NumberRows, Numbers)) or value is None or place >= len(value):
@@ -64,19 +68,33 @@ def placed(table: dict[str, Any], design: Design, path: str, value: Any) -> dict
     return out
 
 
-def _spec(field: str) -> Spec | None:
+def with_value(design: Design, path: str, value: Any) -> Design:
+    """A copy of a design with that value at the path, unchecked: for arithmetic it may be an array, and then
+    it is many designs. The stop's own gaps stay as they are."""
+    section, _, name = path.partition(".")
+    field, places, table = name.partition("[")[0], _places(path), getattr(design, section)
+    if own := _OVERRIDE.fullmatch(field):
+        number = int(own["number"])
+        changed = replace(table.override.get(number, Hinge()), **{own["name"]: value})
+        return replace(design, element=replace(table, override=table.override | {number: changed}))
+    if "." in field:
+        return design
+    new = _replaced(getattr(table, field), places, value) if places else value
+    return replace(design, **{section: replace(table, **{field: new})})
+
+
+def _spec(design: Design, field: str) -> Spec | None:
     section, _, name = field.partition(".")
-    kind = SECTION_TYPES.get(section)
-    if kind is None or section == "origin":
+    kind = family_of(design).tables.get(section)
+    if kind is None:
         return None
-    override = re.fullmatch(r"override\.[1-9][0-9]{0,3}\.(\w+)", name)
-    if section == "element" and override:
-        kind, name = Hinge, override[1]
+    if section == "element" and (override := _OVERRIDE.fullmatch(name)):
+        kind, name = Hinge, override["name"]
     if section == "stop" and re.fullmatch(r"gaps\.[0-9.]+", name):
         name = "gaps"
     elif (section, name) == ("stop", "gaps"):
         return None
-    known = kind.__dataclass_fields__.get(name)
+    known = {f.name: f for f in dataclasses.fields(kind)}.get(name)
     return known.metadata.get("spec") if known else None
 
 

@@ -23,8 +23,8 @@ from tactcad.design.extras import install
 from tactcad.design.messages import CheckFailure, InputError
 from tactcad.export.inputs import Inputs, reasons
 
-from .kept import MARK, Kept, mark_of
 from .measured import made_by, measured
+from .store import MARK, StudyStore, mark_of
 from .study import EXPORT, Study
 
 if TYPE_CHECKING:
@@ -101,15 +101,15 @@ class SweepTask:
         if (self.store is None or EXPORT in what) and not self._sees(folder):
             return Done(*which, False, f"does not see {folder}: every worker needs the same folder there")
         try:
-            kept = Kept(self.study, folder, self.inputs.key, self.store)
-            if kept.get(self.start, self.stop) is not None:
+            store = StudyStore(self.study, folder, self.inputs.key, self.store)
+            if store.get(self.start, self.stop) is not None:
                 return Done(*which, False)
             start = time.process_time()
             table = measured(self.study, self.start, self.stop, folder)
             seconds = time.process_time() - start
         except InputError as error:  # of an export's folder, or of the store: it has no pickle
             return Done(*which, False, f"cannot go on: {error}")
-        kept.put(self.start, self.stop, table)
+        store.put(self.start, self.stop, table)
         return Done(*which, True, seconds=seconds)
 
     def _sees(self, folder: Path) -> bool:

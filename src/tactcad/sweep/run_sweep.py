@@ -12,16 +12,15 @@ from typing import TYPE_CHECKING
 from tactcad import __version__
 from tactcad.design.files import absolute, scratch_folder, write_whole
 from tactcad.design.messages import CheckFailure
-from tactcad.ending import unfinished
 from tactcad.export.contents import NAME as MANIFEST
 from tactcad.export.contents import sealed
+from tactcad.shutdown import unfinished
 
 from .designs_taken import prepared
-from .far_store import FarStore
-from .kept import MARK, SCHEMA, Kept, claimed, store_apart
 from .measured import as_rows, designs_a_task, loaded_first, made_by
 from .on_dask import Done, SweepTask, all_done, cluster, refuse_unanswered
 from .results_table import Tally, write_tables
+from .store import MARK, SCHEMA, FarStore, StudyStore, claimed, store_apart
 from .study import Study
 
 if TYPE_CHECKING:
@@ -92,7 +91,7 @@ def sweep(
             refuse_unanswered(address)
     folder = claimed(study, out)
     inputs = made_by(study.measure.what)
-    kept = Kept(study, folder, inputs.key, apart)
+    kept = StudyStore(study, folder, inputs.key, apart)
     kept.tidy()
     step, count = designs_a_task(study), study.count
     tasks = [(start, min(start + step, count)) for start in range(0, count, step)]
@@ -112,7 +111,7 @@ def sweep(
 
 
 def _chunks(
-    kept: Kept, tasks: list[tuple[int, int]], orders: list[SweepTask], done: Iterator[Done]
+    kept: StudyStore, tasks: list[tuple[int, int]], orders: list[SweepTask], done: Iterator[Done]
 ) -> Iterator[pa.Table]:
     """Every task's rows in the order of the designs, each as soon as it is kept: so most of the table is
     written while others compute."""

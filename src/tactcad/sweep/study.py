@@ -9,26 +9,25 @@ from math import prod
 from pathlib import Path
 from typing import Any
 
+from tactcad.design.family import family_of
 from tactcad.design.fields import Number, Numbers, OneOf, SomeOf, TextLine, Values, Whole, given
 from tactcad.design.files import read_text
 from tactcad.design.load import DEFAULT_DESIGN, MOST_BYTES, find, from_table, paths, read_table, unknown_field
 from tactcad.design.messages import InputError
 from tactcad.design.schema import table_schema, table_text
-from tactcad.design.toml_text import parse_toml
+from tactcad.design.text_values import parse_toml
 from tactcad.design.tree import Design, Identity
 from tactcad.export.inputs import digest
 from tactcad.mechanics.ladder import CLOSED_FORMS, RUNGS
-from tactcad.parts.layout import Layout
 
+from .designs_taken import GRID, HYPERCUBE, LIST, SOBOL, Points, points_at_powers
 from .field_paths import spec_at, value_at
-from .sobol import Points, points_at_powers
 
 # Chosen: ten times the largest study that was timed.
 MOST_DESIGNS = 100_000_000
 # A hypercube's sample is drawn whole, in every process: 80 MB for ten fields.
 MOST_HYPERCUBE = 1_000_000
 
-GRID, LIST, HYPERCUBE, SOBOL = "grid", "list", "latin-hypercube", "sobol"
 DRAWN = (HYPERCUBE, SOBOL)
 STRENGTH, RULES, BUILDS, CHECKS, EXPORT = "strength", "rules", "builds", "checks", "export"
 
@@ -149,7 +148,7 @@ class Study:
         """Numbers of the elements measured."""
         asked = self.measure.elements
         if asked is None:
-            return tuple(p.number for p in Layout(self.design).elements)
+            return tuple(p.number for p in family_of(self.design).layout(self.design).elements)
         return tuple(int(n) for n in asked)
 
 
@@ -306,7 +305,10 @@ def _refuse_measures(study: Study) -> None:
         raise InputError("measure.what", "strength goes with a rung", legal='what = ["solid", "strength"]')
     if study.measure.elements is not None and not study.measure.rungs:
         raise InputError("measure.elements", "belongs to a rung", legal="left out")
-    most = max([len(Layout(study.design).elements), *map(len, _row_arms(study))])
+    family = family_of(study.design)
+    if study.measure.rungs:
+        family.must("variables", "measure.what: a rung")
+    most = max([len(family.layout(study.design).elements), *map(len, _row_arms(study))])
     for path in study.vary:
         override = path.startswith("element.override.") and int(path.split(".")[2])
         if override and override > most:

@@ -3,31 +3,28 @@ study costs with it here, nothing of it being kept yet."""
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
 
-from tactcad.assembly.yield_interval import widest
-from tactcad.costs.command_costs import COUNTS, YIELD, counts
-from tactcad.costs.rung_costs import seconds_each
-from tactcad.costs.this_machine import here, linear, published
+from tactcad.costs.grades import COUNTS, YIELD, counts, here, linear, published, seconds_each
 from tactcad.design.allowance import Allowance, Grade, Picked, pick
-from tactcad.design.load import from_table
 from tactcad.design.messages import CheckFailure, InputError
 from tactcad.mechanics.accuracy import CANDIDATES, MEASURED_FOR, Candidate, accuracy_data, zones
 from tactcad.mechanics.ladder import RUNGS
 from tactcad.mechanics.register import BY_NAME
 from tactcad.mechanics.section import HingeSection
 from tactcad.mechanics.validity import reasons
-from tactcad.parts.layout import Layout
+from tactcad.parts.array.hinge_section import element_section
+from tactcad.parts.array.layout import Layout
 from tactcad.scenes import scene_names
+from tactcad.stacks.virtual_build import widest
 
-from .designs_taken import Column, designs_taken, table_of
+from .closed_forms import Refused, alike
+from .designs_taken import designs_taken
 from .measured import CLOSED_FORMS_A_TASK
 from .study import BUILDS, CHECKS, EXPORT, Study
-from .vector_sections import VectorDesigns
 
 OWN_MESH = tuple(c for c in CANDIDATES if c.mesh == BY_NAME[c.rung].meshes[0])  # a study names no other
 
@@ -72,7 +69,7 @@ def with_allowance(study: Study, asked: Allowance, workers: int) -> tuple[Study,
     seconds = [_seconds(one, each, workers) for one, _, _ in choices]
     grades = [Grade(name, e, s) for (_, name, e), s in zip(choices, seconds)]
     if rungs and builds:  # no order of work among pairs but their time
-        grades.sort(key=lambda grade: grade.seconds)
+        grades.sort(key=lambda grade: grade.seconds or 0.0)
     picked = pick(grades, asked, " and ".join(["K"] * bool(rungs) + [YIELD] * builds))
     return next(one for one, name, _ in choices if name == picked.grade.name), picked
 
@@ -106,25 +103,9 @@ def _sections(study: Study) -> Iterator[HingeSection]:
     for start in range(0, study.count, CLOSED_FORMS_A_TASK):
         stop = min(start + CLOSED_FORMS_A_TASK, study.count)
         columns = designs_taken(study, start, stop)
-        others = {path: column for path, column in columns.items() if column.dtype == object}
-        groups: dict[str, list[int]] = {}
-        for i, row in enumerate(zip(*others.values())):
-            groups.setdefault(json.dumps(row), []).append(i)
-        for rows in map(np.array, groups.values()) if others else [np.arange(stop - start)]:
-            yield from _of_group(study, {path: column[rows] for path, column in columns.items()})
-
-
-def _of_group(study: Study, columns: dict[str, Column]) -> Iterator[HingeSection]:
-    """Of designs that differ in numbers only."""
-    numbers = {path: column for path, column in columns.items() if column.dtype != object}
-    others = {path: column for path, column in columns.items() if column.dtype == object}
-    try:
-        design = from_table(table_of(study, others, 0)) if others else study.design
-    except InputError:
-        return
-    many = VectorDesigns(design, numbers)
-    there = len(many.layout.elements)
-    yield from (many.section(number) for number in study.elements if number <= there)
+        for _, many in alike(study, columns, Refused(stop - start)):
+            there = (many.elements[number - 1] for number in study.elements if number <= len(many.elements))
+            yield from (element_section(many, place) for place in there)
 
 
 def _seconds(study: Study, each: dict[Candidate, float], workers: int) -> float:

@@ -16,8 +16,8 @@ from tactcad.export.contents import read_sealed
 from tactcad.report.plots import BLUE, GREY, drawn, panels
 from tactcad.report.report import ReportSection, ReportTable, ValidationReport, percent, to_html
 
-from .kept import SCHEMA, mark_of
 from .results_table import PARQUET
+from .store import SCHEMA, mark_of
 
 if TYPE_CHECKING:
     from matplotlib.axis import Axis

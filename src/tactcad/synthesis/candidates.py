@@ -2,7 +2,8 @@
 
 A candidate is a row of whole numbers: for each kind an arm (steps of ARM mm), a hinge's thickness (steps of
 THICKNESS mm) and how many there are; then the slot's length and its fillet's radius, which all share. Steps
-are what a drawing states and a shop's wire can tell apart.
+are what a drawing states and a shop's wire can tell apart. One candidate becomes a design with its kinds
+dealt out over the rows so that different ones are neighbours.
 """
 
 from __future__ import annotations
@@ -11,20 +12,22 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import ceil
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tactcad.circuit.element_signals import smallest_output
+from tactcad.design.load import paths
 from tactcad.design.materials import ALLOYS, Alloy
-from tactcad.design.tree import Design, SheetMaterial
+from tactcad.design.tree import Design, Hinge, SheetMaterial
 from tactcad.mechanics import as_built, ladder, strength, validity
 from tactcad.mechanics.section import Array, HingeSection
-from tactcad.mechanics.stop import largest_closing_force, tip_compliance
-from tactcad.parts.finding import SAME
-from tactcad.parts.hinge_section import design_alloy, design_readout, shared_parameters
-from tactcad.parts.layout import Layout
-from tactcad.parts.stop_gap import STEP_MM, land_room, seat
+from tactcad.mechanics.strength import largest_closing_force, tip_compliance
+from tactcad.parts.array.hinge_section import design_alloy, design_readout, hinge_section
+from tactcad.parts.array.layout import Layout
+from tactcad.parts.array.stop_gap import STEP_MM, land_room, seat
+from tactcad.parts.language.finding import SAME
 
 from .interval import bounds, motion
 from .knowledge import Elements, elements, knowledge, reading_noise
@@ -36,8 +39,26 @@ PLAIN = 6.0  # mm, an arm that stands for any where arms do not matter
 POINTS = 3  # of the object's range, by logarithm, that decide: its ends and middle
 # A stop stays open by so much at the largest force, beyond its tolerances, mm; chosen: four steps of its gap.
 AIR = 0.02
-LONGEST_SLOT = (
-    4.0  # over the thickest hinge; closed forms hold further, but the slot then costs arm for nothing
+
+
+@dataclass(frozen=True)
+class Searched:
+    """What the search may choose: a whole number of steps, of every kind of element or `shared` by all;
+    `field` of the design file holds it."""
+
+    name: str
+    field: str
+    step: float
+    shared: bool = False
+
+
+# In the order of a candidate's numbers, those of a kind together.
+SEARCHED = (
+    Searched("arm", "array.row_arms", ARM),
+    Searched("thickness", "element.hinge_thickness", THICKNESS),
+    Searched("count", "array.row_arms", 1.0),
+    Searched("slot", "element.hinge_length", SLOT, shared=True),
+    Searched("radius", "element.fillet_radius", RADIUS, shared=True),
 )
 
 
@@ -73,7 +94,7 @@ class Stand:
     def widths(self) -> Array:
         """Width of the carrier along the rows, mm, by the elements of the longer row, from none on."""
         most = int(self.target.room.elements[1]) // self.target.room.rows + 1
-        return np.array([0.0, *(_with_rows(self.base, n).carrier_size[1] for n in range(1, most + 1))])
+        return np.array([0.0, *(_with_rows(self.base, n).carrier_width for n in range(1, most + 1))])
 
     @property
     def in_a_row(self) -> int:
@@ -102,16 +123,11 @@ class Stand:
         return self.base.element.pad_height + self.layout.carrier_bottom + self.base.clamp.carrier_thickness
 
     @cached_property
-    def beyond_slot(self) -> float:
-        """Half the carrier's length along the arms less the longest arm and half its slot, mm."""
-        longest = max(p.hinge_x + p.hinge.l / 2 for p in self.layout.elements)
-        return self.layout.carrier_size[0] / 2 - longest + self.layout.pad_inner
-
-    @cached_property
     def limits(self) -> tuple[Array, Array]:
         """Least and largest of each whole number of a candidate."""
         wish, e = self.target.elements, self.base.element
-        room = (self.target.room.length / 2 - self.beyond_slot) / ARM
+        longest = max(p.arm + p.hinge.l / 2 for p in self.layout.elements)
+        room = (self.target.room.length / 2 - (self.layout.carrier_length / 2 - longest)) / ARM
         # at least what is asked for, so that a room too narrow for that is what is found to be missed
         searched = max(self.most, int(self.target.room.elements[0]))
         low = [ceil(wish.arms[0] / ARM - 1e-9), ceil(wish.hinges[0] / THICKNESS - 1e-9), wish.of_a_kind]
@@ -127,17 +143,12 @@ class Stand:
 
     def candidates(self, rows: Array) -> Candidates:
         """Candidates of whole numbers, (candidates, numbers)."""
-        n = 3 * self.kinds
-        kinds = np.rint(rows[:, :n]).reshape(len(rows), self.kinds, 3)
-        slot, radius = np.rint(rows[:, n]) * SLOT, np.rint(rows[:, n + 1]) * RADIUS
-        return Candidates(
-            self,
-            kinds[..., 0] * ARM,
-            kinds[..., 1] * THICKNESS,
-            kinds[..., 2],
-            slot,
-            np.minimum(radius, slot / 2),
-        )
+        own, shared = ([s for s in SEARCHED if s.shared == alike] for alike in (False, True))
+        of_kinds, of_all = np.split(np.rint(rows), [len(own) * self.kinds], axis=1)
+        of_kinds = of_kinds.reshape(len(rows), self.kinds, len(own))
+        values = {s.name: of_kinds[..., i] * s.step for i, s in enumerate(own)}
+        values |= {s.name: of_all[:, i] * s.step for i, s in enumerate(shared)}
+        return Candidates(self, **values | {"radius": np.minimum(values["radius"], values["slot"] / 2)})
 
 
 def _with_rows(d: Design, elements: int) -> Layout:
@@ -193,18 +204,19 @@ class Candidates:
     radius: Array
 
     @cached_property
-    def section(self) -> HingeSection:
+    def layout(self) -> Layout:
+        """Of all candidates at once, with one element of each kind."""
         d = self.stand.base
-        longest = self.arm.max(axis=1, keepdims=True)
-        return HingeSection.of(
-            hinge_thickness=self.thickness,
-            hinge_length=self.slot[:, np.newaxis],
-            fillet_radius=self.radius[:, np.newaxis],
-            load_arm=self.arm - d.element.pad_length / 2,
-            arm_height=d.element.arm_height,
-            body_length=longest - self.arm + d.element.seat_length,
-            **shared_parameters(d),
-        )
+        slot: Any = {"hinge_length": self.slot, "fillet_radius": self.radius}
+        arms: Any = (tuple(self.arm.T),)
+        thickness: Any = dict(enumerate(self.thickness.T, start=1))
+        override = {number: Hinge(hinge_thickness=t) for number, t in thickness.items()}
+        element = replace(d.element, **slot, override=override)
+        return Layout(replace(d, array=replace(d.array, row_arms=arms), element=element))
+
+    @cached_property
+    def section(self) -> HingeSection:
+        return hinge_section(self.layout, self.layout.elements)
 
     @cached_property
     def elements(self) -> Elements:
@@ -272,7 +284,7 @@ class Candidates:
         soft = tip * (1.0 + 3.5 * thin)
         volts = e.signal * self.largest_force / e.stiffness
         readout = design_readout(d)
-        length = 2.0 * (self.arm.max(axis=1) + self.slot / 2 + s.beyond_slot)
+        length = self.layout.carrier_length
         return {
             "grasp.element_force": (self.largest_force / grip.element_force - 1.0).max(axis=1),
             "strength": (self.largest_force * strong / self.yield_force - 1.0).max(axis=1),
@@ -282,7 +294,7 @@ class Candidates:
             "room.elements": np.maximum(self.total / room.elements[1], room.elements[0] / self.total) - 1.0,
             "room.width": s.widths[np.minimum(self.in_a_row, s.in_a_row)] / room.width - 1.0,
             "room.length": length / room.length - 1.0,
-            "room.height": np.full(len(length), s.height / room.height - 1.0),
+            "room.height": np.full(len(self.arm), s.height / room.height - 1.0),
             "calibration": np.where(
                 s.target.known.how == "calibrated",
                 LEAST_STEPS / np.maximum(self.steps[:, 0], 0.1) - 1.0,
@@ -336,8 +348,10 @@ class Candidates:
     @cached_property
     def area(self) -> Array:
         """Of the carrier, mm2."""
-        length = 2.0 * (self.arm.max(axis=1) + self.slot / 2 + self.stand.beyond_slot)
-        return length * self.stand.widths[np.minimum(self.in_a_row, len(self.stand.widths) - 1)]
+        return (
+            self.layout.carrier_length
+            * self.stand.widths[np.minimum(self.in_a_row, len(self.stand.widths) - 1)]
+        )
 
     @cached_property
     def cut(self) -> Array:
@@ -351,3 +365,83 @@ class Candidates:
         """Number of different elements."""
         code = np.sort(np.rint(self.arm / ARM) * 1e4 + np.rint(self.thickness / THICKNESS), axis=1)
         return 1.0 + (np.diff(code, axis=1) > 0).sum(axis=1)
+
+
+def order(count: list[int], rows: int) -> list[list[int]]:
+    """Kind of every place, row by row: each kind spread evenly along both rows.
+
+    A pair that feels the same spot of the object gives its ratio best, so each kind's elements are dealt out
+    where it lags most behind its share.
+    """
+    total = sum(count)
+    dealt = [0] * len(count)
+    dealing: list[int] = []
+    for n in range(1, total + 1):
+        lag = [count[k] * n / total - dealt[k] if dealt[k] < count[k] else -np.inf for k in range(len(count))]
+        kind = int(np.argmax(lag))
+        dealt[kind] += 1
+        dealing.append(kind)
+    first = ceil(total / rows)
+    return [dealing[:first], dealing[first:][::-1]][:rows]
+
+
+def dealt(c: Candidates) -> list[list[int]]:
+    """Kind of every place of one candidate (the first), row by row."""
+    return order([int(n) for n in c.count[0]], c.stand.target.room.rows)
+
+
+def realised(c: Candidates) -> Design:
+    """The design of one candidate (the first); [element]'s hinge is the first kind's, others override."""
+    d, grip = c.stand.base, c.stand.target.grasp
+    kinds = dealt(c)
+    arms = [round(round(a / ARM) * ARM, 6) for a in c.arm[0]]
+    thick = [round(round(t / THICKNESS) * THICKNESS, 6) for t in c.thickness[0]]
+    numbered = [k for row in kinds for k in row]
+    override = {
+        n: Hinge(hinge_thickness=thick[k]) for n, k in enumerate(numbered, start=1) if thick[k] != thick[0]
+    }
+    force = float(c.largest_force[0].max())
+    rating = ceil(force * 100) / 100 if np.isfinite(force) else grip.force
+    calibration = d.calibration
+    if calibration is not None and c.steps[0, 0] >= 1:
+        calibration = replace(calibration, travel=round(float(c.steps[0, 0]) * calibration.step, 6))
+    made = replace(
+        d,
+        array=replace(d.array, row_arms=tuple(tuple(arms[k] for k in row) for row in kinds)),
+        element=replace(
+            d.element,
+            hinge_thickness=thick[0],
+            hinge_length=round(float(c.slot[0]), 6),
+            fillet_radius=round(float(c.radius[0]), 6),
+            override=override,
+        ),
+        rating=replace(d.rating, force=rating),
+        calibration=calibration,
+    )
+    known = paths(made)  # the base design may say where values are from that this one lacks
+    return replace(made, origin={path: text for path, text in made.origin.items() if path in known})
+
+
+def origins(base: Design, made: Design, binding: str) -> dict[str, str]:
+    """Where every value that differs from the base design's is from, by its path."""
+    before, after = paths(base), paths(made)
+    told = {s.field: f"synthesised from a target, on {base.name}; {binding}" for s in SEARCHED}
+    told |= {
+        "design.name": "chosen: the target's",
+        "design.title": "chosen: the target's",
+        "design.revision": "chosen: first issue",
+        "array.pitch": "synthesised: at least the target's pitch, the sheet's and a spacer's thickness",
+        "array.row_pitch": "synthesised: at least the target's pitch",
+        "array.spacer": "derived: pitch less sheet",
+        "rating.force": "synthesised: largest force on one element over the object's range",
+        "rating.overload_force": "chosen: the target's overload",
+        "calibration.travel": "synthesised: what every hinge bears",
+        "sheet.thickness": "chosen: of the target's stock",
+        "tolerance.hinge_thickness": "chosen: of the target's stock",
+        "tolerance.youngs_modulus": "chosen: the material's row",
+    }
+    told |= {path: "chosen: of the target's stock" for path in after if path.startswith("material.")}
+    changed = {path for path, value in after.items() if before.get(path) != value}
+    always = {"design.name", "design.title", "design.revision", *(s.field for s in SEARCHED)}
+    by_element = "synthesised: the other kind of element, as element.hinge_thickness"
+    return {p: told.get(p, by_element) for p, v in after.items() if v is not None and p in changed | always}

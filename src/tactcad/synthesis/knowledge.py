@@ -16,12 +16,12 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from tactcad.assembly.virtual_shop import OFFSET_SHARE, SIGMAS
 from tactcad.design.tree import Design
 from tactcad.lab.regression import KNOWN
 from tactcad.mechanics import as_built, gauge_signal, ladder, readout
 from tactcad.mechanics.section import Array, HingeSection
-from tactcad.parts.hinge_section import design_gauge, design_readout
+from tactcad.parts.array.hinge_section import design_gauge, design_readout
+from tactcad.stacks.variables import OFFSET_SHARE, SIGMAS
 
 from .target import Target
 
@@ -48,6 +48,15 @@ class Knowledge:
     common: dict[str, tuple[Array, Array]] = field(default_factory=dict)
     load_cell: float = 0.0
     dof: float = KNOWN
+
+    def calibration_errors(self, z_k: Array, z_v: Array) -> tuple[Array, Array]:
+        """Errors of ln K and ln K_v by a calibration from independent standard normal numbers, with their
+        covariance; the contact's place apart."""
+        k, v = self.place
+        first = np.sqrt(np.maximum(self.of_k - k * k, 0.0))
+        along = np.divide(self.cross - k * v, first, out=np.zeros_like(first), where=first > 0.0)
+        own = np.sqrt(np.maximum(self.of_v - v * v - along**2, 0.0))
+        return first * z_k, along * z_k + own * z_v
 
 
 @dataclass(frozen=True)

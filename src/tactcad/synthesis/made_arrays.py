@@ -1,6 +1,6 @@
 """Arrays of a design as they are made and used: how many meet the target, and what spreads the answer.
 
-Arrays are built virtually (room `assembly`), with its correlations: one sheet, one machine's offset; each
+Arrays are built virtually (room `stacks`), with its correlations: one sheet, one machine's offset; each
 has one recast layer and one clamp that turns, anywhere up to their limits. Each is calibrated once, with as
 many degrees of freedom as its runs leave, and pressed on objects over the range. It meets the target where it
 goes together, all pads touch from the first load on, no stop closes and no hinge is overloaded under the
@@ -14,22 +14,20 @@ from functools import cached_property
 
 import numpy as np
 
-from tactcad.assembly.mechanic import Assembled
-from tactcad.assembly.virtual_build import DECIDING, Sensor, sensor
-from tactcad.assembly.virtual_shop import SIGMAS, Distribution, made, within_limits
-from tactcad.assembly.yield_interval import of_share
 from tactcad.design.tree import Design
 from tactcad.mechanics import strength
 from tactcad.mechanics.section import Array
-from tactcad.mechanics.stop import tip_compliance
-from tactcad.parts.hinge_section import design_alloy, hinge_section
-from tactcad.parts.layout import Layout
-from tactcad.parts.stop_gap import stop_gap
+from tactcad.mechanics.strength import tip_compliance
+from tactcad.parts.array.hinge_section import design_alloy, hinge_section
+from tactcad.parts.array.layout import Layout
+from tactcad.parts.array.stop_gap import stop_gap
 from tactcad.scenes import make_scene
+from tactcad.stacks.mechanic import Assembled
+from tactcad.stacks.variables import SIGMAS, Distribution, made, within_limits
+from tactcad.stacks.virtual_build import DECIDING, Sensor, of_share, sensor
 
 from .candidates import POINTS
-from .evaluation import Covariance, Evaluated, Evaluation
-from .interval import motion
+from .interval import Bounds, Covariance, Evaluated, Evaluation, bounds, motion
 from .knowledge import Elements, Knowledge, as_made, elements, knowledge, reading_noise
 from .target import Target
 
@@ -147,6 +145,13 @@ class MadeSensor:
         share = np.abs(within_limits(rng.standard_normal((2, count, 1)), distribution))
         return t.recast_layer * share[0], t.clamp_compliance * share[1]
 
+    def interval(self, x: Array, members: list[int] | None = None) -> Bounds:
+        """The interval at K_obj `x` (N/mm) as drawn, of all elements or of those of these indices."""
+        ones, grip = np.ones(len(self.drawn.stiffness)), self.target.grasp
+        used = None if members is None else np.isin(np.arange(len(ones)), members) * ones
+        known, at = self.known(self.drawn), x[:, np.newaxis]
+        return bounds(self.drawn, ones, known, at, self.noise, grip.force, grip.loads, used)
+
     @property
     def cannot_bear(self) -> str:
         """Why the array as drawn does not bear the target's forces; "" where it does."""
@@ -208,6 +213,11 @@ class MadeSensor:
         stiffness = e.stiffness * np.exp(known.place[0] * z)
         return replace(e, stiffness=stiffness, signal=e.signal * np.exp(known.place[1] * z) * own)
 
+    def inspected(self, e: Elements, z: Array) -> Elements:
+        """As drawn, with the thickness that was measured of these; `z` standard normal numbers."""
+        t = e.section.hinge_thickness + self.target.known.thickness / SIGMAS * z
+        return elements(self.drawn.section.with_(hinge_thickness=t), self.design)
+
     def _believed(
         self, e: Elements, known: Knowledge, rng: np.random.Generator
     ) -> tuple[Array, Array, Covariance]:
@@ -219,17 +229,11 @@ class MadeSensor:
         if not self.calibrated:
             drawn = self.drawn
             if self.target.known.how == "inspected":
-                t = e.section.hinge_thickness
-                t = t + self.target.known.thickness / SIGMAS * rng.standard_normal(t.shape)
-                drawn = elements(drawn.section.with_(hinge_thickness=t), self.design)
+                drawn = self.inspected(e, rng.standard_normal(e.section.hinge_thickness.shape))
             return drawn.stiffness, drawn.signal, Covariance.of(known.of_k, known.of_v, known.cross)
-        k, v = known.place
         runs = self.target.known.runs
-        of_k, of_v = known.of_k - k * k, known.of_v - v * v
-        first = np.sqrt(np.maximum(of_k, 0.0))
-        along = np.divide(known.cross - k * v, first, out=np.zeros_like(first), where=first > 0.0)
         z = np.sqrt(runs) * rng.standard_normal((2, runs, *e.stiffness.shape))
-        err = np.stack([first * z[0], along * z[0] + np.sqrt(np.maximum(of_v - along**2, 0.0)) * z[1]])
+        err = np.stack(known.calibration_errors(*z))
         mean = err.mean(axis=1)
         off = (err - mean[:, np.newaxis]) / np.sqrt(runs * (runs - 1.0))
         stated = Covariance.of(

@@ -13,7 +13,7 @@ from functools import cached_property
 import numpy as np
 from scipy.optimize import differential_evolution
 
-from tactcad.checks.without_solids import quick_failures, slow_failures
+from tactcad.checks.check import quick_failures, slow_failures
 from tactcad.design.design_text import design_text
 from tactcad.design.load import parse
 from tactcad.design.messages import InputError
@@ -21,8 +21,7 @@ from tactcad.design.tree import Design
 from tactcad.mechanics.section import Array
 from tactcad.parts.rules import broken_rules
 
-from .candidates import Candidates, Stand
-from .realise import realised
+from .candidates import Candidates, Stand, realised
 
 SEED = 20261122
 POPULATION = 12  # candidates for each number

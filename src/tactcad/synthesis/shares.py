@@ -12,15 +12,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tactcad.assembly.mechanic import Assembled
-from tactcad.assembly.variables import IN_PLAY, MODULUS, SHEET
-from tactcad.assembly.virtual_shop import SIGMAS, made
 from tactcad.lab.pads import INCOMPRESSIBLE, places
 from tactcad.mechanics.sample_coupling import shares_between
 from tactcad.mechanics.section import Array
+from tactcad.stacks.mechanic import Assembled
+from tactcad.stacks.variables import IN_PLAY, MODULUS, SHEET, SIGMAS, made
 
 from .interval import coupled_estimate, information, motion, weights
-from .knowledge import Knowledge, as_made, elements
+from .knowledge import as_made
 from .made_arrays import MadeSensor
 
 SEED = 20261124
@@ -116,15 +115,11 @@ def _estimator(sensor: MadeSensor, rest: dict[str, Array]) -> Callable[[dict[str
         S, pull = information(m, ones, weighed)
         e_k, e_v = (d * causes[CONTACT][..., 0] for d in known.place)
         if calibrated:
-            k, v = _errors(known, causes[CALIBRATION])
+            k, v = known.calibration_errors(*np.moveaxis(causes[CALIBRATION], -1, 0))
         else:
             drawn = sensor.drawn
             if inspected:
-                t = (
-                    true.section.hinge_thickness
-                    + sensor.target.known.thickness / SIGMAS * causes[INSPECTION][..., 0]
-                )
-                drawn = elements(drawn.section.with_(hinge_thickness=t), sensor.design)
+                drawn = sensor.inspected(true, causes[INSPECTION][..., 0])
             gauges = sensor.target.known.gauge_factor / SIGMAS * causes[GAUGES][..., 0]
             k, v = np.log(drawn.stiffness / true.stiffness), np.log(drawn.signal / true.signal) + gauges
         e_k, e_v = e_k + k, e_v + v
@@ -142,12 +137,3 @@ def _of_belief(sensor: MadeSensor) -> tuple[str, ...]:
     """Causes by what is known of the elements."""
     how = sensor.target.known.how
     return {"calibrated": (CALIBRATION,), "inspected": (GAUGES, INSPECTION), "drawn": (GAUGES,)}[how]
-
-
-def _errors(known: Knowledge, z: Array) -> tuple[Array, Array]:
-    """Errors of ln K and ln K_v by a calibration from independent standard normal numbers, with their
-    covariance; the contact's place apart."""
-    of_k, of_v = known.of_k - known.place[0] ** 2, known.of_v - known.place[1] ** 2
-    k = np.sqrt(np.maximum(of_k, 0.0))
-    along = np.divide(known.cross - known.place[0] * known.place[1], k, out=np.zeros_like(k), where=k > 0.0)
-    return k * z[..., 0], along * z[..., 0] + np.sqrt(np.maximum(of_v - along**2, 0.0)) * z[..., 1]

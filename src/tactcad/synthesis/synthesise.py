@@ -1,4 +1,5 @@
-"""From a target to a synthesis: the chosen design, how surely it feels, what limits it, and alternatives."""
+"""From a target to a synthesis: the chosen design, how surely it feels, what limits it, and alternatives;
+and how much there is to do for a target, counted before anything is searched."""
 
 from __future__ import annotations
 
@@ -6,10 +7,13 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
+from math import ceil, log2
+from operator import attrgetter
+from typing import Any
 
 import numpy as np
 
-from tactcad.checks.without_solids import slow_failures
+from tactcad.checks.check import slow_failures
 from tactcad.design.messages import CheckFailure
 from tactcad.design.tree import Design
 from tactcad.lab import array_estimate
@@ -17,12 +21,10 @@ from tactcad.mechanics.section import Array
 from tactcad.scenes import LeftOut, left_out
 
 from . import relax
-from .alternatives import Alternative, LeastChange, Limit
-from .candidates import Candidates, Stand, stands
-from .interval import Bounds, bounds, coupled_estimate
+from .candidates import Candidates, Stand, origins, stands
+from .interval import coupled_estimate
 from .made_arrays import MadeSensor, Yield
-from .realise import origins
-from .search import FAR, Found, Goal, all_refusals, refusals, search
+from .search import FAR, GENERATIONS, POPULATION, Found, Goal, all_refusals, refusals, search
 from .shares import Share, half_space_shares, variance_shares
 from .target import Target
 
@@ -33,8 +35,11 @@ RATIOS = (2.0, 4.0, 6.0, 10.0, 16.0, 30.0)  # K_r/K_m; the paper proposes about 
 PAPERS_RATIO = 10.0
 SAME_RATIO = 0.03  # relative, within which a ratio counts as the asked one
 NEAR = 0.01  # relative gain below which an eased field is not said to limit
+ALTERNATIVES = 9  # searches for the report's front, about
 QUICK = 2e-3  # relative; searches beside the answer stop there
 NEAR_SEEDS = (1, 2)  # each such search is made twice, and the better one counts
+
+_narrowest = attrgetter("half_width")  # the goal of searches beside the answer
 
 Tell = Callable[[int, int, str], None]
 GoOn = Callable[[], None]  # called before each search beside the answer; raises TimeIsOver
@@ -42,6 +47,63 @@ GoOn = Callable[[], None]  # called before each search beside the answer; raises
 
 class TimeIsOver(Exception):
     """Nothing more is to be begun."""
+
+
+@dataclass(frozen=True)
+class Alternative:
+    """One design of the front.
+
+    name, what   of the entry, and what was held beside the interval
+    found        its candidate
+    half_width   relative, nominal, largest over the range
+    """
+
+    name: str
+    what: str
+    found: Found
+
+    @property
+    def half_width(self) -> float:
+        return self.found.half_width
+
+    def record(self) -> dict[str, Any]:
+        c, stand = self.found.candidate, self.found.candidate.stand
+        return {
+            "name": self.name,
+            "what": self.what,
+            "half_width": self.half_width,
+            "elements": int(c.total[0]),
+            "different": int(c.different[0]),
+            "carrier_area_mm2": float(c.area[0]),
+            "cut_length_mm": float(c.cut[0]),
+            "hinge_tolerance_mm": stand.base.tolerance.hinge_thickness,
+            "sheet_mm": stand.base.sheet.thickness,
+            "alloy": stand.base.material.alloy,
+            "arms_mm": [round(float(a), 6) for a in c.arm[0]],
+            "hinges_mm": [round(float(t), 6) for t in c.thickness[0]],
+            "counts": [int(n) for n in c.count[0]],
+            "stiffness_N_per_mm": [float(k) for k in c.elements.stiffness[0]],
+        }
+
+
+@dataclass(frozen=True)
+class Limit:
+    """A field of the target that limits: eased by one step alone, the half-width falls to `half_width`."""
+
+    field: str
+    value: Any
+    eased: Any
+    half_width: float
+    gain: float
+
+
+@dataclass(frozen=True)
+class LeastChange:
+    """A field whose change alone makes the target possible, and the nearest value that does."""
+
+    field: str
+    value: Any
+    needed: Any
 
 
 @dataclass(frozen=True)
@@ -55,6 +117,8 @@ class Synthesis:
     made        its yield
     solid       K of every element by solid elements, N/mm
     met         whether the target is
+    left_out    parts of the report that there was no time for
+    not_tried   fields whose least change there was no time to search
     unknown     what of the report is not known, and why
     binding     fields whose easing narrows the interval; None where that was not searched
     """
@@ -72,6 +136,7 @@ class Synthesis:
     solid: tuple[float, ...] = ()
     evaluations: int = 0
     left_out: tuple[str, ...] = ()
+    not_tried: tuple[str, ...] = ()
     unknown: tuple[str, ...] = ()
 
     @cached_property
@@ -95,10 +160,8 @@ class Synthesis:
     @cached_property
     def base_half_width(self) -> float | None:
         """Of the base design as it is, under the same forces and knowledge; None beyond the estimator."""
-        s, x = MadeSensor(self.target, self.target.base), np.geomspace(*self.target.stiffness_range, CURVE)
-        ones, grip = np.ones(len(s.drawn.stiffness)), self.target.grasp
-        known = s.known(s.drawn)
-        got = bounds(s.drawn, ones, known, x[:, np.newaxis], s.noise, grip.force, grip.loads).half_width(x)
+        x = np.geomspace(*self.target.stiffness_range, CURVE)
+        got = MadeSensor(self.target, self.target.base).interval(x).half_width(x)
         return float(got.max()) if np.isfinite(got).all() else None
 
     @cached_property
@@ -116,14 +179,6 @@ class Synthesis:
         """K_r/K_m: the stiffest element's stiffness over the softest's."""
         K = self.found.candidate.elements.stiffness
         return float(K.max() / K.min())
-
-    def interval(self, x: Array, members: list[int] | None = None) -> Bounds:
-        """The interval at K_obj `x` (N/mm), of all elements or of those of these indices."""
-        s, grip = self.sensor, self.target.grasp
-        ones = np.ones(len(s.drawn.stiffness))
-        used = None if members is None else np.isin(np.arange(len(ones)), members) * ones
-        known = s.known(s.drawn)
-        return bounds(s.drawn, ones, known, x[:, np.newaxis], s.noise, grip.force, grip.loads, used)
 
     def coupling(self, share: float) -> float:
         """By how much, relative, K_obj is believed too large at the middle of the range where the pads are
@@ -273,7 +328,6 @@ def _with_shares(got: Synthesis, _: GoOn) -> Synthesis:
 
 
 def _with_solids(got: Synthesis, _: GoOn) -> Synthesis:
-    """K of every element by solid elements."""
     rows = array_estimate.estimate(got.sensor.layout, "fem-solid")
     return replace(got, solid=tuple(row.stiffness for row in rows))
 
@@ -306,22 +360,17 @@ def _same_stand(one: Stand, other: Stand) -> bool:
 
 def _with_limits(got: Synthesis, go_on: GoOn) -> Synthesis:
     """Fields whose easing by a step narrows the interval, the most helpful first."""
-    width, narrowest = got.found.half_width, _narrowest
-    limits = []
+    width, limits = got.found.half_width, []
     for name, other in relax.eased(got.target):
         if name in relax.NOT_NARROWING:
             continue
         go_on()
-        found = _search_near(other, got.found, narrowest)
+        found = _search_near(other, got.found, _narrowest)
         if found.accepted and found.half_width < width * (1.0 - NEAR):
             gain = 1.0 - found.half_width / width
             values = relax.value_of(got.target, name), relax.value_of(other, name)
             limits.append(Limit(name, *values, found.half_width, gain))
     return replace(got, binding=tuple(sorted(limits, key=lambda limit: -limit.gain)))
-
-
-def _narrowest(c: Candidates) -> Array:
-    return c.half_width
 
 
 def _with_front(got: Synthesis, go_on: GoOn) -> Synthesis:
@@ -337,7 +386,7 @@ def _with_front(got: Synthesis, go_on: GoOn) -> Synthesis:
             found = _search_near(wish.with_("room.elements", (low, n)), got.found, _narrowest)
             if found.accepted and int(found.candidate.total[0]) == n:
                 entries.append(Alternative(f"elements-{n}", f"at most {n} elements", found))
-    longest = 2.0 * float(c.arm.max() + c.slot[0] / 2 + c.stand.beyond_slot)
+    longest = float(np.max(c.layout.carrier_length))
     for less in (1.0, 2.0, 3.0):
         go_on()
         found = _search_near(wish.with_("room.length", round(longest - less, 3)), got.found, _narrowest)
@@ -384,8 +433,41 @@ def _with_changes(got: Synthesis, arrays: int, tell: Tell, go_on: GoOn) -> Synth
             tell(i, len(names), f"impossible as asked; the least change of {name}")
             change = relax.least_change(got.target, name, possible)
         except TimeIsOver:
-            skipped.append(f"least change of {name}")
+            skipped.append(name)
             continue
         if change:
             changes.append(LeastChange(name, relax.value_of(got.target, name), change[0]))
-    return replace(got, changes=tuple(changes), left_out=tuple(skipped))
+    return replace(got, changes=tuple(changes), not_tried=tuple(skipped))
+
+
+def work_ahead(target: Target, report: bool) -> dict[str, float]:
+    """Counts of what `design` does at most.
+
+    Parameters
+    ----------
+    target
+        What is asked for.
+    report
+        With what the report tells beside the design: limits, alternatives, ratios.
+
+    Returns
+    -------
+    dict
+        candidate: looked at by the search; near: searches beside the answer; yield: how often arrays are
+        made; element: of the largest array.
+    """
+    some = tries(target)
+    asked_too = 2 if target.target.half_width is None else 1  # what arrays keep, then how many keep it
+    near = len(list(relax.eased(target))) + ALTERNATIVES + len(RATIOS)
+    return {
+        "candidate": sum(_candidates(stand) for _, stands in some for stand in stands),
+        "near": float(near * len(NEAR_SEEDS) * report),
+        "yield": float(asked_too * len(some)),
+        "element": float(target.room.elements[1]),
+    }
+
+
+def _candidates(stand: Stand) -> float:
+    """scipy's population by Sobol is the next power of two; all generations of it, and its first."""
+    numbers = len(stand.limits[0])
+    return float(2 ** ceil(log2(POPULATION * numbers)) * (GENERATIONS + 1))

@@ -11,13 +11,14 @@ from math import ceil, floor, inf
 from pathlib import Path
 from typing import Any
 
+from tactcad.design.family import family_of
 from tactcad.design.fields import Number, Numbers, OneOf, SomeOf, TextLine, Whole, given, shown_text
 from tactcad.design.files import read_text
 from tactcad.design.load import DEFAULT_DESIGN, MOST_BYTES, read, read_table, unknown_field
 from tactcad.design.materials import ALLOYS
 from tactcad.design.messages import InputError
 from tactcad.design.schema import table_schema, table_text
-from tactcad.design.toml_text import parse_toml
+from tactcad.design.text_values import parse_toml
 from tactcad.design.tree import Array, Design, Element, Identity, Rating, Sheet, Tolerance
 from tactcad.lab.calibration import RUN_SCATTER
 from tactcad.lab.pads import stiffness_per_modulus
@@ -260,7 +261,9 @@ def parse_target(text: str, where: str, folder: Path = Path()) -> Target:
 
 def _base(name: str, folder: Path) -> Design:
     try:
-        return read(folder / name if "/" in name or name.endswith(".toml") else name)
+        base = read(folder / name if "/" in name or name.endswith(".toml") else name)
+        family_of(base).must("variables", "target.base")
+        return base
     except InputError as error:
         if error.where == "DESIGN":
             raise InputError("target.base", error.what, value=name, legal=error.legal) from error

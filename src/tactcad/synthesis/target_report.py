@@ -1,25 +1,31 @@
-"""The report of a synthesis: as JSON, and as one page with its pictures."""
+"""The report of a synthesis: in a few words, as JSON, as one page with its pictures, and as a folder with the
+design and its alternatives."""
 
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+import os
+from collections.abc import Iterator, Sequence
 from dataclasses import asdict
 from html import escape
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 from matplotlib.ticker import MaxNLocator
 
-from tactcad.parts.layout import Layout
+from tactcad.design.design_text import design_text
+from tactcad.design.files import absolute, flush_entry, make_folder, refusal
+from tactcad.design.messages import InputError
+from tactcad.design.staging import MAKING, staged_folder
+from tactcad.parts.array.layout import Layout
 from tactcad.report.plots import BLACK, BLUE, GREY, ORANGE, SKY, log_ticks, panels, series, svg
 from tactcad.scenes.rigs.calibration import RIG as CALIBRATION
 
+from .candidates import dealt
 from .interval import LEVEL
-from .realise import dealt
 from .shares import SLIGHT
 from .synthesise import CURVE, PAPERS_RATIO, Synthesis
-from .target_answer import answer, no_other_change, percent
 
 COUPLINGS = (0.0, SLIGHT, 1.0)
 USEFUL = 0.5  # half-width of K_obj beyond which an array tells hardly more than that something is there
@@ -56,7 +62,7 @@ def record(got: Synthesis) -> dict[str, Any]:
         "object_range": list(got.target.stiffness_range),
         "evaluations": got.evaluations,
         "changes": [asdict(c) for c in got.changes],
-        "left_out": list(got.left_out),
+        "left_out": [*got.left_out, *(f"least change of {field}" for field in got.not_tried)],
         "beyond": _beyond(got),
         "out_of_range": list(got.found.candidate.out_of_range),
         "refused": got.found.refused,
@@ -66,12 +72,12 @@ def record(got: Synthesis) -> dict[str, Any]:
     if not got.found.accepted:
         return out | {"object_interval": [], "binding": [], "shares": [], "front": []}
     x = np.geomspace(*got.target.stiffness_range, CURVE)
-    whole = got.interval(x)
+    whole = got.sensor.interval(x)
     pairs = [
         {
             "measuring": m + 1,
             "reference": r + 1,
-            "half_width": [float(v) for v in got.interval(x, [m, r]).half_width(x)],
+            "half_width": [float(v) for v in got.sensor.interval(x, [m, r]).half_width(x)],
         }
         for m, r in _pairs(got)
     ]
@@ -185,7 +191,7 @@ def _answer(got: Synthesis, r: dict[str, Any]) -> str:
     if rows:
         text += "<p>Each of these changes alone makes it possible:</p>"
         text += _table(("field", "asked", "needed"), rows)
-    return text + f"<p>{escape(no_other_change(r).capitalize())}.</p>"
+    return text + f"<p>{escape(no_other_change(got).capitalize())}.</p>"
 
 
 def _value(value: Any) -> str:
@@ -368,3 +374,108 @@ def _elements_part(r: dict[str, Any]) -> str:
     by_solid = ["by solid elements"] if solid else []
     heads = ("element", "row", "arm, mm", "hinge, mm", "K, N/mm", *by_solid, "largest force, N")
     return "<h2>Elements</h2>" + _table(heads, rows)
+
+
+def percent(share: float) -> str:
+    return f"{100 * share:.3g} %"
+
+
+def answer(r: dict[str, Any]) -> str:
+    """What came out, in two sentences."""
+    low, high = r["object_range"]
+    if not r["met"]:
+        return f"Impossible as asked: the best there is {_why_not(r)}."
+    e, base = r["elements"], r["base"]
+    than = f"; {base['name']} as it is: {percent(base['half_width'])}" if base["half_width"] else ""
+    if base["cannot"]:
+        than = f"; {base['name']} as it is cannot take the force: {base['cannot']}"
+    return (
+        f"{len(e)} elements feel {low:.3g} to {high:.3g} N/mm within {percent(r['wanted_half_width'])} "
+        f"(half the 95 % interval; as drawn {percent(r['half_width'])}{than}). "
+        f"{percent(r['yield'])} of arrays made within "
+        f"their tolerances keep that ({percent(r['yield_interval'][0])} to "
+        f"{percent(r['yield_interval'][1])})."
+    )
+
+
+def _why_not(r: dict[str, Any]) -> str:
+    why = [f"misses {name} by {_excess(v)}" for name, v in r["beyond"].items()]
+    if r["out_of_range"]:
+        why.append(f"has elements that the estimator does not reach ({'; '.join(r['out_of_range'])})")
+    if why:
+        return "; ".join(why)
+    if r["half_width"] is None:
+        return f"keeps all limits, but is refused ({', '.join(sorted(r['refused']))})"
+    kept, wanted = percent(r["yield"]), percent(r["yield_wanted"])
+    return f"keeps it as drawn, but of the arrays made only {kept} do, not {wanted}"
+
+
+def _excess(v: float) -> str:
+    return percent(v) if v < 10 else "more than ten times"
+
+
+def no_other_change(got: Synthesis) -> str:
+    """What of changes of single fields was found not to do, and what was not tried."""
+    if got.not_tried:
+        return f"not tried for time: {len(got.not_tried)} fields that might make it possible if changed alone"
+    other = "other " if got.changes else ""
+    return f"no {other}single field changed up to eight times makes it possible"
+
+
+def refuse_taken(out: str | Path) -> None:
+    """Raise InputError where `out` is no new or empty folder, which is replaced in one step."""
+    path = absolute(out)
+    if os.path.islink(path):
+        legal = "the folder that it leads to, or a new folder"
+        raise InputError("--out", "is a link", value=str(out), legal=legal)
+    if os.path.lexists(path) and not (path.is_dir() and not os.listdir(path)):
+        raise InputError(
+            "--out", "is there already and not an empty folder", value=str(out), legal="a new folder"
+        )
+
+
+def refuse_unwritable(out: str | Path) -> None:
+    """Raise as `write` would for a place that is taken or cannot be written to, and leave nothing there."""
+    refuse_taken(out)
+    folder = absolute(out)
+    place = folder.parent
+    while not os.path.lexists(place):
+        place = place.parent
+    try:
+        with staged_folder(place, folder.name):
+            pass
+    except OSError as error:
+        raise refusal(str(out), error) from error
+
+
+def write(got: Synthesis, out: str | Path) -> None:
+    """design.toml, front/NAME.toml, report.json and report.html: the whole folder in one step, or nothing.
+
+    Raises InputError where `out` is taken or cannot be written to, CheckFailure where there is no room.
+    """
+    folder = absolute(out)
+    refuse_taken(out)
+    make_folder(folder.parent)
+    try:
+        with staged_folder(folder.parent, folder.name) as own:
+            making = own / MAKING
+            for name, data in _files(got):
+                (making / name).parent.mkdir(parents=True, exist_ok=True)
+                (making / name).write_bytes(data)
+                flush_entry(making / name)
+            making.rename(folder)  # an empty folder gives way, any other refuses
+            flush_entry(folder.parent)
+    except OSError as error:
+        raise refusal(str(out), error) from error
+
+
+def _files(got: Synthesis) -> Iterator[tuple[str, bytes]]:
+    target = got.target.target.name
+    heading = f"{target}: by `tactcad design`.\n{answer(record(got))}"
+    yield "design.toml", design_text(got.design, heading).encode()
+    for entry in got.front[1:]:
+        name = f"{target[:24].rstrip('-')}-{entry.name.replace('.', '-')}"
+        text = design_text(got.as_design(entry.found, name), f"{name}: {entry.what}.")
+        yield f"front/{entry.name}.toml", text.encode()
+    yield "report.json", report_json(got)
+    yield "report.html", report_page(got)

@@ -19,7 +19,7 @@ from itertools import combinations, product
 
 import numpy as np
 
-from tactcad.parts.description import Revolution
+from tactcad.parts.language.description import Revolution
 from tactcad.scenes.scene import Contact, Placement, Scene
 
 from ..engine.extent import Extent, box_of, moved_by

@@ -7,12 +7,14 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
+from tactcad.design.family import family_of
 from tactcad.design.messages import CheckFailure
 from tactcad.design.tree import Design
-from tactcad.parts import seating
-from tactcad.parts.description import Kind
-from tactcad.parts.layout import Layout
-from tactcad.scenes.array_steps import COPLANAR
+from tactcad.parts.array import seating
+from tactcad.parts.array.layout import Layout
+from tactcad.parts.language.description import Kind
+from tactcad.scenes.rig import ARRAY
+from tactcad.scenes.rigs.array import COPLANAR
 from tactcad.scenes.scene import Scene
 
 from ..engine.boxes import Box, Point, grown
@@ -25,13 +27,20 @@ from ..engine.paper import (
     A3,
     A3_UPRIGHT,
     ASSEMBLIES,
+    HEIGHT,
+    MARGIN,
+    WIDTH,
+    Page,
     Paper,
     Scale,
+    TitleBlock,
+    edges,
     factor,
+    fewer,
     largest_fitting,
+    notes,
     shown,
 )
-from ..engine.title import HEIGHT, MARGIN, WIDTH, Page, TitleBlock, edges, fewer, notes
 from ..guide import BESIDE, FACE_EYE, FACE_UP, array_of, axes, in_stack, numbers, pad, page_path, torque
 from ..parts.dimension_lines import stacked
 from ..parts.measures import Given
@@ -49,7 +58,7 @@ LONGEST_ROW = 8  # elements named on the sheet
 
 def arrangement(design: Design, scene: Scene, shapes: Mapping[str, TopoDS_Shape], block: TitleBlock) -> Page:
     """Front, plan below it, view from the left to its right; of the array its sensing face over the front."""
-    from tactcad.solids.place import placed_shape
+    from tactcad.solids.occt import placed_shape
 
     from ..engine.picture import EXACT_UP_TO, Viewpoint, drawing
 
@@ -91,7 +100,9 @@ def arrangement(design: Design, scene: Scene, shapes: Mapping[str, TopoDS_Shape]
         if face
         else {"front": ("top", "left"), "plan": ("right",)}
     )
-    inner = {"plan": mounting(Layout(design), boxes["plan"])} if face else {}
+    family = family_of(design)
+    own_plan = family.plans.get(ARRAY) if face else None
+    inner = {"plan": own_plan(family.layout(design), boxes["plan"])} if own_plan else {}
     for name, sides in dimensioned.items():
         w, h = extents[name]
         overall = {
@@ -180,8 +191,9 @@ def notes_of(design: Design, scene: Scene) -> tuple[str, ...]:
             "(tactcad export --guide)"
         )
     placed = {p.designator for p in scene.placements}
+    layout = family_of(design).layout(design)
     for row, side in ((1, "+"), (2, "-")):  # of long rows the bill's designators alone say it
-        own = [p for p in Layout(design).elements if p.row == row and p.designator in placed]
+        own = [p for p in layout.elements if p.row == row and p.designator in placed]
         if 0 < len(own) <= LONGEST_ROW:
             order = ", ".join(f"{p.designator} arm {p.arm:g}" for p in own)
             lines.append(f"Row {row}, its bodies on the side of {side}x, from -y to +y: {order}")
@@ -191,7 +203,7 @@ def notes_of(design: Design, scene: Scene) -> tuple[str, ...]:
         lines.append(f"Tighten nuts of property class A2-70, lubricated, to {torques}")
     if any(part.kind == "set screw" for part in scene.parts):
         torques = _torques(design, scene, "set screw")
-        how = f"to {torques}" if torques else seating.words(Layout(design))
+        how = f"to {torques}" if torques else seating.words(layout)
         lines.append(f"Turn set screws in {how}, locked with thread lacquer")
     for step in scene.steps:
         if step.title == COPLANAR:

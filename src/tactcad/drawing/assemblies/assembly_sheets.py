@@ -15,15 +15,12 @@ from tactcad.design.tree import Design
 from tactcad.scenes.bom import BomRow
 from tactcad.scenes.scene import Scene
 
-from ..engine.fonts import em
-from ..engine.ink import DrawnSheet
-from ..engine.paper import A3, A4
-from ..engine.sheet_files import files_of, pdf_runs, pdf_texts
-from ..engine.title import HEIGHT, WIDTH, Page, block_of, sheets_of
-from ..engine.workers import Written
-from . import parts_list
+from ..engine.ink import DrawnSheet, em
+from ..engine.layout_check import sheets_of
+from ..engine.paper import A3, A4, HEIGHT, WIDTH, Page, block_of
+from ..engine.sheet_files import Written, files_of, pdf_runs, pdf_texts
 from .arrangement import arrangement
-from .balloons import height
+from .balloons import SIZES, Laid, heading, height, laid, laid_columns, list_drawn
 from .numbered import numbered_pages
 
 if TYPE_CHECKING:
@@ -49,18 +46,18 @@ def assembly_sheets(
     block = replace(block, material="see parts list", mass=mass)
     arranged = arrangement(design, scene, shapes, block)
     above_block = A3.area[3] - A3.area[1] - HEIGHT
-    lists = [parts_list.laid(rows, size) for size in parts_list.SIZES]
-    beside = [p for p in lists if p.total + parts_list.heading(p.size) <= above_block]
+    lists = [laid(rows, size) for size in SIZES]
+    beside = [p for p in lists if p.total + heading(p.size) <= above_block]
     numbered, listed = numbered_pages(scene, rows, shapes, beside[0] if beside else None, block)
     pages = [arranged, *numbered, *([] if listed else _list_pages(lists[0]))]
     return sheets_of(block, pages, draft, name)
 
 
-def _list_pages(list_: parts_list.Laid) -> list[Page]:
+def _list_pages(list_: Laid) -> list[Page]:
     """One A4 page where that suffices; else A3 pages in two columns, the right one above the title block."""
     for paper, lefts in ((A4, [A4.area[2] - WIDTH]), (A3, [A3.area[0], A3.area[2] - WIDTH])):
         high = paper.area[3] - paper.area[1]
-        columns = parts_list.columns(list_, [*[high] * (len(lefts) - 1), high - HEIGHT])
+        columns = laid_columns(list_, [*[high] * (len(lefts) - 1), high - HEIGHT])
         if len(columns) == 1:
             break
     pages = []
@@ -68,7 +65,7 @@ def _list_pages(list_: parts_list.Laid) -> list[Page]:
         items = [
             item
             for x, rows in zip(lefts, columns[n : n + len(lefts)])
-            for item in parts_list.drawn(list_, rows, (x, paper.area[3]))[0]
+            for item in list_drawn(list_, rows, (x, paper.area[3]))[0]
         ]
         pages.append(Page(paper, "", tuple(items), "Parts list"))
     return pages
@@ -95,7 +92,7 @@ def assembly_written(order: AssemblyOrder) -> Written:
 
     Raises CheckFailure where they cannot be drawn, or differ from the scene when read back.
     """
-    from tactcad.solids.bytes import from_bytes  # loads the kernel
+    from tactcad.solids.step import from_bytes
 
     shapes = {number: from_bytes(data) for number, data in order.shapes.items()}
     sheets = assembly_sheets(order.design, order.scene, order.rows, shapes, order.draft, order.sample)

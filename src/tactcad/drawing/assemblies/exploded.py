@@ -13,9 +13,22 @@ from tactcad.scenes.scene import Scene
 
 from ..engine.boxes import Box, Polyline, bounds, bounds_of, corners, length, overlap
 from ..engine.ink import Item, Text
-from ..engine.paper import A3, A3_UPRIGHT, A4, A4_LYING, SERIES, Paper, factor, shown
-from ..engine.title import HEIGHT, MARGIN, WIDTH, Page, edges
-from . import balloons, parts_list
+from ..engine.paper import (
+    A3,
+    A3_UPRIGHT,
+    A4,
+    A4_LYING,
+    HEIGHT,
+    MARGIN,
+    SERIES,
+    WIDTH,
+    Page,
+    Paper,
+    edges,
+    factor,
+    shown,
+)
+from . import balloons
 from .apart import Piece, pieces_of
 
 if TYPE_CHECKING:
@@ -50,7 +63,7 @@ def seen_of_pieces(
     pieces: Sequence[Piece], shapes: Mapping[str, TopoDS_Shape], eye: Viewpoint
 ) -> list[list[Polyline]]:
     """Visible lines of each piece (mm, picture plane) as the pieces stand."""
-    from tactcad.solids.place import placed_shape
+    from tactcad.solids.occt import placed_shape
 
     from ..engine.picture import compound, seen_of_each
 
@@ -97,7 +110,7 @@ def total_length(lines: Iterable[Polyline]) -> float:
 
 
 def exploded_page(
-    view: Exploded, heading: Sequence[str], list_: parts_list.Laid | None, small: bool = False
+    view: Exploded, heading: Sequence[str], list_: balloons.Laid | None, small: bool = False
 ) -> tuple[Page, bool] | None:
     """The view at the largest scale at which its balloons find places, and whether the parts list stands
     beside it.
@@ -106,7 +119,7 @@ def exploded_page(
     is allowed (`small`). None where the balloons find no place.
     """
     bx0, by0, bx1, by1 = view.box
-    choices: list[tuple[Paper, parts_list.Laid | None]] = [(A3, list_)] if list_ else []
+    choices: list[tuple[Paper, balloons.Laid | None]] = [(A3, list_)] if list_ else []
     choices += [(paper, None) for paper in ((A4, A4_LYING) if small else ()) + (A3, A3_UPRIGHT)]
     for scale in SERIES:
         f = factor(scale)
@@ -128,7 +141,7 @@ def exploded_page(
             kind = "Assembly drawing"
             if beside:
                 corner = (paper.area[2] - WIDTH, paper.area[3])
-                items += parts_list.drawn(beside, range(len(beside.cells)), corner)[0]
+                items += balloons.list_drawn(beside, range(len(beside.cells)), corner)[0]
                 kind += ", parts list"
             return Page(paper, shown(scale), tuple(items), kind), bool(beside)
     return None

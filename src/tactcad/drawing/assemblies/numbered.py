@@ -18,10 +18,21 @@ from tactcad.scenes.scene import Placement, Scene
 from ..engine.boxes import Box, Point, Polyline, bounds_of, grown
 from ..engine.extent import box_of
 from ..engine.ink import Item, Stroke, Text
-from ..engine.paper import A3, ASSEMBLIES, Scale, factor, largest_fitting, shown
-from ..engine.title import EDGE, MARGIN, Page, TitleBlock, fewer
+from ..engine.paper import (
+    A3,
+    ASSEMBLIES,
+    EDGE,
+    MARGIN,
+    Page,
+    Scale,
+    TitleBlock,
+    factor,
+    fewer,
+    largest_fitting,
+    shown,
+)
 from ..guide import exploded
-from . import balloons, parts_list
+from . import balloons
 from .apart import Piece, pieces_of, pulled_apart
 from .balloons import RADIUS, SHORTEST, Balloon
 from .exploded import (
@@ -55,7 +66,7 @@ def numbered_pages(
     scene: Scene,
     rows: Sequence[BomRow],
     shapes: Mapping[str, TopoDS_Shape],
-    list_: parts_list.Laid | None,
+    list_: balloons.Laid | None,
     block: TitleBlock,
 ) -> tuple[list[Page], bool]:
     """Views in which every item that has a solid is numbered once, and whether the parts list stands beside
@@ -160,7 +171,7 @@ def _family_pages(
     left: Sequence[Placement], item: Mapping[str, int], shapes: Mapping[str, TopoDS_Shape], block: TitleBlock
 ) -> list[Page]:
     """One of each part; the title block has the commonest scale of a page, parts at others say so."""
-    from tactcad.solids.place import placed_shape
+    from tactcad.solids.occt import placed_shape
 
     from ..engine.picture import ABOVE, drawing
 

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tactcad.contour import Arc, Contour, Point
-from tactcad.parts.description import Extrusion, ModelFile, Part, Pocket, Revolution, Vector, vector
+from tactcad.parts.language.description import Extrusion, ModelFile, Part, Pocket, Revolution, Vector, vector
 from tactcad.scenes.scene import Placement
 
 from .boxes import Box, bounds

@@ -1,4 +1,5 @@
-"""The layout check: faults that a draughtsman would reject, measured on the finished sheet.
+"""Pages made finished sheets, and the layout check: what a draughtsman would reject,
+measured on the finished sheet.
 
 It does not know how the sheet was composed: it sees primitives only.
 """
@@ -6,14 +7,16 @@ It does not know how the sheet was composed: it sees primitives only.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import combinations
 
 import numpy as np
 
+from tactcad.design.messages import CheckFailure
+
 from .boxes import Chord, Point, bounds, chord_meets, crossing, quads_meet
-from .ink import DrawnSheet, Fill, Hatch, Text, points_of
-from .paper import LEFT, OTHER
+from .ink import DrawnSheet, Fill, Hatch, Text, points_of, preliminary
+from .paper import LEFT, OTHER, Page, TitleBlock, frame, title_block
 
 # Least white between two texts, and between a text and the edge of a line, mm of paper; chosen: a thin line's
 # width.
@@ -29,6 +32,24 @@ class _Straight:
     half: float
     role: str
     item: int
+
+
+def sheets_of(block: TitleBlock, pages: Sequence[Page], draft: bool, named: str = "") -> list[DrawnSheet]:
+    """The pages in frame and title block, called `named` or after their document types; a `draft` says so.
+
+    Raises CheckFailure where a layout is not clean.
+    """
+    sheets = []
+    for n, page in enumerate(pages, start=1):
+        own = replace(block, scale=page.scale, sheet=n, sheets=len(pages), document_type=page.document_type)
+        items = (*frame(page.paper), *title_block(page.paper, own), *page.items)
+        title = f"{named or page.document_type}, sheet {n} of {len(pages)}"
+        sheets.append(DrawnSheet(block.number, title, page.paper.size, items))
+    for sheet in sheets:
+        if wrong := layout_faults(sheet):
+            name = block.number if named else sheet.title
+            raise CheckFailure(f"drawings: {name}: {'; '.join(wrong[:3])}; no drawing was written")
+    return [preliminary(sheet) for sheet in sheets] if draft else sheets
 
 
 def layout_faults(sheet: DrawnSheet) -> list[str]:

@@ -31,9 +31,9 @@ from OCP.TopAbs import TopAbs_EDGE
 from OCP.TopExp import TopExp_Explorer
 from OCP.TopoDS import TopoDS_Compound, TopoDS_Shape
 
-from tactcad.account import making, under_way
 from tactcad.design.messages import CheckFailure
-from tactcad.parts.description import ModelFile, Vector
+from tactcad.parts.language.description import ModelFile, Vector
+from tactcad.profiling import making, under_way
 from tactcad.scenes.scene import Placement
 from tactcad.solids.occt import as_edge
 

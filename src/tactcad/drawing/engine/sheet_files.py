@@ -8,15 +8,14 @@ import io
 import os
 from calendar import timegm
 from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import lru_cache
 from html import escape
 from typing import TYPE_CHECKING
 
 from tactcad.design.tree import Identity
 
-from .fonts import FAMILY, em, font_file
-from .ink import DrawnArc, DrawnSheet, Fill, Hatch, Item, Point, Stroke, Text
-from .workers import Written
+from .ink import FAMILY, DrawnArc, DrawnSheet, Fill, Hatch, Item, Point, Stroke, Text, em, font_file
 
 if TYPE_CHECKING:
     from reportlab.pdfgen.canvas import Canvas
@@ -26,6 +25,14 @@ FONT = "DejaVuSans"
 EPOCH = "SOURCE_DATE_EPOCH"
 BETWEEN = 10.0  # of the sheets of one SVG file, mm
 GREY = "#c9ced4"
+
+
+@dataclass(frozen=True)
+class Written:
+    """A drawing."""
+
+    pdf: bytes
+    svg: bytes
 
 
 def pdf_bytes(sheets: Sequence[DrawnSheet], title: str, author: str, date: str) -> bytes:

@@ -8,8 +8,7 @@ from math import cos, hypot, radians, sin
 import numpy as np
 
 from ..engine.boxes import Box, Chord, Point, Quad, bounds, chord_meets, corners, grown, overlap, quads_meet
-from ..engine.fonts import width
-from ..engine.ink import LETTERS, THIN, Fill, Item, Text, arrow, bounds_of_items, polar, segment
+from ..engine.ink import LETTERS, THIN, Fill, Item, Text, arrow, bounds_of_items, polar, segment, width
 from ..engine.layout_check import BESIDE_LINE
 from .dimension_lines import ARROW, PAD
 from .sheet_plan import Callout, Datum

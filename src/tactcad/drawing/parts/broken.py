@@ -12,11 +12,11 @@ from dataclasses import replace
 from itertools import pairwise
 
 from tactcad.contour import Line
-from tactcad.parts.description import Part, drill_point_height
+from tactcad.parts.language.description import Part, drill_point_height
 
 from ..engine.boxes import Box, Chord, Point, clipped
 from ..engine.ink import THIN, Curve, DrawnArc, Hatch, Stroke
-from .part_variables import Owner, Round, contours, widest
+from .measures import Owner, Round, contours, widest
 from .sheet_plan import Breaks, SheetPlan, View
 
 LEAST_LEFT_OUT = 1 / 3  # of a part's length: less is not worth a broken view

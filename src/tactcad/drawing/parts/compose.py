@@ -8,7 +8,6 @@ from dataclasses import dataclass, replace
 from tactcad.design.messages import CheckFailure
 
 from ..engine.boxes import Box, Point, bounds, bounds_of, corners, grown, overlap, scaled, shifted
-from ..engine.fonts import width
 from ..engine.ink import (
     CENTRE,
     THIN,
@@ -22,14 +21,28 @@ from ..engine.ink import (
     bounds_of_items,
     moved,
     rectangle,
+    width,
 )
 from ..engine.layout_check import layout_faults
-from ..engine.paper import A3, A4, SERIES, Paper, Scale, factor, frame, shown
-from ..engine.title import HEIGHT, WIDTH, TitleBlock, notes, title_block
+from ..engine.paper import (
+    A3,
+    A4,
+    HEIGHT,
+    SERIES,
+    WIDTH,
+    Paper,
+    Scale,
+    TitleBlock,
+    factor,
+    frame,
+    notes,
+    shown,
+    title_block,
+)
 from .board import Board
 from .broken import windowed
 from .dimension_lines import FIRST, across, centre_lines, running, stacked
-from .part_variables import Values
+from .measures import Values
 from .sections import bore_lines, letters, mark_plane
 from .sheet_plan import OUTWARDS, Callout, SheetPlan, View, seen
 

@@ -10,7 +10,6 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 from ..engine.boxes import Box, Point
-from ..engine.fonts import ink_box, width
 from ..engine.ink import (
     CENTRE,
     LETTERS,
@@ -22,10 +21,12 @@ from ..engine.ink import (
     Stroke,
     Text,
     arrow,
+    ink_box,
     polar,
     segment,
+    width,
 )
-from .part_variables import Values
+from .measures import Values
 from .sheet_plan import Across, Linear, Running, Side
 
 ARROW = 2.5  # length of an arrow head: 10 line widths

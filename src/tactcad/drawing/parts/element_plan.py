@@ -12,13 +12,26 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from tactcad.contour import Arc, Contour, Line
-from tactcad.parts.description import Part
-from tactcad.parts.element import LEDGE, PAD_HEIGHT
+from tactcad.parts.array.element import LEDGE, PAD_HEIGHT
+from tactcad.parts.language.description import Part
 
 from ..engine.boxes import Point
 from .callouts import Group, equal_radii, groups, hole_callout
-from .measures import Level, Radius, Slope, Span, conventions, halfway, level, size
-from .part_variables import OUTER, THICKNESS, Round, Spot, rounds
+from .measures import (
+    OUTER,
+    THICKNESS,
+    Level,
+    Radius,
+    Round,
+    Slope,
+    Span,
+    Spot,
+    conventions,
+    halfway,
+    level,
+    rounds,
+    size,
+)
 from .prism import FRONT, side_view
 from .sheet_plan import Across, Callout, Dimension, Linear, SheetPlan, Side, View
 from .sketch import ALIKE, Coordinate, Sketch, closed, view_of

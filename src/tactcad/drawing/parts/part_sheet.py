@@ -6,30 +6,29 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 
+from tactcad.design.family import family_of
 from tactcad.design.materials import ELECTROLYSIS, family
 from tactcad.design.messages import CheckFailure
 from tactcad.design.tree import Design
-from tactcad.parts.description import Characteristic, Extrusion, Part, Vector
+from tactcad.parts.language.description import Characteristic, Extrusion, Part, Vector
 
 from ..engine.ink import Curve, DrawnSheet, preliminary
 from ..engine.layout_check import layout_faults
-from ..engine.paper import A0, A1, A2, A3, A4, SERIES, Paper, Scale, factor
-from ..engine.sheet_files import files_of, pdf_runs
-from ..engine.title import TitleBlock, block_of
-from ..engine.workers import Written
+from ..engine.paper import A0, A1, A2, A3, A4, SERIES, Paper, Scale, TitleBlock, block_of, factor
+from ..engine.sheet_files import Written, files_of, pdf_runs
 from .broken import broken
 from .compose import NoPlace, compose
-from .element_plan import element_plan
 from .prism import prism_plan
 from .sheet_plan import SectionPlane, SheetPlan, View
 from .tolerances import frame_of, times
 
 LEAST_WHOLE = 1 / 2  # scale: below it a long part is drawn broken rather than smaller
 SAME = 1e-9  # mm
+Plans = Mapping[str, Callable[..., SheetPlan]]  # by kind of part
 _VALUE = re.compile(
     r"^[⌀R]?(?P<nominal>\d+(?:\.\d+)?) (?:±(?P<both>[\d.]+)|(?P<upper>[+-]?[\d.]+)/(?P<lower>[+-]?[\d.]+))$"
 )
@@ -60,9 +59,9 @@ class Order:
 
 
 def part_plan(
-    part: Part, files: Sequence[MadeFrom], spare: bool = False, shortened: bool = False
+    part: Part, files: Sequence[MadeFrom], plans: Plans, spare: bool = False, shortened: bool = False
 ) -> SheetPlan | None:
-    """What a part's sheet shows, and the files that it is made from.
+    """What a part's sheet shows, and the files that it is made from; `plans` are its family's own, by kind.
 
     `spare` asks for less: of an element as of a tall one, of any other part without section. `shortened` asks
     for broken views; None where these would leave out too little. Raises CheckFailure where the part cannot
@@ -71,14 +70,14 @@ def part_plan(
     if not isinstance(part.body, Extrusion):
         raise CheckFailure(f"drawings: {part.part_no} is no extrusion; no drawing was written")
     notes = notes_of(part, files)
-    if part.kind == "element":
-        return None if shortened else element_plan(part, notes, spare)
+    if plan := plans.get(part.kind):
+        return None if shortened else plan(part, notes, spare)
     return prism_plan(part, notes, not spare, shortened)
 
 
 def part_sheet(order: Order) -> DrawnSheet:
     """The finished sheet, its layout clean."""
-    from tactcad.solids.bytes import from_bytes  # loads the kernel
+    from tactcad.solids.step import from_bytes
 
     from .solid_views import cut, projected
 
@@ -113,7 +112,7 @@ def _attempts(order: Order) -> Iterator[tuple[SheetPlan, Sequence[Paper], Sequen
 
     def plans(shortened: bool = False) -> Iterator[SheetPlan]:
         for spare in (False, True):
-            plan = part_plan(order.part, order.files, spare, shortened)
+            plan = part_plan(order.part, order.files, family_of(order.design).plans, spare, shortened)
             if plan is None:
                 return
             yield plan

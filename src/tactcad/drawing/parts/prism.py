@@ -12,22 +12,42 @@ from dataclasses import replace
 
 from tactcad.contour import Contour, Line
 from tactcad.design.messages import CheckFailure
-from tactcad.parts.description import Part, Pocket, Vector
+from tactcad.parts.language.description import Part, Pocket, Vector
 
 from ..engine.boxes import Point
 from .broken import breaks_of
 from .callouts import (
     Group,
+    depth_running,
+    edge_spans,
+    face_running,
+    filled,
     groups,
     hole_callout,
     pocket_callouts,
     radius_callouts,
     regular_rows,
     round_outline,
+    running_along,
 )
-from .linear import depth_running, edge_spans, face_running, filled, running_along
-from .measures import Level, MeasureDifference, Span, conventions, halfway, level, size
-from .part_variables import OUTER, PLACES, THICKNESS, Owner, Round, Spot, contours, rounds, widest
+from .measures import (
+    OUTER,
+    PLACES,
+    THICKNESS,
+    Level,
+    MeasureDifference,
+    Owner,
+    Round,
+    Span,
+    Spot,
+    contours,
+    conventions,
+    halfway,
+    level,
+    rounds,
+    size,
+    widest,
+)
 from .sections import section_of, section_view
 from .sheet_plan import Dimension, Linear, SheetPlan, Side, View, opposite, seen
 from .sketch import Coordinate, Sketch, closed, edge_level, view_of

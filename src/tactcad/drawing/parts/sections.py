@@ -14,13 +14,13 @@ from dataclasses import replace
 from math import hypot, isclose
 
 from tactcad.contour import Arc
-from tactcad.parts.description import Feature, Hole, Part, Pocket, Vector, drill_point_height, vector
+from tactcad.parts.language.description import Feature, Hole, Part, Pocket, Vector, drill_point_height, vector
 
 from ..engine.boxes import Box, Chord, Point
 from ..engine.ink import CENTRE, CUTTING, THIN, VISIBLE, Hatch, Item, Stroke, Text, arrow, segment
 from .board import AROUND, FORBIDDEN, Board
 from .dimension_lines import ABOVE
-from .part_variables import Round, axis_of, contours, in_part, widest
+from .measures import Round, axis_of, contours, in_part, widest
 from .sheet_plan import Bore, SectionPlane, View, opposite, seen
 from .sketch import view_of
 

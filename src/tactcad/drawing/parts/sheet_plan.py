@@ -5,12 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
-from tactcad.parts.description import Characteristic, Part, Vector, vector
-from tactcad.parts.limits import Geometric
+from tactcad.parts.language.description import Characteristic, Part, Vector, vector
+from tactcad.parts.language.limits import Geometric
 
 from ..engine.boxes import Box, Point
-from .measures import Measure
-from .part_variables import Values, Variable
+from .measures import Measure, Values, Variable
 
 Side = Literal["top", "bottom", "left", "right"]
 OUTWARDS: dict[Side, Point] = {

@@ -8,12 +8,11 @@ from dataclasses import dataclass, replace
 from itertools import count, product
 
 from tactcad.design.messages import CheckFailure
-from tactcad.parts.description import Part, Vector
-from tactcad.parts.limits import FACES
+from tactcad.parts.language.description import Part, Vector
+from tactcad.parts.language.limits import FACES
 
 from ..engine.boxes import bounds
-from .measures import Determined, Level, Measure, level
-from .part_variables import Owner, Quantity, Spot, Variable, variables
+from .measures import Determined, Level, Measure, Owner, Quantity, Spot, Variable, level, variables
 from .sheet_plan import Dimension, View, seen
 from .tolerances import places, times
 
@@ -156,3 +155,6 @@ def edge_level(sketch: Sketch, contour: Owner, k: int, value: float) -> Level:
     """The level of a contour's edge at a value along axis k (0 or 1)."""
     starts = (Spot(contour, i).place(k) for i in count())
     return level(next(v for v in starts if abs(sketch.values[v] - value) < ALIKE))
+
+
+# Characteristics of parts that are a hole's height over the underside, by the hole's label.

@@ -19,9 +19,8 @@ from OCP.TopAbs import TopAbs_FACE, TopAbs_REVERSED, TopAbs_WIRE
 from OCP.TopoDS import TopoDS_Shape, TopoDS_Wire
 
 from tactcad.design.messages import CheckFailure
-from tactcad.parts.description import Vector
-from tactcad.solids.explore import subshapes
-from tactcad.solids.occt import as_face, as_wire
+from tactcad.parts.language.description import Vector
+from tactcad.solids.occt import as_face, as_wire, subshapes
 
 from ..engine.ink import HIDDEN, VISIBLE, DrawnArc, Hatch, LineType, Point, Role, Stroke
 from ..engine.picture import compound, curves_of, exact, on_curve, projector

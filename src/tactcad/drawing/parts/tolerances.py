@@ -11,13 +11,12 @@ from dataclasses import replace
 from math import atan2, degrees, hypot
 
 from tactcad.contour import Line
-from tactcad.parts.description import Part
-from tactcad.parts.limits import FACES, Geometric, Symbol
+from tactcad.parts.language.description import Part
+from tactcad.parts.language.limits import FACES, Geometric, Symbol
 
 from ..engine.boxes import Chord, Point, clipped, corners, grown
-from ..engine.fonts import width
-from ..engine.ink import LETTERS, THIN, DrawnArc, Fill, Item, Stroke, Text, rectangle, segment
-from .part_variables import OUTER, Spot, Variable, rounds
+from ..engine.ink import LETTERS, THIN, DrawnArc, Fill, Item, Stroke, Text, rectangle, segment, width
+from .measures import OUTER, Spot, Variable, rounds
 from .sheet_plan import Callout, Datum, Frame, View, seen
 
 # Where along an edge a frame's leader may end; so near to its ends broken views show it, too.

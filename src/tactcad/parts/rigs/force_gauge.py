@@ -1,23 +1,21 @@
-r"""The digital force gauge, bought: housing with an M6 shaft, shaft down, two M4 threads in its back.
-
-+-----------+
-|  o     o  |    threads in the back, toward +y
-|           |  ^ z
-+----+ +----+  |
-     | | shaft
-     +-+         z = 0
-"""
+"""The force gauge, the two plates that hold it on its vertical axis, and the tips on its shaft."""
 
 from __future__ import annotations
 
-from tactcad.contour import circle, rectangle
-from tactcad.design.present import present
+from collections.abc import Sequence
+from math import ceil, hypot
 
-from ..description import Extrusion, Hole, Part, Pocket, Purchase
-from ..library.screws import METRIC
-from ..part_materials import ALUMINIUM
-from .frame import GAUGE_SHAFT, GAUGE_SIZE
-from .stand_layout import StandLayout
+from tactcad.contour import Corner, circle, rectangle, rounded_polygon
+from tactcad.design.fields import present
+
+from ..bought.standard_parts import dowel_diameter, dowel_limits
+from ..language.description import Extrusion, Feature, Hole, Part, Pocket, Purchase
+from ..language.limits import within
+from ..language.metric import METRIC, corners, sunk, tapped
+from ..language.part_materials import ALUMINIUM, STAINLESS
+from ..language.plate import plate
+from .frame import GAUGE_SHAFT, GAUGE_SIZE, PLATE, PLATE_SCREW, STAGE_HOLE, TIP, TIP_LAND
+from .stand import StandLayout
 
 SHAFT = 6.0  # M6
 GAUGE_THREADS = (-20.0, 20.0)  # of the gauge's back, from the middle of its plate, mm
@@ -25,7 +23,15 @@ GAUGE_THREADS = (-20.0, 20.0)  # of the gauge's back, from the middle of its pla
 
 def force_gauge(rig: StandLayout) -> Part:
     """Digital force gauge, shaft down: (x, y) the scene's, z = 0 the shaft's end, z = 10 the housing's lower
-    face."""
+    face.
+
+    +-----------+
+    |  o     o  |    threads in the back, toward +y
+    |           |  ^ z
+    +----+ +----+  |
+         | | shaft
+         +-+         z = 0
+    """
     w, deep, high = GAUGE_SIZE
     c = present(rig.design.calibration)
     around = rectangle(-w / 2, -deep / 2, w / 2, deep / 2)
@@ -63,3 +69,145 @@ def force_gauge(rig: StandLayout) -> Part:
         ),
         mass_override=640.0,
     )
+
+
+GAUGE_SCREW_X, GAUGE_SCREW_Z = 40.0, 20.0  # gauge plate on axis plate: outside the gauge's width
+
+
+def gauge_plate(rig: StandLayout) -> Part:
+    """Holds the force gauge by two screws from behind. Front face at local z = 0.
+
+    +-----------------+
+    | O      O      O |
+    |                 |   middle column: gauge; sides: axis plate
+    | O      O      O |
+    +-----------------+
+    """
+    thread, _, under = PLATE_SCREW
+    features = [
+        sunk("axis_plate", thread, (px, py, 0.0), (0, 0, 1), PLATE, under)
+        for px, py in corners(GAUGE_SCREW_X, GAUGE_SCREW_Z)
+    ]
+    features += [sunk("gauge", thread, (0.0, y, PLATE), (0, 0, -1), PLATE, under) for y in GAUGE_THREADS]
+    return upright_plate(rig, "gauge-plate", "Gauge plate", features)
+
+
+def upright_plate(rig: StandLayout, number: str, name: str, features: Sequence[Feature]) -> Part:
+    return plate(rig.design, number, name, Extrusion(rectangle(-46.0, -35.0, 46.0, 35.0), PLATE), features)
+
+
+def axis_plate(rig: StandLayout) -> Part:
+    """On the vertical stage; takes the gauge plate outside the gauge's width. Front face at local z = 0.
+
+    +-----------------+
+    | o   O     O   o |   O stage, sunk; o gauge plate, tapped
+    |                 |
+    | o   O     O   o |
+    +-----------------+
+    """
+    thread, _, under = PLATE_SCREW
+    features = [
+        sunk("stage", thread, (px, py, 0.0), (0, 0, 1), PLATE, under)
+        for px, py in corners(STAGE_HOLE, STAGE_HOLE)
+    ]
+    features += [
+        tapped("gauge_plate", thread, (px, py, 0.0), (0, 0, 1), PLATE)
+        for px, py in corners(GAUGE_SCREW_X, GAUGE_SCREW_Z)
+    ]
+    return upright_plate(rig, "axis-plate", "Axis plate", features)
+
+
+LAND = 0.01  # mm, plus and minus
+
+
+def flat_tip(rig: StandLayout) -> Part:
+    """Tip for the sample: a land of one pad's size under a round body. z = 0 is the land, the thread from
+    the top.
+
+    +-------+   z = TIP: M6 from the top
+    |       |
+    |       |
+    +-+   +-+
+      +---+     z = 0: land
+    """
+    d = rig.design
+    a, b = d.element.pad_length / 2, d.sheet.thickness / 2
+    body = max(10.0, float(ceil(2 * hypot(a, b) + 1.0)))  # 0.5 mm around the land's corners
+    around = circle((0, 0), body)
+    return Part(
+        part_no=f"{d.name}-tip-flat",
+        name=f"Tip, flat {d.element.pad_length:g} x {d.sheet.thickness:g}",
+        process="milled",
+        material=STAINLESS,
+        body=Extrusion(around, TIP),
+        features=(
+            Pocket(
+                "around_land", (0, 0, 0), (0, 0, 1), (1, 0, 0), around, TIP_LAND, (rectangle(-a, -b, a, b),)
+            ),
+            shaft_thread(),
+        ),
+        colour="#565d66",
+        finish="land Ra 0.4, edges sharp, burr-free",
+        characteristics=(
+            within("land along x", 2 * a, LAND, between=("around_land left edge", "around_land right edge")),
+            within("land along y", 2 * b, LAND, between=("around_land lower edge", "around_land upper edge")),
+        ),
+    )
+
+
+def shaft_thread(
+    at: tuple[float, float, float] = (0.0, 0.0, TIP), axis: tuple[float, float, float] = (0, 0, -1)
+) -> Hole:
+    """M6 for the gauge's shaft: 6 of its 10 mm engaged, a jam nut on the rest."""
+    return Hole("shaft", at, axis, 5.0, 12.0, False, thread="M6", thread_depth=10.0, drill_point=True)
+
+
+def roller_tip(rig: StandLayout) -> Part:
+    r"""Tip for the pads: a nose with a half-round seat for the roller, which stands out by its radius.
+
+    Contour in (x, z), z = 0 the roller's lowest line, extruded along y by 10.
+
+    +-------+   z = TIP: M6 from the top
+    |       |
+    \       /
+     +-( )-+
+       ( )      roller; z = 0 its lowest line
+    """
+    r, seat = seat_radius(present(rig.design.calibration).roller), "seat"
+    top = dowel_diameter(present(rig.design.calibration).roller)
+    low = top - r  # of the nose: the seat is half round
+    nose, half = r + 1.0, 6.0
+    corners = [
+        Corner((-nose, low)),
+        Corner((-r, low)),
+        Corner((-r, top), r, fillet=seat),
+        Corner((r, top), r, fillet=seat),
+        Corner((r, low)),
+        Corner((nose, low)),
+        Corner((half, low + half - nose)),
+        Corner((half, TIP)),
+        Corner((-half, TIP)),
+        Corner((-half, low + half - nose)),
+    ]
+    return Part(
+        part_no=f"{rig.design.name}-tip-roller",
+        name="Tip, roller holder",
+        process="wire-cut",
+        material=STAINLESS,
+        body=Extrusion(rounded_polygon(corners), 10.0),
+        features=(shaft_thread((0.0, TIP, 5.0), (0, -1, 0)),),
+        colour="#565d66",
+        notes=("roller bonded in its seat; it may not turn while an element is loaded",),
+        characteristics=(within(SEAT_RADIUS, r, SEAT, between=(seat,)),),
+    )
+
+
+SEAT_RADIUS = "seat radius"
+SEAT = 0.005  # mm, plus and minus; chosen: two to three passes of the wire
+# Radial, mm: what a pin's feel tells from none; more would let the roller lie beside the seat's middle.
+LEAST_AROUND_ROLLER = 0.001
+
+
+def seat_radius(size: str) -> float:
+    """Of the roller's seat, mm: at its least it still takes the largest m6 pin of that size."""
+    return round(dowel_limits(size)[1] / 2 + LEAST_AROUND_ROLLER + SEAT, 6)

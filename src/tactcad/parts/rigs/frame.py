@@ -6,7 +6,12 @@ the sample's middle and the array's middle are x = y = 0; the post stands behind
 
 from __future__ import annotations
 
-from ..layout import Layout
+from tactcad.design.tree import Design
+
+from ..array.layout import Layout
+from ..bought.screws import CAP_SCREW_LENGTHS
+from ..language.finding import SAME
+from ..language.metric import corners
 
 # Micro-stages: two plates of this size and thickness that slide on each other, threads at +-STAGE_HOLE.
 STAGE, STAGE_PLATE, STAGE_HOLE = 60.0, 10.0, 25.0
@@ -40,3 +45,28 @@ def pad_middles(layout: Layout) -> tuple[tuple[float, float], ...]:
     """Middles (x, y) of all pads, mm."""
     middle = (layout.pad_inner + layout.pad_outer) / 2
     return tuple((middle if place.row == 1 else -middle, place.y) for place in layout.elements)
+
+
+# Screws into the carrier's threads end this far inside its far face, where the end plates lie: more than the
+# screws' length (js15) and the plates may add.
+SHORT_OF_CARRIER = 0.8
+LEAST_UNDER_HEAD = 2.0  # mm of plate; chosen: as the carrier's own screws
+
+
+def carrier_screw_length(design: Design) -> float:
+    """Of the screws into the carrier, mm: the shortest that leaves enough plate under its head."""
+    engaged = design.clamp.carrier_thickness - SHORT_OF_CARRIER
+    lengths = CAP_SCREW_LENGTHS[design.clamp.mount_thread]
+    return next((n for n in lengths if n - engaged >= LEAST_UNDER_HEAD - SAME), lengths[-1])
+
+
+def under_carrier_screw(design: Design) -> float:
+    """Plate left under the head of the screw into the carrier's thread, mm."""
+    engaged = design.clamp.carrier_thickness - SHORT_OF_CARRIER
+    return round(carrier_screw_length(design) - engaged, 9)
+
+
+def carrier_pattern(layout: Layout) -> tuple[tuple[float, float], ...]:
+    """(x, y) of the carrier's threads for an axis."""
+    x, y = layout.mount_x, layout.design.clamp.mount_pitch_y / 2
+    return corners(x, y)

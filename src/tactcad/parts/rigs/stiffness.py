@@ -1,29 +1,31 @@
-"""The rigs' lines of the stiffness table (parts/stiffness_table.py)."""
+"""The rigs' lines of the stiffness table (parts/array/stiffness_table.py), and the load on every element at
+the end of the calibration's travel.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 from math import pi, radians
 
+from tactcad.design.fields import present
 from tactcad.design.materials import ALLOYS
-from tactcad.design.present import present
 from tactcad.design.tree import Design
-from tactcad.mechanics.bending import Beam, rod, round_plate
+from tactcad.mechanics.statics import Beam, rod, round_plate
 
-from ..layout import LEAST_GAP, Layout
-from ..library.dowels import dowel_diameter
-from ..part_materials import plate_material
-from ..seating import FLAT
-from ..stiffness_table import TENTH, Deflection, pads_plane
-from ..stop_give import STEEL_MODULUS, STEEL_POISSON, carrier_beam
-from .bonding_layout import bonding_rigs, kind_suffix
-from .cart_layout import CartLayout
-from .force_gauge import GAUGE_THREADS
+from ..array.layout import LEAST_GAP, ElementPlace, Layout
+from ..array.seating import FLAT, carrier_beam
+from ..array.stiffness_table import TENTH, Deflection, pads_plane
+from ..array.stop_give import STEEL_MODULUS, STEEL_POISSON
+from ..bought.standard_parts import dowel_diameter
+from ..language.part_materials import plate_material
+from .bonding_fixture import bonding_rigs, kind_suffix
+from .cart import CartLayout
+from .force_gauge import GAUGE_SCREW_X, GAUGE_THREADS
 from .frame import BAR_WIDTH, BASE, FOOT, GAUGE_SIZE, PIN, PLATE, PLATFORM, POST, POST_Y, STAGE_HOLE
-from .gauge_plate import GAUGE_SCREW_X
-from .guide_layout import guide_layout
-from .pin import pin
-from .stand_layout import StandLayout
+from .linear_guide import guide_layout
+from .moving_weight import pin
+from .stand import StandLayout
 
 ATMOSPHERE = 0.1  # MPa: no vacuum presses more
 LEVER = POST_Y + POST[1] / 2  # from the force gauge's axis to the post's middle, mm
@@ -221,3 +223,50 @@ def _line(load: Load, part: str, model: str, give: float, own: str = "") -> Defl
     scene, force, origin, allowed, why, fields = load
     fields = (own, *fields) if own else fields
     return Deflection(scene, part, model, force, origin, 1e3 * force * give, allowed, why, fields)
+
+
+@dataclass(frozen=True)
+class CalibrationLoad:
+    """One element at the end of calibration.travel.
+
+    Gauge and element are springs in series: of the micrometer's travel D the element takes d = D K_g/(K_g +
+    K).
+
+    deflection        mm at the pad
+    force             N
+    rated_deflection  mm that the hinge may give way
+    travel_at_rated   mm of the micrometer that reach it
+    travel_at_yield   mm of the micrometer at which the fillet yields
+    refused           why the estimator refuses the element; then the numbers are NaN
+    """
+
+    place: ElementPlace
+    deflection: float
+    force: float
+    rated_deflection: float
+    travel_at_rated: float
+    travel_at_yield: float
+    refused: str = ""
+
+
+def calibration_loads(design: Design) -> tuple[CalibrationLoad, ...]:
+    """Every element, by number."""
+    from tactcad.mechanics import ladder, strength  # numpy, which only checks and guides need
+
+    from ..array.hinge_section import design_alloy, hinge_section, in_design
+
+    c, layout = present(design.calibration), Layout(design)
+    s = hinge_section(layout, layout.elements)
+    known = ladder.evaluate(s, ladder.DEFAULT_RUNG)
+    yields = strength.yield_force_where_known(s, design_alloy(design))
+    loads = []
+    for place, K, why, at_yield in zip(layout.elements, known.stiffness, known.broken, yields):
+        share = c.load_cell_stiffness / (c.load_cell_stiffness + K)
+        rated = at_yield / design.rating.deflection_factor / K
+        deflection = c.travel * share
+        figures = (deflection, K * deflection, rated, rated / share, at_yield / K / share)
+        gives, force, may_give, to_rated, to_yield = map(float, figures)
+        loads.append(
+            CalibrationLoad(place, gives, force, may_give, to_rated, to_yield, in_design(why, layout, place))
+        )
+    return tuple(loads)

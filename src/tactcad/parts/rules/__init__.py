@@ -11,11 +11,11 @@ from __future__ import annotations
 import pkgutil
 from importlib import import_module
 
+from tactcad.design.family import family_of
 from tactcad.design.messages import InputError
 from tactcad.design.tree import Design
 
-from ..finding import Finding
-from ..layout import Layout
+from ..language.finding import Finding
 from .readout_blame import blamed
 from .rule import Rule
 
@@ -27,10 +27,8 @@ FIRST = (
     "stop_rules",
     "clamp_rules",
     "pressed_rules",
-    "slot_gauge_rules",
     *READOUT,
     "cart_rules",
-    "holder_rules",
     "calibration_rules",
 )
 
@@ -48,12 +46,12 @@ def _rules(subjects: tuple[str, ...]) -> dict[str, Rule]:
 
 
 def broken_rules(design: Design) -> list[Finding]:
-    """The first finding of every rule that the design breaks, in the order of the rules."""
-    return _broken(design, design_rules())
+    """The first finding of every rule of its family that the design breaks, in the order of the rules."""
+    return _broken(design, family_of(design).rules())
 
 
 def _broken(design: Design, rules: dict[str, Rule]) -> list[Finding]:
-    layout = Layout(design)
+    layout = family_of(design).layout(design)
     broken: list[Finding] = []
     kept: dict[str, bool] = {}  # rule -> it and all before it are kept, as those are that are not tried
     for name, rule in rules.items():

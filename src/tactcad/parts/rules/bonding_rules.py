@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from ..finding import SAME, Finding
-from ..layout import LEAST_GAP, Layout
-from ..lead_route import AHEAD_OF_LEADS
-from ..library.dowels import LEAST_PLAY
-from ..rigs.bonding_layout import EDGE, GUIDED, LEAST_TONGUE, ROOT, SILL, TONGUE, bonding_rigs
+from ..array.layout import LEAST_GAP, Layout
+from ..array.leads import AHEAD_OF_LEADS
+from ..bought.standard_parts import LEAST_PLAY
+from ..language.finding import SAME, Finding
+from ..rigs.bonding_fixture import EDGE, GUIDED, LEAST_TONGUE, ROOT, SILL, TONGUE, bonding_rigs
 from ..rigs.stiffness import bonding_lines
-from ..stiffness_remedy import too_much
 from .rule import at_least, at_most, fits, wrong
+from .stiffness_remedy import too_much
 
 TALLEST = 60.0  # clamp bar, mm; chosen: a taller one topples where its pins end
 # The clamp alone bends an unbacked leaf to this share of its yield strength at most; chosen: a tenth, so that

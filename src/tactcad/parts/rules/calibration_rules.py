@@ -5,18 +5,16 @@ from __future__ import annotations
 from collections.abc import Iterator
 from math import hypot
 
-from tactcad.design.present import present
+from tactcad.design.fields import present
 
-from ..deflected import deflection_at_pad_edge
-from ..finding import SAME, Finding
-from ..layout import HOLE_WEB, Layout
-from ..library.dowels import dowel_diameter, dowel_lengths
-from ..library.screws import METRIC, counterbore_diameter
-from ..library.stages import STAGES
-from ..rigs.calibration_loads import calibration_loads
-from ..rigs.carrier_screws import LEAST_UNDER_HEAD, carrier_screw_length, under_carrier_screw
-from ..rigs.frame import FOOT
-from ..rigs.stage_choice import (
+from ..array.element import deflection_at_pad_edge
+from ..array.layout import HOLE_WEB, Layout
+from ..bought.standard_parts import STAGES, dowel_diameter, dowel_lengths
+from ..language.finding import SAME, Finding
+from ..language.metric import METRIC, counterbore_diameter
+from ..rigs.frame import FOOT, LEAST_UNDER_HEAD, carrier_screw_length, under_carrier_screw
+from ..rigs.stand import (
+    StandLayout,
     calibration_stage,
     far,
     faults_of,
@@ -24,10 +22,9 @@ from ..rigs.stage_choice import (
     most_carrier,
     most_elements,
 )
-from ..rigs.stand_layout import StandLayout
-from ..rigs.stiffness import calibration_lines
-from ..stiffness_remedy import too_much
+from ..rigs.stiffness import calibration_lines, calibration_loads
 from .rule import at_least, at_most, fits, misfit, rule, wrong
+from .stiffness_remedy import too_much
 
 ROLLER_OUT = 0.1  # mm that the roller's holder keeps from pads beside the one that is pressed; chosen
 

@@ -6,20 +6,12 @@ from collections.abc import Iterator
 from itertools import combinations, product
 from math import ceil, cos, degrees, hypot, pi
 
-from ..end_plate import HOLES
-from ..fasteners import LEAST_GRIP, carrier_screw, clamping, thinnest_carrier
-from ..finding import SAME, Finding
-from ..layout import BESIDE_SET_SCREW, CARRIER_EDGE, END_PLATE_WEB, HOLE_WEB, LEAST_GAP, SUNK, Layout
-from ..library.dowels import LEAST_PLAY, dowel_diameter, dowel_limits
-from ..library.screws import (
-    DRILL_REACH,
-    METRIC,
-    SET_SCREW_LENGTHS,
-    SOCKET_WALL,
-    TAP_REACH,
-    counterbore_diameter,
-    engagement,
-)
+from ..array.clamp import HOLES, LEAST_GRIP, carrier_screw, clamping, thinnest_carrier
+from ..array.layout import BESIDE_SET_SCREW, CARRIER_EDGE, END_PLATE_WEB, HOLE_WEB, LEAST_GAP, SUNK, Layout
+from ..bought.screws import SET_SCREW_LENGTHS
+from ..bought.standard_parts import LEAST_PLAY, dowel_diameter, dowel_limits
+from ..language.finding import SAME, Finding
+from ..language.metric import DRILL_REACH, METRIC, SOCKET_WALL, TAP_REACH, counterbore_diameter, engagement
 from .rule import at_least, at_most, rule, wrong
 
 # Tie rod and ground rod are sold in bars of up to 3 m (DIN 976-1: 1, 2 and 3 m).

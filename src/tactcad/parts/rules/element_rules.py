@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from ..finding import SAME, Finding
-from ..layout import LEAST_GAP, ElementPlace, Layout
+from ..array.layout import LEAST_GAP, ElementPlace, Layout
+from ..language.finding import SAME, Finding
 from .rule import at_least, at_most, rule, wrong
 
 # Of a hinge's thickness that its tolerance may take; chosen: its stiffness, which goes with t^3, is then

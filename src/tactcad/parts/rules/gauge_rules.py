@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 from math import floor
 
-from tactcad.design.electronics import WIRES
+from tactcad.design.sensing import WIRES
 
-from ..finding import SAME, Finding
-from ..layout import LEAST_GAP, Layout
-from ..lead_route import leads
-from ..spacer import SPACER_TOLERANCE
+from ..array.clamp import SPACER_TOLERANCE
+from ..array.layout import LEAST_GAP, Layout
+from ..array.leads import leads
+from ..language.finding import SAME, Finding
 from .rule import at_least, at_most, rule, wrong
 
 # Neighbouring arms, and arm and end plate, stand a spacer apart; chosen: a thin gauge wire must not jam. Air

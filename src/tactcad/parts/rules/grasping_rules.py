@@ -4,18 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from ..finding import SAME, Finding
-from ..layout import Layout
-from ..library.screws import counterbore_diameter
-from ..rigs.bar import BAR_SCREW_X
+from ..array.layout import Layout
+from ..language.finding import SAME, Finding
+from ..language.metric import counterbore_diameter
 from ..rigs.frame import BAR, BAR_FRONT, BAR_WIDTH, CARRIAGE_LENGTH, RAIL_HEIGHT
-from ..rigs.guide_layout import guide_layout
+from ..rigs.linear_guide import guide_layout
+from ..rigs.moving_weight import BAR_SCREW_X
 from ..rigs.stiffness import grasping_lines, sample_lines
-from ..stiffness_remedy import too_much
 from .calibration_rules import carrier_screws_fit, carrier_threads_clear
-from .cart_rules import LEAST_AIR
-from .holder_rules import pads_on_sample
+from .cart_rules import LEAST_AIR, pads_on_sample
 from .rule import at_most, fits, rule, wrong
+from .stiffness_remedy import too_much
 
 
 @rule(after="stop_land_above_arm")

@@ -7,11 +7,11 @@ from math import asin, cos, sin
 
 from tactcad.contour import LEAST_EDGE, is_sliver
 
-from ..element import outline
-from ..finding import SAME, Finding
-from ..layout import ElementPlace, Layout
-from ..rigs.calibration_loads import calibration_loads
-from ..stop_gap import seat, stop_gap
+from ..array.element import outline
+from ..array.layout import ElementPlace, Layout
+from ..array.stop_gap import seat, stop_gap
+from ..language.finding import SAME, Finding
+from ..rigs.stiffness import calibration_loads
 from .calibration_rules import FITS as CALIBRATION_FITS
 from .rule import misfit, rule, wrong
 

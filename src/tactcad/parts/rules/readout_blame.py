@@ -1,6 +1,6 @@
 """Which field of [readout] is to blame for a broken rule: one that the design sets otherwise than it comes,
-with the value nearest to that one which all rules on the read-out take. Both are found by trying the rules:
-a rule compares several fields and names one of them, and does not know what other rules leave of it.
+with the value nearest to that one which all rules on the read-out take. Both are found by trying the rules: a
+rule compares several fields and names one of them, and does not know what other rules leave of it.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from typing import Any
 from tactcad.design.sensing import Readout
 from tactcad.design.tree import Design
 
-from ..finding import SAME, Finding
+from ..language.finding import SAME, Finding
 
 # Fields of which all values between a legal one and their default are legal; of others, such as a gain that
 # an amplifier has or not, the rules list what is legal. Where several would do, the first is blamed.

@@ -6,23 +6,41 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from math import ceil, floor, log10
 
-from tactcad.design.electronics import AMPLIFIERS, MULTIPLEXERS, SWITCHES, WIRES
-from tactcad.design.sensing import Readout, StrainGauge, Wiring
+from tactcad.design.sensing import AMPLIFIERS, MULTIPLEXERS, SWITCHES, WIRES, Readout, StrainGauge, Wiring
 from tactcad.design.tree import Design
 
-from ..boards import boards
-from ..bridge_figures import bridge_signal, heating, imbalance, settling_time
-from ..electronic_parts import completion_resistance, completion_tolerance
-from ..finding import SAME, Finding
-from ..hinge_section import design_readout
-from ..layout import Layout
-from ..lead_route import AHEAD_OF_LEADS, WHOLE, lead_routes, longest_lead_resistance, recess_length
+from ..array.bridge_figures import bridge_signal, heating, imbalance, settling_time
+from ..array.hinge_section import design_readout
+from ..array.layout import Layout
+from ..array.leads import AHEAD_OF_LEADS, WHOLE, boards, lead_routes, longest_lead_resistance, recess_length
+from ..bought.electronic_parts import completion_resistance, completion_tolerance
+from ..language.finding import SAME, Finding
 from .gauge_rules import lead
 from .rule import at_least, at_most, rule, wrong
 
 # Leads are bonded over so many of their own diameters at least; chosen: as far as glue takes up the pull of
 # a wire whose insulation it holds.
 RELIEF = 10
+
+
+@rule(after="no_slivers")
+def gauge_lies_in_slot(layout: Layout) -> Iterator[Finding]:
+    """A hinge that is slotted from both sides has no flat face but the slots' floors."""
+    if layout.design.element.sides == "one":
+        return
+    gauge = layout.design.gauge
+    reach = max(gauge.carrier_arm_side, gauge.carrier_body_side, gauge.grid_length / 2)
+    for p in layout.elements:
+        flat = round(p.hinge.l / 2 - p.hinge.r, 9)
+        if reach > flat + SAME:
+            yield wrong(
+                "element.sides",
+                f"no gauge can be bonded on element {p.number}: the floor of its slots is flat for "
+                f"{2 * flat:g} mm between the fillets, the carrier reaches {reach:g} mm to a side of "
+                "its middle",
+                "two",
+                f'"one"; or gauge.carrier_arm_side and gauge.carrier_body_side of at most {flat:g} mm',
+            )
 
 
 @rule()

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 
-from ..finding import SAME, Finding
-from ..layout import Layout
+from ..array.layout import Layout
+from ..language.finding import SAME, Finding
 
 Find = Callable[[Layout], Iterable[Finding]]
 

@@ -8,11 +8,11 @@ from math import ceil, floor, hypot, pi, sqrt, tan
 
 from tactcad.design.tree import Design, Stop, Tolerance
 
-from ..finding import SAME, Finding
-from ..layout import ElementPlace, Layout
-from ..stop_gap import land_room, seat, stop_gap, stop_limit
-from ..stop_give import SHARE, shortest_pitch, stop_plate_beams
-from ..stop_plate import STOP_PLATE_FLAT
+from ..array.clamp import STOP_PLATE_FLAT
+from ..array.layout import ElementPlace, Layout
+from ..array.stop_gap import land_room, seat, stop_gap, stop_limit
+from ..array.stop_give import SHARE, shortest_pitch
+from ..language.finding import SAME, Finding
 from .rule import at_least, at_most, rule, wrong
 
 # Least contact of stop plate and shortest ledge along the arm, mm; chosen: it carries the set screw's
@@ -153,9 +153,9 @@ def _what_helps(layout: Layout, what: str, allowed: float) -> Finding:
 def _largest_pitch(layout: Layout, allowed: float) -> float | None:
     """Largest pitch (mm, by halves) of set screws that is allowed; None where none is."""
     pitch = floor(2 * layout.hold_down_pitch) / 2
-    least = max(shortest_pitch(layout), 2 * layout.beyond_screws)
+    least = max(shortest_pitch(layout.design.clamp.screw), 2 * layout.beyond_screws)
     while pitch >= least:
-        if stop_plate_beams(layout, pitch=pitch).one <= allowed:
+        if layout.stop_plate_beams(pitch).one <= allowed:
             return pitch
         pitch -= 0.5
     return None

@@ -1,21 +1,27 @@
 """Bonding: an element in the fixture's nest, gauge face up, the clamp on its gauge; one for each kind of
-hinge."""
+hinge. The guide's words have their figures from design, fixture and elements."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from math import floor
+
+from tactcad.design.messages import CheckFailure
 from tactcad.design.tree import Design
 from tactcad.parts import rigs
-from tactcad.parts.consumables import bonding_supplies
-from tactcad.parts.element import element
-from tactcad.parts.layout import ElementPlace
-from tactcad.parts.library.dowels import dowel
-from tactcad.parts.rigs.bonding_layout import BASE, BondingLayout, bonding_rigs
+from tactcad.parts.array.element import element
+from tactcad.parts.array.layout import ElementPlace
+from tactcad.parts.array.leads import AHEAD_OF_LEADS, leads
+from tactcad.parts.array.supplies import bonding_supplies
+from tactcad.parts.bought.standard_parts import dowel
+from tactcad.parts.rigs.bonding_fixture import BASE, BondingLayout, bonding_rigs
+from tactcad.parts.rigs.frame import STANDARD_GRAVITY
 from tactcad.parts.rigs.stiffness import bonding_lines
 from tactcad.parts.rules.bonding_rules import FITS
 
-from ..bonding_requirements import bonding_requirements
 from ..builder import Builder
 from ..rig import Rig, none
+from ..rig_requirements import bonding_requirements
 from ..scene import AGAINST_Y, REST, UPRIGHT, Placement, Pose, Rotation, Scene
 
 FACE_UP: Rotation = ((1, 0, 0), (0, 0, 1), (0, -1, 0))  # local y runs along -z, the thickness along +y
@@ -27,7 +33,6 @@ def bonding(design: Design, pose: Pose = REST) -> Scene:
     """Scene `bonding`: every kind of hinge in its fixture, the first element of that kind; it has no pose
     but rest."""
     # loads numpy, which nothing needs that only asks which scenes there are
-    from .. import bonding_text as text
 
     stations = bonding_rigs(design)
     b = Builder()
@@ -35,23 +40,23 @@ def bonding(design: Design, pose: Pose = REST) -> Scene:
     middles = [n * (rig.width + BETWEEN) for n, rig in enumerate(stations)]
     for rig, y in zip(stations, middles):
         _nest(b, rig, y)
-    b.step("Fixture", (0, 0, 0), text.fixture(stations), tools=text.FIXTURE_TOOLS)
-    b.step("Surface", (0, 0, 0), text.surface(stations[0]), tools=text.SURFACE_TOOLS)
+    b.step("Fixture", (0, 0, 0), fixture(stations), tools=FIXTURE_TOOLS)
+    b.step("Surface", (0, 0, 0), surface(stations[0]), tools=SURFACE_TOOLS)
     for n, (rig, y) in enumerate(zip(stations, middles), start=1):
         _element(b, rig, y, n)
-    b.step("Element on the tongue", (0, 0, LIFTED), text.element_in(stations[0]))
-    b.step("Gauge", (0, 0, 0), text.gauge(stations), tools=text.GAUGE_TOOLS)
+    b.step("Element on the tongue", (0, 0, LIFTED), element_in(stations[0]))
+    b.step("Gauge", (0, 0, 0), gauge(stations), tools=GAUGE_TOOLS)
     pads = [_pad(b, rig, y) for rig, y in zip(stations, middles)]
     for rig, y, pad in zip(stations, middles, pads):
         _bar(b, rig, y, pad)
-    b.step("Clamp and cure", (0, 0, 2 * LIFTED), text.clamp(stations), fan=len(stations))
+    b.step("Clamp and cure", (0, 0, 2 * LIFTED), clamp(stations), fan=len(stations))
     first = stations[0]
-    b.step("Trim and terminals", (0, 0, 0), text.terminals(first), tools=text.TRIM_TOOLS)
-    b.step("Solder", (0, 0, 0), text.solder(first), tools=text.SOLDER_TOOLS)
-    b.step("Check resistance and insulation", (0, 0, 0), text.resistance(first), tools=text.OHMS_TOOLS)
-    b.step("Coat", (0, 0, 0), text.coat(first))
-    b.step("Check zero and sign", (0, 0, 0), text.zero(first), tools=text.SIGN_TOOLS)
-    b.step("Check creep after 24 h", (0, 0, 0), text.creep(first))
+    b.step("Trim and terminals", (0, 0, 0), terminals(first), tools=TRIM_TOOLS)
+    b.step("Solder", (0, 0, 0), solder(first), tools=SOLDER_TOOLS)
+    b.step("Check resistance and insulation", (0, 0, 0), resistance(first), tools=OHMS_TOOLS)
+    b.step("Coat", (0, 0, 0), coat(first))
+    b.step("Check zero and sign", (0, 0, 0), zero(first), tools=SIGN_TOOLS)
+    b.step("Check creep after 24 h", (0, 0, 0), creep(first))
     return b.scene("bonding", cover=[p.designator for p in b.placements if p.designator[:2] in ("CB", "RP")])
 
 
@@ -84,6 +89,198 @@ def _pad(b: Builder, rig: BondingLayout, y: float) -> str:
 
 def _bar(b: Builder, rig: BondingLayout, y: float, pad: str) -> None:
     b.meet(pad, b.place("CB", rigs.bonding_clamp(rig), (0, y + rig.width / 2, rig.nose), AGAINST_Y))
+
+
+LOUPE = "stereo microscope or loupe, 20x"
+FIXTURE_TOOLS = ("arbor press or vice with soft jaws", "balance, 1 g")
+SURFACE_TOOLS = ("nitrile gloves",)
+GAUGE_TOOLS = (LOUPE, "tweezers", "clear tape for gauges")
+TRIM_TOOLS = ("scalpel",)
+SOLDER_TOOLS = ("soldering iron with a 0.4 mm tip, temperature controlled",)
+OHMS_TOOLS = ("ohmmeter, four wires, 0.01 ohm", "insulation tester, 50 V at most")
+SIGN_TOOLS = ("a small weight", "the array's read-out, or a bridge amplifier")
+THUMB = 20.0  # N; chosen: a thumb that presses hard
+
+
+def fixture(rigs: Sequence[BondingLayout]) -> str:
+    """How the nest and its clamp are put together."""
+    rig = rigs[0]
+    kinds = (
+        f" There are {len(rigs)} nests: each is for the elements with its own hinge, as its number says."
+        if len(rigs) > 1
+        else ""
+    )
+    return (
+        f"Press the pins square into the nest from above, {rig.pin_depth:g} mm deep: "
+        f"{rig.pin_length - rig.pin_depth:g} mm stand out. Stick the rubber under the clamp bar's nose, "
+        f"edges flush, with silicone adhesive; weigh the bar: {rig.bar_mass:.3g} g within 5 %, which press "
+        f"{rig.bar_pressure:.2g} MPa on the gauge. It must slide down on the pins by its own weight, either "
+        "way round. Hold the nest in a vice by its foot, level. The tongue's ends stand out at both sides "
+        f"of an element: they are the marks that the gauge is set by, so do not break their edges.{kinds}"
+    )
+
+
+def surface(rig: BondingLayout) -> str:
+    d = rig.design
+    face = "flat face" if d.element.sides == "one" else "floor of the slot on the pads' side"
+    thinnest = min(place.hinge.t for place in rig.array.elements)
+    return (
+        f"Hold an element by its rear body only, never by its arm: the hinge is {thinnest:g} mm thick. "
+        f"Degrease all of it with solvent. Abrade the {face} over the gauge's length with P400 paper on a "
+        "flat stick, lightly, at 45 degrees and crosswise, no more than takes the gloss off: what is taken "
+        "off the hinge is lost to its stiffness. Wet with conditioner, wipe, wet with neutraliser, wipe "
+        "dry: each swab one stroke, one way, until none shows a trace. Water must then wet the face without "
+        "drawing back. Bond within 30 minutes, before the metal has its oxide again."
+    )
+
+
+def element_in(rig: BondingLayout) -> str:
+    return (
+        "Lay the element on its back into the nest, between the pins, its slot over the tongue, the rear "
+        f"body down on its rest, which is {rig.drop:g} mm low: the leaf lies on the tongue, and the rear end "
+        "on the rest. Tap the rear body with a plastic rod: it must lie still. Along the tongue the element "
+        f"has {rig.play:g} mm of play, or what its slot is longer than drawn; leave it where it lies from "
+        "now on."
+    )
+
+
+def gauge(rigs: Sequence[BondingLayout]) -> str:
+    """How the gauge is set on the hinge, and how near."""
+    from tactcad.parts.array.gauge_checks import allowed_places
+
+    rig = rigs[0]
+    d, table = rig.design, rig.table
+    allowed = float(allowed_places(rig.array).min())
+    return (
+        f"Trim the gauge's carrier to {d.gauge.carrier_arm_side:g} mm before its grid's middle and "
+        f"{d.gauge.carrier_body_side:g} mm behind it, {d.gauge.carrier_width:g} mm wide, solder tabs to the "
+        "rear. Pick it up with tape and set it on the face under the microscope, the marks of its grid's "
+        "middle halfway between the tongue's two edges, which stand out at both sides of the element, "
+        f"within {table.sight:g} mm, and in the middle of its width. The grid must lie on the hinge's middle "
+        f"within {floor(1e3 * allowed) / 1e3:g} mm, the tongue's play included: further off the shortest "
+        f"arm's signal is more than {100 * table.signal_share:g} % wrong. Stick the tape down behind the "
+        "gauge, then lift it from the arm's side with the gauge on it. Put one thin drop of adhesive on the "
+        "face, lay gauge and tape down again from the rear with one stroke of a finger on release film, and "
+        "let go."
+    )
+
+
+def clamp(rigs: Sequence[BondingLayout]) -> str:
+    """What presses how much for how long, and what the leaf bears."""
+    rig = rigs[0]
+    return (
+        "Release film on the gauge, then at once the clamp bar down on the pins, rubber on the gauge. Let "
+        f"it lie {rig.table.cure:g} min, or as long as the adhesive's own sheet asks, at 20 to 30 degrees C "
+        f"and 30 to 65 % relative humidity for cyanoacrylates. It presses {rig.bar_pressure:.2g} MPa; "
+        f"{_bears(rigs)} Lift the bar straight up; peel film and tape back over themselves."
+    )
+
+
+def _bears(rigs: Sequence[BondingLayout]) -> str:
+    try:
+        backed, free = (min(borne(rig, by) for rig in rigs) for by in (True, False))
+    except CheckFailure:  # far thinner than long: the elements say so
+        return "press on it no harder: what so thin a leaf bears, plane elements do not tell."
+    thumb = THUMB / rigs[0].pad_area
+    safe = "the leaf bears that too, backed." if thumb < backed else "do not."
+    return (
+        f"the leaf yields at {backed:.2g} MPa on its tongue, and at {free:.2g} MPa if the tongue is "
+        f"forgotten (plane elements). A thumb of {THUMB:g} N on the bar is {thumb:.2g} MPa: {safe}"
+    )
+
+
+def borne(rig: BondingLayout, backed: bool) -> float:
+    """Pressure on the gauge at which a leaf of this kind yields, MPa, in the fixture or without its tongue.
+    Raises CheckFailure where elements do not reach it."""
+    from tactcad.fem.bonded_leaf import clamped
+    from tactcad.parts.array.hinge_section import hinge_section
+
+    place = next(p for p in rig.array.elements if p.hinge == rig.hinge)
+    s = hinge_section(rig.array, (place,)).rows(0)
+    before, behind = rig.pad_x
+    if backed:
+        s = s.with_(body_length=rig.rear_ends[0] - rig.hinge.l / 2)
+    tongue = rig.tongue - 2 * rig.tongue_radius if backed else None
+    one = clamped(s, (-before, behind), rig.pad_width, rig.design.gauge.grid_length, tongue)
+    return rig.design.material.yield_strength / one.stress
+
+
+def terminals(rig: BondingLayout) -> str:
+    return (
+        "Cut away adhesive that stands out beside the leaf, with the scalpel along the face, never across "
+        f"the hinge: both slots must be free. Bond the solder terminals, {rig.table.terminal_length:g} x "
+        f"{rig.terminal_width:g} mm, on the floor of the wire recess, their front end {AHEAD_OF_LEADS:g} mm "
+        "behind its wall: there nothing bends, and leads and solder stay "
+        f"{rig.design.element.recess_depth:g} mm below the face."
+    )
+
+
+def solder(rig: BondingLayout) -> str:
+    to_terminals = "one lead to each terminal. "
+    if leads(rig.array) == 3:
+        to_terminals = (
+            "three leads to the terminals, two on one of them: the third takes the leads' own resistance out "
+            "of the bridge. "
+        )
+    return (
+        "Tin tabs and terminals, then join each tab to its terminal with one insulated strand, bare at "
+        "its ends, in a loose arc, so "
+        f"that no lead pulls on the gauge. Solder {to_terminals}Lay them in the recess to the rear end. "
+        "Each joint within 2 s; clean off all flux."
+    )
+
+
+def resistance(rig: BondingLayout) -> str:
+    from tactcad.parts.array.gauge_checks import gauge_checks
+
+    c = gauge_checks(rig.array)
+    low, high = c.resistance
+    return (
+        f"Record for every element, before it is coated. Resistance at the terminals: {low:g} to {high:g} "
+        f"ohm, which is the gauge's own within {100 * c.hurt:g} %; more says that the grid was hurt. "
+        f"Insulation from grid to element: at least {c.insulation / 1e9:g} Gohm, the least that gauge makers "
+        f"let pass in a laboratory; flux or moisture is below. Never use one below {c.leak / 1e6:.2g} Mohm: "
+        "a leak of that, which comes and goes, reads as all of tolerance.zero_drift."
+    )
+
+
+def coat(rig: BondingLayout) -> str:
+    """Half of what the pads stand out, at most a tenth of a millimetre, since a coating stiffens, too."""
+    thick = min(0.1, rig.design.element.pad_height / 2)
+    return (
+        f"Coat gauge, jumpers and terminals, no thicker than {thick:.2g} mm over the face and clear of the "
+        "slot's walls and of the contact pad. Let it cure as its own sheet says."
+    )
+
+
+def zero(rig: BondingLayout) -> str:
+    from tactcad.parts.array.gauge_checks import gauge_checks, volts
+
+    c = gauge_checks(rig.array)
+    arms = ", ".join(
+        f"{1e3 * rise:.2g} permille ({1e3 * volts(rig.array, rise):.0f} mV) at arm {arm:g}"
+        for arm, rise in c.rise
+    )
+    return (
+        f"Zero: the unloaded bridge within {100 * c.zero:.2g} % of dR/R, or amplifier or converter is full "
+        "before the pad bears rating.force. Sign: hold the rear body, pad up, and set a weight of "
+        f"{1e3 * c.push / STANDARD_GRAVITY:.2g} g ({c.push:g} N) on the pad, which is how the object pushes. "
+        f"The resistance must rise, by about {arms} (beam theory). Where it falls, the gauge is not on the "
+        "pads' side; where only the read-out falls, two leads are exchanged."
+    )
+
+
+def creep(rig: BondingLayout) -> str:
+    from tactcad.parts.array.gauge_checks import CREEP_FROM, CREEP_TO, gauge_checks
+
+    c, d = gauge_checks(rig.array), rig.design
+    return (
+        "Not before the adhesive has cured for 24 h. Hold the rated force on the pad: between "
+        f"{CREEP_FROM:g} and {CREEP_TO:g} min the signal may change by {100 * c.creep:.2g} % of itself at "
+        f"most (tolerance.creep, {100 * d.tolerance.creep:g} %, for each decade of time); unloaded, the zero "
+        "must come back within as much. Where a gauge fails here or before, take it off with solvent and "
+        "bond a spare; the hinge's thickness is then measured anew."
+    )
 
 
 RIG = Rig(

@@ -5,24 +5,29 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from math import floor
 
+from tactcad.design.fields import present
 from tactcad.design.messages import InputError
-from tactcad.design.present import present
 from tactcad.design.tree import Design
 from tactcad.parts import rigs
-from tactcad.parts.deflected import deflected_element
-from tactcad.parts.element import element_number
-from tactcad.parts.finding import Finding, Severity
-from tactcad.parts.library.dowels import dowel_diameter
-from tactcad.parts.rigs.calibration_loads import calibration_loads
-from tactcad.parts.rigs.carrier_screws import carrier_pattern, carrier_screw_length, under_carrier_screw
-from tactcad.parts.rigs.frame import PLATE, pad_middles
-from tactcad.parts.rigs.stand_layout import StandLayout
-from tactcad.parts.rigs.stiffness import calibration_lines, series_give
+from tactcad.parts.array.element import deflected_element, element_number
+from tactcad.parts.bought.standard_parts import dowel_diameter
+from tactcad.parts.language.finding import Finding, Severity
+from tactcad.parts.rigs.frame import (
+    PLATE,
+    carrier_pattern,
+    carrier_screw_length,
+    pad_middles,
+    under_carrier_screw,
+)
+from tactcad.parts.rigs.stand import StandLayout
+from tactcad.parts.rigs.stiffness import calibration_lines, calibration_loads, series_give
 from tactcad.parts.rules.calibration_rules import FITS
 
-from ..array_steps import flatness_tools
 from ..builder import Builder
-from ..common import (
+from ..rig import Rig
+from ..rig_requirements import roller
+from ..scene import AGAINST_Y, DOWN, REST, Motion, Pose, Rotation, Scene, whole_um
+from ..shared_rigs import (
     AXIS_LIFT,
     CORNERS,
     JAM_SPANNER,
@@ -33,10 +38,7 @@ from ..common import (
     place_force_axis,
     place_stand,
 )
-from ..rig import Rig
-from ..rig_requirements import roller
-from ..scene import AGAINST_Y, DOWN, REST, Motion, Pose, Rotation, Scene, whole_um
-from .array import array
+from .array import array, flatness_tools
 
 BACK_DOWN: Rotation = DOWN  # half a turn about x: pads up
 OUT_OF_X: Rotation = ((0, 0, -1), (0, 1, 0), (1, 0, 0))  # local z runs along -x
@@ -240,7 +242,6 @@ def check_travel(design: Design, _scene: Scene) -> list[Finding]:
         if load.refused or load.deflection <= load.rated_deflection:
             continue
         severity: Severity = "fail" if travel > load.travel_at_yield else "flag"
-        who = f"{load.place.designator} ({element_number(design, load.place)})"
         message = (
             f"{travel:g} mm of travel bend it by {load.deflection:.4g} mm, it is rated "
             f"for {load.rated_deflection:.4g}: calibrate it to {load.travel_at_rated:.4g} mm of travel"
@@ -249,11 +250,12 @@ def check_travel(design: Design, _scene: Scene) -> list[Finding]:
             Finding(
                 "calibration",
                 severity,
-                who,
+                load.place.designator,
                 (load.place.hinge_x, load.place.hinge.t / 2),
                 load.deflection,
                 load.rated_deflection,
                 message,
+                element_number(design, load.place),
             )
         )
     return findings

@@ -1,18 +1,39 @@
-"""Grasping: the array on a vertical guide comes down on the sample under its own weight and added ones."""
+"""Grasping: the array on a vertical guide comes down on the sample under its own weight and added ones,
+trimmed by ballast.
+
+The moving weight is that of the parts placed. The rule on the ballast places them too, with elements that
+have no stop gap, because the scenes of a design must be known without the estimator.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from math import floor
 
-from tactcad.design.present import present
+from tactcad.design.fields import present
 from tactcad.design.tree import Design
 from tactcad.parts import rigs
-from tactcad.parts.finding import Finding
-from tactcad.parts.library.dowels import dowel
-from tactcad.parts.rigs.frame import POST_Y, RISER_PITCH, STAGE_HOLE, pad_middles
-from tactcad.parts.rigs.guide_layout import GuideLayout, guide_layout
-from tactcad.parts.rigs.rail import rail_holes
-from tactcad.parts.rigs.riser import (
+from tactcad.parts.array.clamp import carrier_screw
+from tactcad.parts.array.layout import Layout
+from tactcad.parts.bought.screws import cap_screw
+from tactcad.parts.bought.standard_parts import dowel
+from tactcad.parts.language.finding import Finding
+from tactcad.parts.rigs.frame import (
+    BAR_FRONT,
+    CARRIAGE_LENGTH,
+    PIN,
+    PLATFORM,
+    POST_Y,
+    RAIL_HEIGHT,
+    RISER_PITCH,
+    STAGE_HOLE,
+    STANDARD_GRAVITY,
+    carrier_pattern,
+    carrier_screw_length,
+    pad_middles,
+    under_carrier_screw,
+)
+from tactcad.parts.rigs.linear_guide import (
     LATCH,
     LATCH_KEPT,
     RISER_SCREW,
@@ -20,20 +41,31 @@ from tactcad.parts.rigs.riser import (
     STOP_DEPTH,
     STOP_LENGTH,
     STOP_PIN,
+    GuideLayout,
+    guide_layout,
     latch_above,
     latch_lies,
+    rail_holes,
     stop_below,
 )
-from tactcad.parts.rigs.stand_layout import StandLayout
+from tactcad.parts.rigs.moving_weight import (
+    BAR_SCREW_X,
+    BAR_UNDER_HEAD,
+    FOOT_UNDER_HEAD,
+    PLATFORM_UNDER_HEAD,
+    ballast_thickness,
+)
+from tactcad.parts.rigs.stand import StandLayout
 from tactcad.parts.rigs.stiffness import grasping_lines
 from tactcad.parts.rules.grasping_rules import FITS
+from tactcad.parts.rules.rule import fits, wrong
 
 from ..builder import Builder
-from ..common import CORNERS, place_cart, place_stand
-from ..moving_axis import ballast_trims_moving_weight, moving_weight, place_axis
 from ..rig import Rig, none
 from ..rig_requirements import wheels
-from ..scene import AGAINST_Y, ALONG_Y, REST, Motion, Pose, Scene, whole_um
+from ..scene import AGAINST_Y, ALONG_Y, REST, UPRIGHT, Motion, Pose, Rotation, Scene, whole_um
+from ..shared_rigs import CORNERS, place_cart, place_stand
+from .array import array, without_gaps
 
 # Relative difference allowed between the parts' weight and the design's: the ballast is turned to weight
 # anyway.
@@ -147,6 +179,176 @@ def _poses(design: Design) -> Iterator[Pose]:
     deep = whole_um(min(present(design.sample).travel, e.pad_height - e.pad_root_radius))
     if deep > 0:
         yield Pose(deflection=deep)
+
+
+ALONG_RAIL: Rotation = ((-1, 0, 0), (0, -1, 0), (0, 0, 1))  # carriage: local y out of the rail, z along it
+PIN_SCREW = ("M4", 10.0)
+NEWTON = STANDARD_GRAVITY * 1e-3  # N, weight of a gram
+# A thinner disc is not turned flat (chosen); a longer pin, in steps of 5 mm, bends under the tool: 12
+# diameters.
+LEAST_BALLAST = 0.5
+LONGEST_PIN = 5.0 * floor(12 * PIN / 5.0)
+
+
+def moving_mass(scene: Scene) -> float:
+    """Mass of a grasping scene's moving axis without the added weights, g."""
+    axis = dict(scene.groups)["axis"]
+    return sum(
+        p.part.mass for p in scene.placements if p.designator in axis and not p.designator.startswith("WT")
+    )
+
+
+def moving_weight(scene: Scene) -> float:
+    """Initial grasping force, N: the moving axis's weight at standard gravity, the guide's friction left
+    out."""
+    return moving_mass(scene) * NEWTON
+
+
+def place_axis(b: Builder, rig: GuideLayout, rail: str, lift: float) -> tuple[str, float]:
+    """All that moves with the array, trimmed by a ballast; the group `axis` stays open for the weights.
+
+    Returns the designator of what the weights lie on, and the z of its surface (mm).
+    """
+    before = len(b.placements)
+    platform = _place_carried(b, rig, rail, lift, array(rig.design))
+    thick, ballast = _trim(rig, sum(p.part.mass for p in b.placements[before:]))
+    z = rig.platform_top + lift
+    pin = b.place("PN", rigs.pin(rig, thick), (0, 0, z))
+    b.meet(platform, pin)
+    b.screw(*PIN_SCREW, (0, 0, z - PLATFORM_UNDER_HEAD), (0, 0, 1), platform, pin)
+    b.step("Pin", (0, 0, 280), "Screw the pin on the platform from below.")
+    if ballast <= 0:
+        return platform, z
+    disc = rigs.ballast(rig, ballast)
+    name = b.place("BA", disc, (0, 0, z))
+    b.meet(platform, name)
+    b.step(
+        "Ballast",
+        (0, 0, 305),
+        "Slide all that moves up off the guide on the carriage's transport rail and weigh it without that "
+        f"rail: with the ballast it must be {rig.grasping.moving_weight:g} N, "
+        f"{rig.grasping.moving_weight / NEWTON:.1f} g. Turn the ballast thinner until it is; then slide it "
+        "back, on the latch.",
+        tools=("balance, 0.1 g",),
+    )
+    return name, z + disc.extrusion.thickness
+
+
+def _trim(rig: GuideLayout, mass: float) -> tuple[float, float]:
+    """Thickness (mm) and mass (g) of the ballast, from everything else that moves; no mass where that is too
+    heavy.
+
+    A pin that is longer because of the ballast weighs slightly more itself, which is taken into account.
+    """
+    room = rig.grasping.moving_weight / NEWTON - mass - cap_screw(*PIN_SCREW).mass
+    thick = ballast_thickness(rig, max(room - rigs.pin(rig).mass, 0.0))
+    return thick, max(room - rigs.pin(rig, thick).mass, 0.0)
+
+
+def ballast_range(rig: GuideLayout) -> tuple[float, float]:
+    """Smallest and largest moving weight (N) that a ballast under the weights can trim to.
+
+    Computed without the estimator: elements are taken without a stop gap, with an allowance for the material
+    that a gap could remove.
+    """
+    layout, d = rig.array, rig.design
+    b = Builder()
+    _place_carried(b, rig, "RL1", 0.0, without_gaps(d))
+    heavy = sum(p.part.mass for p in b.placements) + rigs.pin(rig).mass + cap_screw(*PIN_SCREW).mass
+    over = max(layout.ledge_of(p.hinge) - p.hinge.h for p in layout.elements)
+    land = over * (d.stop.land_length + over) * d.sheet.thickness * d.material.density * 1e-6
+    light = heavy - land * len(layout.elements)
+    grams = 1.0 / ballast_thickness(rig, 1.0)  # mass of a millimetre of disc, g
+    stack = rig.grasping.weights * rigs.disc_weight(rig).extrusion.thickness
+    longest = rigs.pin(rig, LONGEST_PIN - 1.0 - stack).mass
+    most = light + (LONGEST_PIN - 1.0 - stack) * grams
+    return (heavy + longest + LEAST_BALLAST * grams) * NEWTON, most * NEWTON
+
+
+@fits
+def ballast_trims_moving_weight(layout: Layout) -> Iterator[Finding]:
+    guide = guide_layout(layout.design)
+    if guide is None or carrier_screw(layout) is None or layout.hold_down.length is None:
+        return  # no array to weigh: the design is refused for that
+    wanted = guide.grasping.moving_weight
+    try:
+        low, high = ballast_range(guide)
+    except ValueError:
+        return  # contours that cannot be drawn: the design is refused for that
+    if low <= wanted <= high:
+        return
+    within = f"from {low:.4g} to {high:.4g} N"
+    legal = within if low < high else "fewer or larger weights: their stack is too high"
+    what = "no ballast under the weights brings what moves to it"
+    yield wrong("grasping.moving_weight", what, wanted, legal)
+
+
+def _place_carried(b: Builder, rig: GuideLayout, rail: str, lift: float, standing: Scene) -> str:
+    """What hangs on the guide, from the carriage to the platform, with that array; returns the platform."""
+    design = rig.design
+    b.group("axis")
+    b.unit("vertical axis")
+    front = BAR_FRONT + rig.bar
+    zc = rig.carriage_middle + lift
+    carriage = b.place("CG", rigs.carriage(), (0, front + RAIL_HEIGHT, zc - CARRIAGE_LENGTH / 2), ALONG_RAIL)
+    b.meet(rail, carriage)
+    b.step(
+        "Carriage",
+        (0, -85, 200),
+        "Slide the carriage from its transport rail on the guide, from above, seals taken off, one drop of "
+        "thin oil, and let it down on the end stop. Keep the transport rail.",
+    )
+    foot = b.place("FO", rigs.foot(rig), (0, 0, rig.foot_bottom + lift))
+    bar = b.place("BR", rigs.bar(rig), (0, BAR_FRONT, rig.bar_bottom + lift), ALONG_Y)
+    b.meet(foot, bar)
+    for sx in (-1, 1):
+        at = (sx * BAR_SCREW_X, rig.bar_middle, rig.bar_bottom + lift - FOOT_UNDER_HEAD)
+        b.screw("M4", 10.0, at, (0, 0, 1), foot, bar)
+    b.step(
+        "Foot and bar",
+        (0, -140, 0),
+        "On the bench: screw the foot under the bar, from below, square within 0.02 mm.",
+        bench=True,
+    )
+    b.subassembly(standing, UPRIGHT, (0, 0, rig.array_z + lift))
+    b.meet("CA1", foot)
+    for x, y in carrier_pattern(rig.array):
+        at = (x, y, rig.foot_bottom + lift + under_carrier_screw(rig.design))
+        b.screw(design.clamp.mount_thread, carrier_screw_length(design), at, (0, 0, -1), foot, "CA1")
+    b.step(
+        "Array under the foot",
+        (0, -140, -35),
+        "Screw the finished array (its own guide) under the foot. Leads leave along x in a loose loop to "
+        "the post.",
+        elements=True,
+    )
+    for sx in (-1, 1):
+        for sy in (-1, 1):
+            at = (sx * 7.5, front - BAR_UNDER_HEAD, rig.bar_bottom + lift + rig.carriage_on_bar + sy * 5.0)
+            b.screw("M3", 6.0, at, (0, 1, 0), bar, carriage)
+    b.meet(bar, carriage)
+    b.step(
+        "Bar on the carriage",
+        (0, -160, 0),
+        "Lift the carriage and set the latch under it, in the inner of its holes. Screw the bar on the "
+        "carriage. Take the sample off and lay a flat plate of its thickness on the lid in its place. Hold "
+        "the bar, put the latch back in its outer hole, and lower the array by hand on the plate: no light "
+        "may show under any pad; the signal of each element tells the rest. A tilt of "
+        f"{design.tolerance.tilt:g} degree is allowed, shim under the foot. Then lift it on the latch again; "
+        "it stays there until the weights.",
+        tools=("flat plate, as thick as the sample",),
+    )
+    b.unit("platform with weights")
+    under = PLATFORM_UNDER_HEAD
+    z = rig.platform_top + lift
+    platform = b.place("PF", rigs.platform(rig), (0, 0, z - PLATFORM))
+    b.meet(bar, platform)
+    for sx in (-1, 1):
+        b.screw(
+            "M4", 10.0, (sx * BAR_SCREW_X, rig.bar_middle, z - PLATFORM + under), (0, 0, -1), platform, bar
+        )
+    b.step("Platform", (0, 0, 250), "Screw the platform on the bar, heads sunk.")
+    return platform
 
 
 RIG = Rig(

@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-from tactcad.design.present import present
+from tactcad.design.fields import present
 from tactcad.design.tree import Design
-from tactcad.parts.rigs.cart_layout import cart_layout
-from tactcad.parts.rigs.stand_layout import StandLayout
+from tactcad.parts.rigs.cart import cart_layout
+from tactcad.parts.rigs.stand import StandLayout
 from tactcad.parts.rigs.stiffness import sample_lines
 from tactcad.parts.rules.grasping_rules import SAMPLE_FITS
 
 from ..builder import Builder
-from ..common import AXIS_LIFT, JAM_SPANNER, place_cart, place_force_axis, place_stand
 from ..rig import Rig, none
 from ..rig_requirements import wheels
 from ..scene import REST, Motion, Pose, Scene
+from ..shared_rigs import AXIS_LIFT, JAM_SPANNER, place_cart, place_force_axis, place_stand
 
 
 def sample_stiffness(design: Design, pose: Pose = REST) -> Scene:

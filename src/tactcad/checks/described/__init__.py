@@ -1,0 +1,1 @@
+"""Checks of a design and of parts as they are described: no CAD kernel."""

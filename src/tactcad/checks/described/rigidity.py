@@ -1,0 +1,53 @@
+"""Whether every part of the array and its rigs that is taken as rigid bends as little as it may.
+
+Rigs' rules (parts/rules/stiffness_remedy.py) use the same lines and leave the scene out that fails here; so
+flags remain.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+
+from tactcad.design.tree import Design
+from tactcad.parts.array.stiffness_table import Deflection
+from tactcad.parts.language.finding import Finding
+from tactcad.parts.rules.stiffness_remedy import remedy
+from tactcad.scenes.rig import all_rigs, rig_of
+
+from ..check import Check
+
+
+def deflections(design: Design, scenes: Collection[str]) -> tuple[Deflection, ...]:
+    """The stiffness table of a design: the lines of these scenes, all of which it must have."""
+    return tuple(
+        line
+        for name, rig in all_rigs(type(design)).items()
+        if name in scenes
+        for line in rig.deflections(design)
+    )
+
+
+def check_rigidity(design: Design, scenes: Collection[str], table: list[Deflection]) -> list[Finding]:
+    """Findings on the lines that give way by more than is allowed; all lines into `table`."""
+    table += deflections(design, scenes)
+    return [
+        Finding("deflection", line.severity, line.part, (), line.gives, line.allowed, _message(design, line))
+        for line in table
+        if line.too_much
+    ]
+
+
+def _message(design: Design, line: Deflection) -> str:
+    path, value, legal = remedy(design, line, rig_of(design, line.scene).deflections)
+    return f"{line} ({path} = {value:g}; legal: {legal})"
+
+
+CHECKS = (
+    Check(
+        "rigidity",
+        "design",
+        lambda design, job: check_rigidity(design, job.names, job.deflections),
+        place=30,
+        quick=True,
+    ),
+)

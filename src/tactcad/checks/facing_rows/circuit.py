@@ -1,0 +1,171 @@
+"""Whether the circuit reads what it is to read: every gauge in one bridge, the rules on what reads it,
+signals in range that tell the force which the design wishes for.
+
+The rules (parts/rules/readout_rules.py) refuse a design that fails here; the netlist is looked at as it is
+written.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator
+
+from tactcad.checks.check import Check
+from tactcad.circuit.bridges import EXCITATION, netlist
+from tactcad.circuit.element_signals import element_signals
+from tactcad.circuit.netlist import GROUND, Component, Kind, Netlist
+from tactcad.design.tree import Design
+from tactcad.parts.array.hinge_section import design_readout
+from tactcad.parts.array.layout import Layout
+from tactcad.parts.language.finding import Finding
+from tactcad.parts.rules.gauge_rules import leads_have_room
+from tactcad.parts.rules.readout_rules import (
+    boards_have_inputs,
+    bridge_stays_in_range,
+    gauge_bears_power,
+    inputs_within_common_mode,
+    leads_are_relieved,
+    switching_settles,
+)
+
+
+def check_circuit(design: Design) -> Iterator[Finding]:
+    """Findings on the array's netlist, and on its bridges, inputs, power, times and leads."""
+    layout = Layout(design)
+    circuit = netlist(layout)
+    yield from check_bridges(circuit)
+    yield from check_inputs(circuit)
+    for check, rule in (
+        ("channels", boards_have_inputs),
+        ("bridge-balance", bridge_stays_in_range),
+        ("common-mode", inputs_within_common_mode),
+        ("gauge-power", gauge_bears_power),
+        ("settling", switching_settles),
+        ("lead-room", leads_have_room),
+        ("strain-relief", leads_are_relieved),
+    ):
+        for f in rule(layout):
+            message = f"{f.message} ({f.part} = {f.value}; legal: {f.limit})"
+            yield Finding(check, "fail", design.name, (), f.value, f.limit, message)
+
+
+def check_bridges(circuit: Netlist) -> Iterator[Finding]:
+    """A failure for every gauge that is not in just one whole bridge, whose outputs are one channel's."""
+    joined = _joined_by_leads(circuit)
+    arms, pairs = _arms(circuit, joined), _channels(circuit, joined)
+    found: Counter[str] = Counter()
+    for switch in circuit.of_kind("switch"):
+        found.update(_gauges_of_bridge(arms, pairs, joined[switch.net("drain")]))
+    for gauge in circuit.of_kind("gauge"):
+        count = found[gauge.designator]
+        if count != 1:
+            message = f"gauge {gauge.designator} of E{gauge.element} is in {count} bridges that are read"
+            yield Finding("one-bridge", "fail", gauge.designator, (), count, 1, message)
+
+
+def check_inputs(circuit: Netlist) -> Iterator[Finding]:
+    """A failure for every multiplexer that leaves its amplifier's inputs without a way for their bias
+    currents at some address, or while it is not enabled; all switches open."""
+    fed = _fed(circuit)
+    supplies = {net for net, _ in circuit.supplies}
+    for part in circuit.of_kind("multiplexer"):
+        floating = [p.role for p in part.pins if p.role.startswith("S") and p.net not in fed]
+        cut_off = part.net("enable") not in supplies
+        if cut_off or floating:
+            when = f"{part.net('enable')} is low" if cut_off else f"{floating[0]} is addressed"
+            amplifier = circuit.on_board("amplifier", part.board).designator
+            message = f"the inputs of {amplifier} float while {when}"
+            yield Finding("floating-input", "fail", part.designator, (), len(floating), 0, message)
+
+
+def _fed(circuit: Netlist) -> set[str]:
+    """Nets that resistors, gauges and leads join to the bridges' supply or to ground."""
+    beside: dict[str, set[str]] = {}
+    kinds: tuple[Kind, ...] = ("resistor", "gauge", "lead")
+    for kind in kinds:
+        for component in circuit.of_kind(kind):
+            a, b = component.net("1"), component.net("2")
+            beside.setdefault(a, set()).add(b)
+            beside.setdefault(b, set()).add(a)
+    reached, new = set[str](), {EXCITATION, GROUND}
+    while new:
+        reached |= new
+        new = {net for at in new for net in beside.get(at, ())} - reached
+    return reached
+
+
+def _joined_by_leads(circuit: Netlist) -> dict[str, str]:
+    """One name for all nets that leads and terminals join."""
+    parent = {net: net for net in circuit.nets}
+
+    def root(net: str) -> str:
+        while parent[net] != net:
+            net = parent[net]
+        return net
+
+    for lead in circuit.of_kind("lead"):
+        parent[root(lead.net("2"))] = root(lead.net("1"))
+    return {net: root(net) for net in parent}
+
+
+Arms = dict[str, dict[str, list[Component]]]
+
+
+def _arms(circuit: Netlist, joined: dict[str, str]) -> Arms:
+    """Resistors and gauges by the nets at their two ends, either way round."""
+    arms: Arms = {}
+    for component in (*circuit.of_kind("resistor"), *circuit.of_kind("gauge")):
+        first, second = (joined[component.net(role)] for role in "12")
+        for a, b in ((first, second), (second, first)):
+            arms.setdefault(a, {}).setdefault(b, []).append(component)
+    return arms
+
+
+def _channels(circuit: Netlist, joined: dict[str, str]) -> set[frozenset[str]]:
+    """The two nets of every channel of the multiplexers."""
+    pairs: dict[tuple[str, str], set[str]] = {}
+    for multiplexer in circuit.of_kind("multiplexer"):
+        for pin in multiplexer.pins:
+            if pin.role.startswith("S"):
+                pairs.setdefault((multiplexer.designator, pin.role[:-1]), set()).add(joined[pin.net])
+    return set(map(frozenset, pairs.values()))
+
+
+def _gauges_of_bridge(arms: Arms, pairs: set[frozenset[str]], foot: str) -> list[str]:
+    """Gauges among the four arms between the bridges' supply and a switch; none where there are other than
+    four, their middles carry others too, or are no channel's pair."""
+    upper, lower = arms.get(EXCITATION, {}), arms.get(foot, {})
+    middles = [net for net in lower if net in upper]
+    around = [c for net in middles for c in (*upper[net], *lower[net])]
+    ends = sum(len(found) for net in middles for found in arms[net].values())
+    if len(middles) != 2 or len(around) != 4 or ends != 4 or frozenset(middles) not in pairs:
+        return []
+    return [c.designator for c in around if c.kind == "gauge"]
+
+
+def check_signals(design: Design) -> Iterator[Finding]:
+    """Failures by element. Raises CheckFailure where one is out of the estimator's range."""
+    layout, chain, wish = Layout(design), design_readout(design), design.readout.force_resolution
+    for signal in element_signals(layout):
+        who = signal.place.designator
+        for load, (low, high) in (("rated force", signal.rated), ("overload", signal.overload)):
+            if low < chain.lowest or high > chain.highest:
+                message = (
+                    f"at the {load} its output reaches {low:.3g} or {high:.3g} V, tolerances at their worst; "
+                    f"amplifier and converter take {chain.lowest:.3g} to {chain.highest:.3g}"
+                )
+                yield Finding("signal-range", "fail", who, (), max(-low, high), chain.highest, message)
+                break
+        told = signal.resolution * 1e3
+        if wish is not None and told > wish:
+            message = (
+                f"tells no less than {told:.3g} mN from none (noise, quantisation, drift); "
+                f"readout.force_resolution asks for {wish:g} mN"
+            )
+            yield Finding("force-resolution", "fail", who, (), told, wish, message)
+
+
+CHECKS = (
+    Check("circuit", "design", lambda design, _: check_circuit(design), place=50, quick=True),
+    Check("signals", "design", lambda design, _: check_signals(design), place=60, quick=True),
+)

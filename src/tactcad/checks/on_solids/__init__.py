@@ -1,0 +1,1 @@
+"""Checks of solids, made by the CAD kernel."""

@@ -1,0 +1,254 @@
+"""The netlist's files: as KiCad reads it (S-expressions, version E, as eeschema of KiCad 6 and later writes
+them), as a SPICE deck, as a list of leads, and as a table of pins.
+
+The deck is for ngspice: every element is read in turn, and the deck prints its bridge's and its amplifier's
+output. Switches are resistors, open at OPEN; an amplifier is its gain behind a resistor without current whose
+Johnson noise is the amplifier's own, and one pole at its bandwidth. Logic is left out: the deck's commands
+close the switches as the decoder would.
+
+The list of leads runs from terminal to connector: colour, gauge of wire, cut length, bundle.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, fields
+from math import pi
+from uuid import NAMESPACE_OID, uuid5
+
+from tactcad.parts.array.layout import Layout
+from tactcad.parts.array.leads import colours
+
+from .bridges import EXCITATION
+from .netlist import Component, Netlist
+
+PASSIVE = ("lead", "terminal", "gauge", "resistor", "capacitor", "connector")
+Expression = str | tuple
+
+
+def kicad_bytes(netlist: Netlist, title: str, company: str | None, date: str, revision: str) -> bytes:
+    """The file (UTF-8); `date` of issue, so that equal designs give equal bytes."""
+    # with all that eeschema writes there: readers ask for it
+    comments = (("comment", ("number", str(i)), ("value", "")) for i in range(1, 10))
+    texts = (
+        ("title", title),
+        ("company", *([company] if company else [])),
+        ("rev", revision),
+        ("date", date),
+        ("source", netlist.name),
+    )
+    block = ("title_block", *texts, *comments)
+    sheet = ("sheet", ("number", "1"), ("name", "/"), ("tstamps", "/"), block)
+    head = ("design", ("source", netlist.name), ("date", date), ("tool", "tactcad"), sheet)
+    kinds = {c.part_no: c for c in reversed(netlist.components)}
+    parts = tuple(_part(kinds[name]) for name in sorted(kinds))
+    nets = tuple(
+        (
+            "net",
+            ("code", str(code)),
+            ("name", f"/{name}"),
+            *(
+                ("node", ("ref", c.designator), ("pin", pin.number), ("pinfunction", pin.role))
+                for c, pin in nodes
+            ),
+        )
+        for code, (name, nodes) in enumerate(sorted(netlist.nets.items()), start=1)
+    )
+    components = tuple(_component(netlist, c) for c in netlist.components)
+    whole = (
+        "export",
+        ("version", "E"),
+        head,
+        ("components", *components),
+        ("libparts", *parts),
+        ("libraries",),
+        ("nets", *nets),
+    )
+    return (_text(whole, 0) + "\n").encode()
+
+
+def _component(netlist: Netlist, c: Component) -> Expression:
+    own = str(uuid5(NAMESPACE_OID, f"{netlist.name}/{c.designator}"))
+    return (
+        "comp",
+        ("ref", c.designator),
+        ("value", c.value),
+        ("fields", ("field", ("name", "part_no"), c.part_no)),
+        ("libsource", ("lib", "tactcad"), ("part", c.part_no), ("description", c.kind)),
+        ("sheetpath", ("names", "/"), ("tstamps", "/")),
+        ("tstamps", own),
+    )
+
+
+def _part(c: Component) -> Expression:
+    kind = "passive" if c.kind in PASSIVE else "unspecified"
+    # a connector's pins by number: what is on them differs from board to board
+    names = (p.number if c.kind == "connector" else p.role for p in c.pins)
+    pins = tuple(("pin", ("num", p.number), ("name", name), ("type", kind)) for p, name in zip(c.pins, names))
+    return ("libpart", ("lib", "tactcad"), ("part", c.part_no), ("description", c.kind), ("pins", *pins))
+
+
+def _text(expression: Expression, depth: int) -> str:
+    """Lists that hold no list of lists stand on one line; words after the first are quoted."""
+    if isinstance(expression, str):
+        return '"' + expression.replace("\\", "\\\\").replace('"', '\\"') + '"'
+    head, *rest = expression
+    if any(isinstance(r, tuple) and any(isinstance(x, tuple) for x in r) for r in rest):
+        inner = "".join(f"\n{'  ' * (depth + 1)}{_text(r, depth + 1)}" for r in rest)
+        return f"({head}{inner})"
+    return f"({' '.join([head, *(_text(r, depth) for r in rest)])})"
+
+
+OPEN = 1e12  # ohm of an open switch; chosen: a millionth of a microvolt at a bridge
+POLE_OHM = 1e3  # of the amplifier's pole; chosen: its own noise is nothing behind a gain
+FOUR_K_T = 4 * 1.380649e-23 * 300.15  # J, at SPICE's 27 C
+WITHOUT_LINES = ("terminal", "decoder", "connector")
+
+
+def deck_bytes(netlist: Netlist) -> bytes:
+    """The deck that reads every element once: lines `E7 output`, with the bridge and the amplifier in V."""
+    return deck(netlist, list(reading(netlist))).encode()
+
+
+def deck(netlist: Netlist, commands: Sequence[str]) -> str:
+    """The circuit with all switches open, and commands of ngspice for it."""
+    lines = [f"* {netlist.name}: run with ngspice -b", f"VEXC {EXCITATION} 0 {netlist.excitation!r} AC 1"]
+    lines += [f"V{rail} {rail} 0 {volts!r}" for rail, volts in netlist.supplies]
+    for component in netlist.components:
+        lines += _lines(component)
+    return "\n".join([*lines, ".control", "set numdgt=13", *commands, ".endc", ".end", ""])
+
+
+def reading(netlist: Netlist) -> Iterator[str]:
+    """Commands that read every element: its bridge's output and the amplifier's."""
+    for gauge in netlist.of_kind("gauge"):
+        b, n = gauge.board, gauge.element
+        amplifier = netlist.on_board("amplifier", b)
+        yield from closed(netlist, n)
+        yield "op"
+        yield f"let bridge{n} = v({_node(amplifier.net('plus'))}) - v({_node(amplifier.net('minus'))})"
+        yield f"let output{n} = v({_node(amplifier.net('out'))})"
+        yield f"print bridge{n} output{n}"
+        yield from closed(netlist, n, OPEN)
+
+
+def closed(netlist: Netlist, element: int, ohm: float | None = None) -> Iterator[str]:
+    """Commands that close the switches of one element; opens them where `ohm` is OPEN."""
+    switch = netlist.of_element("switch", element)
+    multiplexer = netlist.on_board("multiplexer", switch.board)
+    channel = channel_of(multiplexer, element)
+    yield f"alter RQ{element} = {switch.figure('ohm') if ohm is None else ohm!r}"
+    for side in "AB":
+        on = multiplexer.figure("ohm") if ohm is None else ohm
+        yield f"alter R{multiplexer.designator}S{channel}{side} = {on!r}"
+
+
+def channel_of(multiplexer: Component, element: int) -> int:
+    """The channel, from 1, that an element's bridge is on."""
+    return next(
+        int(p.role[1:-1]) for p in multiplexer.pins if p.net == f"E{element}_PLUS" and p.role.startswith("S")
+    )
+
+
+def _node(net: str) -> str:
+    return "0" if net == "GND" else net.lower()
+
+
+def _lines(c: Component) -> list[str]:
+    """The component's lines of the deck."""
+    if c.kind in WITHOUT_LINES:
+        return []
+    if c.kind == "switch":
+        return [f"RQ{c.element} {_node(c.net('drain'))} {_node(c.net('source'))} {OPEN!r}"]
+    if c.kind == "capacitor":
+        return [f"{c.designator} {_node(c.net('1'))} {_node(c.net('2'))} {c.figure('farad')!r}"]
+    if c.kind == "multiplexer":
+        ends = {side: _node(c.net(f"out_{side.lower()}")) for side in "AB"}
+        channels = [pin for pin in c.pins if pin.role[0] == "S"]
+        return [f"R{c.designator}{p.role} {_node(p.net)} {ends[p.role[-1]]} {OPEN!r}" for p in channels]
+    if c.kind == "amplifier":
+        inner, name = c.designator.lower(), c.designator
+        noise = c.figure("noise") ** 2 / FOUR_K_T
+        farad = 1 / (2 * pi * POLE_OHM * c.figure("bandwidth"))
+        out = _node(c.net("out"))
+        set_by = {pin.net for pin in c.pins if pin.role.startswith("rg") and pin.net}
+        return [
+            *(f"R{name}{net} {_node(net)} 0 {OPEN!r}" for net in sorted(set_by)),  # none floats
+            f"R{name}N {_node(c.net('plus'))} {inner}n {noise!r}",
+            f"E{name} {inner}e {_node(c.net('ref'))} {inner}n {_node(c.net('minus'))} {c.figure('gain')!r}",
+            f"R{name}P {inner}e {out} {POLE_OHM!r}",
+            f"C{name}P {out} 0 {farad!r}",
+        ]
+    first, second = (_node(c.net(role)) for role in "12")
+    return [f"R{c.designator} {first} {second} {c.figure('ohm')!r}"]
+
+
+@dataclass(frozen=True)
+class Lead:
+    """One lead. `start` and `end` as designator and pin; length mm as cut; `bundle` by its board's number."""
+
+    designator: str
+    element: int
+    start: str
+    end: str
+    colour: str
+    wire: str
+    length: float
+    bundle: int
+
+
+LEADS = {"designator": "lead", "start": "from", "end": "to", "length": "cut_length_mm"}
+
+
+def wiring(layout: Layout, circuit: Netlist) -> tuple[Lead, ...]:
+    """Every lead of the array and its circuit, by board and channel."""
+    return tuple(_lead(layout, circuit, c) for c in circuit.of_kind("lead"))
+
+
+def _lead(layout: Layout, circuit: Netlist, c: Component) -> Lead:
+    at_gauge, at_board = c.net("1"), c.net("2")
+    return Lead(
+        c.designator,
+        c.element,
+        _place(circuit, at_gauge, "terminal"),
+        _place(circuit, at_board, "connector"),
+        colours(layout)[int(c.designator[1:]) % 10 - 1],
+        layout.design.wiring.wire,
+        c.figure("mm"),
+        c.board,
+    )
+
+
+def _place(circuit: Netlist, net: str, kind: str) -> str:
+    """The one terminal or connector pin on a net."""
+    ((component, pin),) = [node for node in circuit.nets[net] if node[0].kind == kind]
+    return f"{component.designator}.{pin.number}"
+
+
+def wiring_csv(leads: Sequence[Lead]) -> bytes:
+    """The list (RFC 4180, UTF-8)."""
+    text = io.StringIO(newline="")
+    writer = csv.writer(text)
+    names = [f.name for f in fields(Lead)]
+    writer.writerow([LEADS.get(name, name) for name in names])
+    for lead in leads:
+        values = (getattr(lead, name) for name in names)
+        writer.writerow([f"{v:g}" if isinstance(v, float) else v for v in values])
+    return text.getvalue().encode()
+
+
+PINS = ("designator", "pin", "role", "net", "kind", "value", "part_no", "element", "board")
+
+
+def netlist_csv(netlist: Netlist) -> bytes:
+    """The table (RFC 4180, UTF-8), components in the netlist's order; an open pin's net is blank."""
+    text = io.StringIO(newline="")
+    writer = csv.writer(text)
+    writer.writerow(PINS)
+    for c in netlist.components:
+        for pin in c.pins:
+            where = (c.element or "", c.board or "")
+            writer.writerow((c.designator, pin.number, pin.role, pin.net, c.kind, c.value, c.part_no, *where))
+    return text.getvalue().encode()

@@ -1,0 +1,257 @@
+"""Rigid pads that sink and tilt, pressed on an elastic body: which parts touch, and the force on each pad.
+
+Each pad is cut into patches of even pressure, finer toward its edges, where a rigid punch presses without
+bound. A pad gives way by its compliance: sink (mm) and slopes along x and y under a force (N) and its moments
+(N mm) about the pad's middle. Force f of every patch and gap g between patch and face obey f >= 0, g >= 0,
+f g = 0 with
+
+    g = C f + (pads' own giving way) + height + inclination - approach,
+
+which has one solution, since the compliances are positive definite. A pad that reaches its stop sinks no
+further.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+from math import inf, radians, tan
+
+import numpy as np
+from scipy.linalg import cho_factor, cho_solve
+from scipy.optimize import nnls
+
+from tactcad.design.messages import InputError
+
+from .elastic_body import Body, influence
+
+# A side of a pad: a round punch on a layer is 0.07 to 0.18 % soft by Hayes' equation (with 8: 0.3 to 0.8 %).
+PATCHES = 12
+GRADING = 2.0  # power toward the edges; 3 and 4 are as good on thick layers, and 1 to 16 % off on thin ones
+THINNEST = 0.25  # of the root of a pad's area: thinner layers want more patches, 0.4 % at 0.17
+
+
+@dataclass(frozen=True)
+class Pads:
+    """Rigid pads, each on a spring of its own.
+
+    x, y        middles, mm, [pad]
+    length      along x, mm
+    width       along y, mm; a disc's diameter is its length and width
+    compliance  of each pad, [pad, 3, 3]: from force (N) and its moments (N mm) along x and y to sink (mm) and
+                slopes
+    height      how far each stands back from the plane of the highest, mm, [pad]
+    stop        sink at which each is stopped, mm, [pad]; inf without
+    disc        round pads
+    """
+
+    x: np.ndarray
+    y: np.ndarray
+    length: float
+    width: float
+    compliance: np.ndarray
+    height: np.ndarray
+    stop: np.ndarray
+    disc: bool = False
+
+
+@dataclass(frozen=True)
+class Pressed:
+    """Pads pressed on a body.
+
+    approach  of the array toward the body since the plane of its pads met the body's middle, mm
+    force     on each pad, N, [pad]
+    sink      of each pad's middle, mm, [pad]
+    slope     of each pad along x and y, [pad, 2]
+    contact   share of each pad's area that presses, [pad]
+    stopped   pads that stand on their stops, [pad]
+    patches   x, y, sides along x and y (mm) of every patch, and its force (N), [5, pad, patch]
+    """
+
+    approach: float
+    force: np.ndarray
+    sink: np.ndarray
+    slope: np.ndarray
+    contact: np.ndarray
+    stopped: np.ndarray
+    patches: np.ndarray
+
+
+@lru_cache(maxsize=16)
+def patches(length: float, width: float, disc: bool) -> np.ndarray:
+    """x, y and sides of one pad's patches about its middle, mm, [4, patch]; a disc's rows have its area."""
+    number = PATCHES
+    t = np.linspace(-1, 1, number + 1)
+    edges = np.sign(t) * (1 - (1 - np.abs(t)) ** GRADING) / 2
+    middle, side = (edges[1:] + edges[:-1]) / 2, np.diff(edges)
+    y, b = np.repeat(middle, number), np.repeat(side, number)
+    below = edges * np.sqrt(np.maximum(1 - 4 * edges**2, 0.0)) / 2 + np.arcsin(2 * edges) / 4  # a disc's area
+    chord = np.repeat(np.diff(below), number) / b if disc else 1.0
+    x, a = np.tile(middle, number) * chord, np.tile(side, number) * chord
+    return np.array([x * length, y * width, a * length, b * width])
+
+
+class PadsOnBody:
+    """The pads on one body, set up once: then `press` as often as wanted.
+
+    Raises
+    ------
+    InputError
+        A layer thinner than THINNEST.
+    """
+
+    def __init__(self, pads: Pads, body: Body) -> None:
+        self.pads, self.body = pads, body
+        least = THINNEST * (pads.length * pads.width) ** 0.5
+        if body.thickness < least:
+            raise InputError(
+                "object thickness",
+                "too thin for this rung",
+                value=body.thickness,
+                legal=f"at least {least:.3g} mm, a quarter of a pad's side",
+            )
+        one = patches(pads.length, pads.width, pads.disc)
+        n, m = len(pads.x), one.shape[1]
+        self.at = np.empty((4, n, m))
+        self.at[0], self.at[1] = pads.x[:, None] + one[0], pads.y[:, None] + one[1]
+        self.at[2:] = one[2:, None, :]
+        # pads are alike, so a block of the face's compliance follows from how far apart they are
+        apart = np.stack([pads.x[:, None] - pads.x, pads.y[:, None] - pads.y], axis=-1).reshape(-1, 2)
+        places, which = np.unique(np.round(apart, 9), axis=0, return_inverse=True)
+        blocks = np.array(
+            [influence(body, (one[0] + dx, one[1] + dy, *one[2:]), tuple(one)) for dx, dy in places]
+        )
+        self.face = blocks[which.ravel()].reshape(n, n, m, m).swapaxes(1, 2).reshape(n * m, n * m)
+        self.modes = np.stack(
+            [np.ones(m), one[0], one[1]]
+        )  # sink and slopes to displacement of a patch, [3, patch]
+
+    def press(
+        self,
+        load: float | None = None,
+        approach: float | None = None,
+        angle: tuple[float, float] = (0.0, 0.0),
+        modulus: float | None = None,
+    ) -> Pressed:
+        """Press by a total force (N) or by an approach (mm).
+
+        Parameters
+        ----------
+        load, approach
+            One of them.
+        angle
+            Inclination of the face along x and along y, degrees: positive where it falls away toward +x, +y.
+        modulus
+            Of the body, MPa, instead of its own.
+
+        Raises
+        ------
+        InputError
+            No load or approach above zero.
+        """
+        given = approach if load is None else load
+        if given is None or not 0 < given < inf:
+            what = "approach" if load is None else "load"
+            raise InputError(what, "out of range", value=given, legal="above 0")
+        soft = 1.0 if modulus is None else self.body.modulus / modulus
+        n, m = self.at.shape[1:]
+        back = (
+            self.pads.height[:, None]
+            + self.at[0] * tan(radians(angle[0]))
+            + self.at[1] * tan(radians(angle[1]))
+        )
+        stopped = np.zeros(n, bool)
+        for _ in range(4 * n + 4):
+            result, held = self._with_stops(soft, back, stopped, load, approach)
+            beyond = ~stopped & (result.sink > self.pads.stop * (1 + 1e-12))
+            free = stopped & (held < 0)
+            if not beyond.any() and not free.any():
+                return result
+            stopped = (stopped | beyond) & ~free
+        raise RuntimeError("stops neither close nor open")
+
+    def _with_stops(
+        self, soft: float, back: np.ndarray, stopped: np.ndarray, load: float | None, approach: float | None
+    ) -> tuple[Pressed, np.ndarray]:
+        """Contact with the given pads on their stops, and the force of each stop (N)."""
+        n, m = back.shape
+        D = self.pads.compliance.copy()
+        lever = D[:, :, 0] / D[:, :1, 0]  # how a pad moves where its middle sinks by 1
+        fixed = np.where(stopped, self.pads.stop, 0.0)[:, None] * lever
+        D[stopped] -= lever[stopped][:, :, None] * D[stopped][:, :1, :]
+        M = self.face * soft
+        for i in range(n):
+            block = slice(i * m, (i + 1) * m)
+            M[block, block] += self.modes.T @ D[i] @ self.modes
+        gap = (back + np.where(stopped[:, None], fixed @ self.modes, 0.0)).ravel()
+        f, at = _complementary(M, gap, load, approach)
+        f = f.reshape(n, m)
+        generalised = f @ self.modes.T  # force and moments of each pad
+        motion = np.einsum("nij,nj->ni", D, generalised) + fixed
+        area = self.at[2] * self.at[3]
+        # what the pad's own spring does not bear at its stop's sink
+        held = np.einsum("ni,ni->n", lever, generalised) - self.pads.stop / self.pads.compliance[:, 0, 0]
+        result = Pressed(
+            at,
+            generalised[:, 0],
+            motion[:, 0],
+            motion[:, 1:],
+            (area * (f > 0)).sum(1) / area.sum(1),
+            stopped,
+            np.concatenate([self.at, f[None]]),
+        )
+        return result, np.where(stopped, held, 0.0)
+
+
+def _complementary(
+    M: np.ndarray, gap: np.ndarray, load: float | None, approach: float | None
+) -> tuple[np.ndarray, float]:
+    """f >= 0 with M f + gap - approach >= 0 and one of them zero; the approach where the load is given.
+
+    Patches in tension leave, patches that overlap come back, until neither is left; should that go in
+    circles, by non-negative least squares.
+    """
+    n = len(gap)
+    active = np.ones(n, bool)
+    seen = set()
+    while (key := active.tobytes()) not in seen and active.any():
+        seen.add(key)
+        rows = np.flatnonzero(active)
+        factor = cho_factor(M[np.ix_(rows, rows)], lower=True, check_finite=False)
+        both = cho_solve(factor, np.column_stack([np.ones(len(rows)), gap[rows]]), check_finite=False)
+        at = (load + both[:, 1].sum()) / both[:, 0].sum() if approach is None else approach
+        f = np.zeros(n)
+        f[rows] = at * both[:, 0] - both[:, 1]
+        over = M[:, rows] @ f[rows] + gap - at  # gap that is left
+        wrong = 1e-12 * max(abs(at), 1e-300)
+        if (f[rows] >= 0).all() and (over[~active] >= -wrong).all():
+            return f, float(at)
+        active = np.where(active, f > 0, over < 0)
+    return _by_least_squares(M, gap, load, approach)
+
+
+def _by_least_squares(
+    M: np.ndarray, gap: np.ndarray, load: float | None, approach: float | None
+) -> tuple[np.ndarray, float]:
+    upper = np.linalg.cholesky(M).T
+
+    def forces(at: float) -> np.ndarray:
+        return nnls(upper, np.linalg.solve(upper.T, at - gap))[0]
+
+    if approach is not None:
+        return forces(approach), approach
+    low, high = float(gap.min()), float(gap.min()) + 1.0
+    while forces(high).sum() < load:
+        high = gap.min() + 2 * (high - gap.min())
+    for _ in range(60):
+        middle = (low + high) / 2
+        low, high = (middle, high) if forces(middle).sum() < load else (low, middle)
+    return forces(high), high
+
+
+def pad_stiffness(
+    body: Body, length: float, width: float, disc: bool = False, number: int = PATCHES
+) -> float:
+    """Force on one rigid pad that does not tilt over its displacement, N/mm: K_obj of a body."""
+    C = influence(body, tuple(patches(length, width, disc)))
+    return float(np.linalg.solve(C, np.ones(len(C))).sum())

@@ -1,0 +1,96 @@
+"""Text as people write it, to plain values: numbers, TOML from untrusted sources, and the tables that ship.
+
+Python's own readers also take 4_0 as 40, and digits of every script; its parser of TOML may take minutes.
+"""
+
+from __future__ import annotations
+
+import csv
+import re
+import tomllib
+from math import isinf
+from pathlib import Path
+from typing import Any
+
+from .messages import InputError
+
+NINE_DIGITS = (
+    1e-8  # relative difference below which two numbers agree to nine digits, however the last was rounded
+)
+_WHOLE = re.compile(r"[+-]?[0-9]+")
+_NUMBER = re.compile(r"[+-]?(([0-9]+\.?[0-9]*|\.[0-9]+)(e[+-]?[0-9]+)?|nan|inf(inity)?)", re.IGNORECASE)
+
+
+def as_number(text: str) -> float:
+    """The number that a text stands for, with or without blanks around it. Raises ValueError where it is
+    none.
+    """
+    plain = text.strip(" \t")
+    if not _NUMBER.fullmatch(plain):
+        raise ValueError(f"not a number: {text!r}")
+    if isinf(value := float(plain)) and "n" not in plain.lower():  # 1e400: nobody asked for infinity
+        raise ValueError(f"beyond all numbers: {text!r}")
+    return value
+
+
+def as_whole(text: str) -> int:
+    """The whole number that a text stands for; as `as_number`."""
+    plain = text.strip(" \t")
+    if not _WHOLE.fullmatch(plain):
+        raise ValueError(f"not a whole number: {text!r}")
+    return int(plain)
+
+
+def filling_radius(radius: float, length: float) -> float:
+    """The fillet radius in a slot, mm, of numbers or arrays: exactly half its length where two fillets fill
+    it to nine digits (a full round).
+    """
+    full = abs(2 * radius - length) <= NINE_DIGITS * length
+    return full * (length / 2) + (1 - full) * radius
+
+
+def data_rows(path: Path) -> list[dict[str, str]]:
+    """The rows of a table, in its order."""
+    lines = path.read_text("utf-8").splitlines()
+    return list(csv.DictReader(line for line in lines if not line.startswith("#")))
+
+
+# Keys of our files have at most four names (element.override.N.hinge_thickness). Python's parser takes
+# minutes for keys of many thousand names, so keys of more than 16 are refused before it sees them. Comments
+# and strings are skipped: they may hold anything. The quantifiers are possessive, so the search is linear in
+# the length of the text.
+_LONG_KEY = re.compile(
+    r"""
+    \#[^\n]*+
+    | "{3} (?:[^"\\] | \\. | "{1,2}(?!"))*+ (?:"{3} | \\?\Z)
+    | '{3} (?:[^'] | '{1,2}(?!'))*+ (?:'{3} | \Z)
+    | (?P<long> (?<![\w-]) (?:(?:[\w-]++ | "(?:[^"\\\n]|\\.)*+" | '[^'\n]*+') [ \t]*+ \. [ \t]*+){16})
+    | "(?:[^"\\\n] | \\.)*+"?
+    | '[^'\n]*+'?
+    """,
+    re.VERBOSE | re.DOTALL,
+)
+
+
+def parse_toml(text: str, where: str) -> dict[str, Any]:
+    """The table that TOML text holds; `where` names the text in messages. Raises InputError where it is
+    not TOML.
+    """
+    text = text.replace("\r\n", "\n")
+    long = next((token for token in _LONG_KEY.finditer(text) if token["long"]), None)
+    if long:
+        line = text.count("\n", 0, long.start()) + 1
+        raise InputError(
+            f"{where}:{line}",
+            "a key of too many names",
+            value=long["long"],
+            legal="names joined by at most 3 dots",
+        )
+    try:
+        return tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise InputError(where, f"is not TOML: {error}") from None
+    except RecursionError:
+        raise InputError(where, "nested too deeply", legal="tables at most 3 deep") from None
+    except ValueError as error:  # an impossible date, or an integer of thousands of digits
+        raise InputError(where, f"is not TOML: {error}") from None

@@ -1,1 +1,0 @@
-"""Sheets of the circuit: one channel, all channels, the leads' way, the leads."""

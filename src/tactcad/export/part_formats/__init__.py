@@ -1,0 +1,1 @@
+"""The formats that parts are exported in, found by `formats.part_formats`."""

@@ -1,0 +1,55 @@
+"""Facing rows of cantilevers, each with its hinge, gauge, pad and stop: the published array."""
+
+from __future__ import annotations
+
+from tactcad.design.family import (
+    Family,
+    FamilyEstimate,
+    FamilyPads,
+    FamilyReadings,
+    FamilyReadout,
+    FamilyStack,
+    Late,
+)
+from tactcad.design.tree import Design
+
+FAMILY = Family(
+    name="facing-rows",
+    spec=Design,
+    layout=Late("tactcad.parts.array.layout:Layout"),
+    about=Late("tactcad.release.readme:facing_rows"),
+    parts=Late("tactcad.parts.array.measurements:measurements"),
+    scenes="tactcad.scenes.rigs",
+    rules=Late("tactcad.parts.rules:design_rules"),
+    estimate=FamilyEstimate(
+        rows=Late("tactcad.lab.array_estimate:estimate"),
+        run=Late("tactcad.cli.estimate:estimate_design"),
+        golden=Late("tactcad.export.strength_table:elements"),
+        strength=Late("tactcad.export.strength_table:strength_bytes"),
+        strain=Late("tactcad.review.strain_field:strain_field"),
+    ),
+    plans={
+        "element": Late("tactcad.drawing.parts.element_plan:element_plan"),
+        "array": Late("tactcad.drawing.assemblies.arrangement:mounting"),
+    },
+    stack=FamilyStack(
+        limits=Late("tactcad.stacks.requirements:requirements"),
+        built=Late("tactcad.stacks.mechanic:Assembled"),
+        figures=Late("tactcad.stacks.virtual_build:element_figures"),
+        elements=Late("tactcad.stacks.virtual_build:elements_built"),
+    ),
+    pads=FamilyPads(places=Late("tactcad.lab.pads:pads_of"), springs=Late("tactcad.lab.pads:springs_of")),
+    readout=FamilyReadout(
+        netlist=Late("tactcad.circuit.bridges:netlist"),
+        wiring=Late("tactcad.circuit.netlist_files:wiring"),
+        sheets=Late("tactcad.drawing.circuit_sheets:circuit_written"),
+        signals=Late("tactcad.review.effect:signals"),
+    ),
+    readings=FamilyReadings(
+        load_cell=Late("tactcad.lab.load_cell:of_design"),
+        overload=Late("tactcad.lab.load_cell:overload"),
+        against=Late("tactcad.lab.column_units:against_design"),
+    ),
+    variables=Late("tactcad.synthesis.synthesise:design"),
+    checks="tactcad.checks.facing_rows",
+)

@@ -1,0 +1,174 @@
+"""An array pressed on an object: deflection, force and signal of every element, and R of every pair."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import inf, radians, tan
+
+import numpy as np
+
+from tactcad.contact import springs
+from tactcad.contact.elastic_body import Body
+from tactcad.contact.press import PATCHES, Pads, PadsOnBody, Pressed, pad_stiffness
+from tactcad.design.family import family_of
+from tactcad.design.messages import InputError
+from tactcad.design.tree import CommonTables
+from tactcad.mechanics import lumped
+from tactcad.report.figures import Figure, Figures
+
+# Relative error of the force on a pad, largest of the published punches on layers that tests hold it against.
+LAYER_ERROR = 0.004
+MOST_PATCHES = 14_400  # a hundred pads: a matrix of 1.7 GB
+SAME = 1e-6  # relative difference of stiffness below which two elements are no pair
+LARGEST_ANGLE = 30.0  # degrees; beyond it the inclined face's own sideways motion is no longer small
+
+
+@dataclass(frozen=True)
+class PressedElement:
+    """One element under the load."""
+
+    number: int
+    stiffness: float  # N/mm
+    deflection: float  # mm, of the pad's middle
+    force: float  # N, on its pad
+    signal: float  # V, change from no load
+    contact: float  # share of its pad's area that presses
+    touches: bool
+    stopped: bool
+
+
+ELEMENT = Figures(
+    PressedElement,
+    Figure("number", "no.", "", 1.0, "d"),
+    Figure("stiffness", "K", "N/mm", 1.0, ".4g"),
+    Figure("deflection", "deflection", "um", 1e3, ".4g"),
+    Figure("force", "force", "N", 1.0, ".4g"),
+    Figure("signal", "signal", "mV", 1e3, ".4g"),
+    Figure("contact", "contact", "%", 100.0, ".0f"),
+)
+
+
+@dataclass(frozen=True)
+class PressedPair:
+    """A measuring element against the reference: R, and the K_obj that equation (3) makes of it."""
+
+    measuring: int
+    reference: int
+    ratio: float
+    by_springs: float  # N/mm
+
+
+PAIR = Figures(
+    PressedPair,
+    Figure("measuring", "no.", "", 1.0, "d"),
+    Figure("reference", "to no.", "", 1.0, "d"),
+    Figure("ratio", "R", "", 1.0, ".4g"),
+    Figure("by_springs", "K_obj by eq. (3)", "N/mm", 1.0, ".4g"),
+)
+
+
+@dataclass(frozen=True)
+class PressedArray:
+    """By which rung, what was pressed how, K_obj under a single level pad (N/mm), and who felt what."""
+
+    rung: str
+    body: Body
+    load: float  # N
+    angle: tuple[float, float]  # degrees
+    approach: float  # mm
+    object_stiffness: float
+    elements: tuple[PressedElement, ...]
+    pairs: tuple[PressedPair, ...]
+    patches: np.ndarray | None  # of the pads' pressure, `Pressed.patches`; None by springs
+
+
+def press_array(
+    design: CommonTables,
+    body: Body,
+    load: float,
+    angle: tuple[float, float] = (0.0, 0.0),
+    rung: str = "layer",
+) -> PressedArray:
+    """Press an array on an object by a total load.
+
+    Parameters
+    ----------
+    design
+        A loaded design.
+    body
+        What is pressed.
+    load
+        On the whole array, N.
+    angle
+        Of the object's face, degrees: positive where it falls away toward +x, +y.
+    rung
+        "springs" or "layer".
+
+    Raises
+    ------
+    InputError
+        A load or angle out of range, a layer too thin, fewer than two pads that touch, too many pads.
+    CheckFailure
+        An element is out of the estimator's range.
+    """
+    if not 0 < load < inf:
+        raise InputError("--load", "out of range", value=load, legal="above 0 N, finite")
+    for a in angle:
+        if not abs(a) <= LARGEST_ANGLE:
+            legal = f"from -{LARGEST_ANGLE:g} to {LARGEST_ANGLE:g} degrees"
+            raise InputError("--angle", "out of range", value=a, legal=legal)
+    of = family_of(design).must("pads", "grasp")
+    number = of.places(design)[2]
+    pads, per_sink = of.springs(design)
+    alone = pad_stiffness(body, pads.length, pads.width, pads.disc)
+    K = 1 / pads.compliance[:, 0, 0]
+    pressed = (_on_springs if rung == "springs" else _on_layer)(pads, body, alone, load, angle)
+    if (touching := int((pressed.contact > 0).sum())) < 2:
+        raise InputError(
+            "--angle",
+            f"only {touching} of {len(number)} pads touches, so no pair tells anything",
+            value=f"{angle[0]:g},{angle[1]:g}",
+            legal="less inclined, or a larger --load",
+        )
+    elements = [
+        PressedElement(
+            number=int(number[i]),
+            stiffness=float(K[i]),
+            deflection=float(pressed.sink[i]),
+            force=float(pressed.force[i]),
+            signal=float(per_sink[i] * pressed.sink[i]),
+            contact=float(pressed.contact[i]),
+            touches=bool(pressed.contact[i] > 0),
+            stopped=bool(pressed.stopped[i]),
+        )
+        for i in np.argsort(number)
+    ]
+    touch = [e for e in elements if e.touches]
+    reference = max(touch, key=lambda e: e.stiffness)
+    softer = [e for e in touch if e.stiffness < reference.stiffness * (1 - SAME)]
+    pairs = tuple(_pair(e, reference) for e in softer)
+    shown = pressed.patches if rung == "layer" else None
+    return PressedArray(rung, body, load, angle, pressed.approach, alone, tuple(elements), pairs, shown)
+
+
+def _pair(measuring: PressedElement, reference: PressedElement) -> PressedPair:
+    ratio = measuring.deflection / reference.deflection
+    by_springs = float(lumped.object_stiffness(reference.stiffness, measuring.stiffness, ratio))
+    return PressedPair(measuring.number, reference.number, ratio, by_springs)
+
+
+def _on_layer(pads: Pads, body: Body, alone: float, load: float, angle: tuple[float, float]) -> Pressed:
+    most = MOST_PATCHES // PATCHES**2
+    if len(pads.x) > most:
+        raise InputError(
+            "--rung layer", "too many pads", value=len(pads.x), legal=f"at most {most}; --rung springs"
+        )
+    return PadsOnBody(pads, body).press(load=load, angle=angle)
+
+
+def _on_springs(pads: Pads, body: Body, alone: float, load: float, angle: tuple[float, float]) -> Pressed:
+    """Each pad alone, at its middle: it neither tilts nor feels the others."""
+    back = pads.height + pads.x * tan(radians(angle[0])) + pads.y * tan(radians(angle[1]))
+    approach, force, sink = springs.press(1 / pads.compliance[:, 0, 0], back, pads.stop, alone, load)
+    none = np.zeros((len(sink), 2))
+    return Pressed(approach, force, sink, none, (force > 0) * 1.0, sink >= pads.stop, np.empty((5, 0, 0)))

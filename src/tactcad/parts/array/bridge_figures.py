@@ -1,0 +1,136 @@
+"""Figures of the bridges and of what reads them, by closed forms: imbalance, voltages at the inputs,
+settling, drift. Volts, ohm, seconds.
+"""
+
+from __future__ import annotations
+
+from math import log, pi
+
+from tactcad.design.materials import leaf_conductivity
+from tactcad.design.sensing import AMPLIFIERS, MULTIPLEXERS, SWITCHES
+from tactcad.design.tree import Design
+from tactcad.mechanics import gauge_signal
+from tactcad.mechanics.gauge_signal import Heating, Power, leaf_resistance
+
+from ..bought.electronic_parts import completion_drift, completion_resistance
+from .hinge_section import design_gauge
+from .layout import Layout
+from .leads import longest_lead_resistance
+
+COPPER = 0.0039  # 1/K, annealed copper at 20 C, IEC 60028
+
+
+def bridge_signal(
+    design: Design, lead: float, x: float = 0.0, gauge: float = 0.0, arm: float = 0.0
+) -> tuple[float, float]:
+    """Voltages of a bridge's two outputs over ground while its switch is on: at the gauge, at the other side.
+
+    Parameters
+    ----------
+    design
+        Its nominal resistances, excitation and switch.
+    lead
+        Of each lead of the gauge, ohm.
+    x
+        dR/R of the gauge beyond its unloaded `bridge_offset`.
+    gauge, arm
+        Relative errors of resistance: of the gauge, and of the others, each in the direction that adds to a
+        positive one's.
+    """
+    r, nominal = design.readout, completion_resistance(design)
+    active = design.gauge.resistance * (1 + gauge) * (1 + r.bridge_offset + x)
+    beside, upper, lower = (nominal * (1 + e) for e in (-arm, arm, -arm))
+    three = r.connection == "three-wire"
+    active += lead if three else 2 * lead
+    beside += lead if three else 0.0
+    both = (active + beside) * (upper + lower) / (active + beside + upper + lower)
+    on = SWITCHES[r.switch].on_ohm
+    foot = r.excitation * on / (on + both)
+    over = r.excitation - foot
+    return foot + over * active / (active + beside), foot + over * lower / (upper + lower)
+
+
+def imbalance(design: Design, lead: float, arm: float) -> tuple[float, float]:
+    """Least and largest output of the amplifier with no load on any element, V.
+
+    Parameters
+    ----------
+    design, lead
+        As for `bridge_signal`.
+    arm
+        Tolerance of the completing resistances.
+    """
+    ends = [amplified(design, lead, 0.0, sign, arm) for sign in (-1.0, 1.0)]
+    return min(ends), max(ends)
+
+
+def amplified(design: Design, lead: float, x: float, sign: float, arm: float) -> float:
+    """The amplifier's output (V) at a dR/R of x, every tolerance at its worst in one direction (sign).
+
+    Parameters
+    ----------
+    design, lead, x
+        As for `bridge_signal`.
+    sign
+        1 or -1.
+    arm
+        Tolerance of the completing resistances.
+    """
+    gauge = sign * design.gauge.resistance_tolerance
+    plus, minus = bridge_signal(design, lead, x, gauge, sign * arm)
+    return design.readout.gain * (plus - minus + sign * AMPLIFIERS[design.readout.amplifier].offset)
+
+
+def settling_time(design: Design) -> float:
+    """From the address to an output within half the converter's step of a whole range, s: the multiplexer's
+    own time, then bridge and switches into the capacitances behind them, and the amplifier's pole."""
+    r = design.readout
+    amplifier, multiplexer = AMPLIFIERS[r.amplifier], MULTIPLEXERS[r.multiplexer]
+    side = max(completion_resistance(design), design.gauge.resistance) / 2 + multiplexer.on_ohm
+    tau = side * (multiplexer.output_capacitance + amplifier.input_capacitance)
+    tau += 1 / (2 * pi * amplifier.bandwidth(r.gain))
+    return multiplexer.settling + max(log(2.0 ** (r.adc_bits + 1)) * tau, amplifier.settling)
+
+
+def heating(layout: Layout) -> Heating:
+    """Of a gauge, at the end of a reading in the settled cycle."""
+    d = layout.design
+    return gauge_signal.switched(d.readout.excitation, design_gauge(d), power_of(layout))
+
+
+def power_of(layout: Layout) -> Power:
+    """What heats the design's gauges, on the leaf that carries heat away worst."""
+    d = layout.design
+    gauge, r, conducts = d.gauge, d.readout, leaf_conductivity(d.material.conductivity)
+    return Power(
+        gauge.resistance,
+        gauge.carrier_conductivity,
+        gauge.resistance_per_kelvin,
+        r.reference_mismatch,
+        r.on_time,
+        r.period,
+        max(leaf_resistance(p.hinge.l, p.hinge.t, d.sheet.thickness, conducts) for p in layout.elements),
+    )
+
+
+def drift(layout: Layout) -> float:
+    """By how much the amplifier's output drifts between zero and reading, V, as the half-width of a band.
+
+    Root of the sum of squares of: the gauge's thermal output, the completion's three arms, the amplifier's
+    offset, the leads' warmth (tolerance.zero_drift; of two wires also their whole resistance in the gauge's
+    arm). Self-heating is alike
+    in all readings of a settled cycle, and so in the zero.
+    """
+    d = layout.design
+    r, span = d.readout, d.readout.temperature_span
+    per_x = r.excitation * r.gain / 4
+    leads = d.tolerance.zero_drift
+    if r.connection == "two-wire":
+        leads += 2 * longest_lead_resistance(layout) / d.gauge.resistance * COPPER * span
+    shares = (
+        per_x * d.gauge.factor * d.gauge.thermal_output * span,
+        per_x * 3**0.5 * completion_drift(d) * span,
+        r.gain * AMPLIFIERS[r.amplifier].drift * span,
+        per_x * leads,
+    )
+    return sum(share**2 for share in shares) ** 0.5

@@ -1,0 +1,173 @@
+"""The array's elements as parameters of the mechanics."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable, Sequence
+from typing import TypeVar
+
+import numpy as np
+
+from tactcad.design.materials import ALLOYS, OPTIONAL, PROPERTIES, Alloy
+from tactcad.design.sensing import AMPLIFIERS, MULTIPLEXERS, SWITCHES
+from tactcad.design.tree import Design
+from tactcad.mechanics import ladder, validity
+from tactcad.mechanics.gauge_signal import Gauge
+from tactcad.mechanics.ladder import elasticity
+from tactcad.mechanics.readout import ReadOut, sample_noise, transmission
+from tactcad.mechanics.section import HingeSection
+from tactcad.mechanics.validity import Reason
+
+from ..bought.electronic_parts import completion_resistance
+from .layout import ElementPlace, HingeShape, Layout
+from .leads import longest_lead_resistance
+
+T = TypeVar("T")
+
+
+def hinge_section(layout: Layout, places: Sequence[ElementPlace]) -> HingeSection:
+    """Section parameters of elements of the array, mm and MPa.
+
+    Parameters
+    ----------
+    layout
+        The array.
+    places
+        The elements.
+
+    Returns
+    -------
+    HingeSection
+        Of shape (len(places),), or of many designs at once (..., len(places)).
+    """
+    own = [own_parameters(p.hinge, p.load_arm, p.body_length) for p in places]
+    stacked = {n: np.stack(np.broadcast_arrays(*(each[n] for each in own)), axis=-1) for n in own[0]}
+    return HingeSection.of(**stacked, **shared_parameters(layout.design))
+
+
+def element_section(layout: Layout, place: ElementPlace) -> HingeSection:
+    """Section parameters of one element: numbers, or arrays where the layout has them."""
+    own = own_parameters(place.hinge, place.load_arm, place.body_length)
+    return HingeSection.of(**own, **shared_parameters(layout.design))
+
+
+def thickness_elasticity(layout: Layout, place: ElementPlace) -> float:
+    """dlnK/dln t of one element, by the solid rung; beyond the range of its fit by the section integral."""
+    s = hinge_section(layout, (place,))
+    return float(elasticity(s, "hinge_thickness", "solid" if ladder.evaluate(s).valid else "section").item())
+
+
+def own_parameters(hinge: HingeShape, load_arm: float, body_length: float) -> dict[str, float]:
+    """Parameters that may differ between elements of one design, by the names of `HingeSection`'s fields;
+    mm.
+    """
+    return {
+        "hinge_thickness": hinge.t,
+        "hinge_length": hinge.l,
+        "fillet_radius": hinge.r,
+        "load_arm": load_arm,
+        "arm_height": hinge.h,
+        "body_length": body_length,
+    }
+
+
+def shared_parameters(design: Design) -> dict[str, float]:
+    """Parameters that all elements of a design share, by the names of `HingeSection`'s fields; mm, MPa."""
+    return {
+        "body_height": design.element.body_height,
+        "poisson": design.material.poisson,
+        "youngs_modulus": design.material.youngs_modulus,
+        "width": design.sheet.thickness,
+        "two_sided": design.element.sides == "two",
+        "pad_height": design.element.pad_height,
+        "friction": design.rating.friction,
+    }
+
+
+def design_alloy(design: Design) -> Alloy:
+    """The design's material with the values that the design file gives."""
+    own = vars(design.material)
+    row = ALLOYS.get(design.material.alloy)
+    return Alloy(
+        own["alloy"], **{k: own[k] for k in (*PROPERTIES, *OPTIONAL)}, source=row.source if row else ""
+    )
+
+
+def design_gauge(design: Design) -> Gauge:
+    """The design's strain gauge, alike on all elements."""
+    return _filled(Gauge, design.gauge)
+
+
+def design_readout(design: Design) -> ReadOut:
+    """The design's bridge, amplifier and converter, with the longest of its leads."""
+    given, lead = design.readout, longest_lead_resistance(Layout(design))
+    left = transmission(
+        design.gauge.resistance,
+        completion_resistance(design),
+        lead,
+        SWITCHES[given.switch].on_ohm,
+        given.connection == "three-wire",
+    )
+    noise = derived_noise(design) if given.noise is None else given.noise
+    own = {
+        name: getattr(given, name) for name in inspect.signature(ReadOut).parameters if hasattr(given, name)
+    }
+    return ReadOut(**own | {"noise": noise, "transmission": left})
+
+
+def derived_noise(design: Design) -> float:
+    """Rms of one sample at the amplifier's output, V, by the electronic parts of the design."""
+    r, amplifier = design.readout, AMPLIFIERS[design.readout.amplifier]
+    arm, gauge = completion_resistance(design), design.gauge.resistance
+    source = gauge * arm / (gauge + arm) + arm / 2 + 2 * MULTIPLEXERS[r.multiplexer].on_ohm
+    return sample_noise(r.gain, amplifier.noise_density(r.gain), amplifier.bandwidth(r.gain), source)
+
+
+def _filled(kind: Callable[..., T], table: object) -> T:
+    """A record filled with the table's values of the same names."""
+    return kind(**{name: getattr(table, name) for name in inspect.signature(kind).parameters})
+
+
+# Where a section's parameter stands in the design file; the first four an element may override.
+PATHS = {
+    "hinge_thickness": "element.hinge_thickness",
+    "hinge_length": "element.hinge_length",
+    "fillet_radius": "element.fillet_radius",
+    "arm_height": "element.arm_height",
+    "load_arm": "array.row_arms",
+    "body_length": "element.rear_length",
+    "body_height": "element.body_height",
+    "poisson": "material.poisson",
+    "youngs_modulus": "material.youngs_modulus",
+    "width": "sheet.thickness",
+    "pad_height": "element.pad_height",
+    "friction": "rating.friction",
+}
+
+
+def in_design(why: Reason | None, layout: Layout, place: ElementPlace) -> str:
+    """Why the estimator refuses an element, with the design's own fields and what they give for it:
+    "... (array.row_arms: load_arm 30, element.body_height: 4)". "" for None.
+    """
+    if why is None:
+        return ""
+    own = own_parameters(place.hinge, place.load_arm, place.body_length)
+    values = own | shared_parameters(layout.design)
+    named = (f"{_path(name, layout, place)}: {name} {values[name]:.4g}" for name in why.fields)
+    return f"{why.rule} ({', '.join(named)})"
+
+
+def _path(name: str, layout: Layout, place: ElementPlace) -> str:
+    hinge = layout.design.element.override.get(place.number)
+    if hinge is not None and getattr(hinge, name, None) is not None:
+        return f"element.override.{place.number}.{name}"
+    return PATHS[name]
+
+
+def not_reached(layout: Layout, places: Sequence[ElementPlace], section: HingeSection, rung: str) -> str:
+    """Why a rung does not reach the first of these elements that it does not, their parameters in `section`;
+    "" where it reaches all."""
+    for place, why in zip(places, validity.first_broken(section, rung).ravel()):
+        if why:
+            return f"rung {rung} does not reach element {place.number}: {in_design(why, layout, place)}"
+    return ""

@@ -1,0 +1,143 @@
+"""Boards and leads: which element is read by which board, how large a board is, and the way of each element's
+leads: from the terminal on the floor of its wire recess to the rear end, to the tie around the leads of its
+board, to the board.
+
+    gauge           recess                          rear end      tie           connector
+    =====----.                                                    .-----------[]
+             |  o_________///bonded: strain relief ____________.'
+    hinge       terminal                            gather          to board
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import ceil, dist
+
+from tactcad.design.sensing import COMPLETIONS, MULTIPLEXERS, WIRES
+from tactcad.design.tree import Design
+
+from ..bought.electronic_parts import CARD_SIGNALS, ON_SUPPLIES, gain_resistance
+from ..language.description import Vector
+from .layout import ElementPlace, Layout
+
+# Codes of IEC 60757. Red and white are both soldered to the gauge's first tab, black to its second, as in
+# strain gauge practice; of two wires there is no white one.
+COLOURS = {"three-wire": ("RD", "WH", "BK"), "two-wire": ("RD", "BK")}
+AHEAD_OF_LEADS = 0.5  # terminals behind the recess's wall, mm; chosen: a tool to press them down
+WHOLE = 5.0  # leads are cut to whole steps of so many mm; chosen: what a rule is read to
+
+
+@dataclass(frozen=True)
+class LeadRoute:
+    """The way of one element's leads, mm in the scene's frame, and what each is cut to."""
+
+    place: ElementPlace
+    points: tuple[Vector, ...]
+    cut: float
+
+    @property
+    def length(self) -> float:
+        """mm, without slack."""
+        return sum(dist(a, b) for a, b in zip(self.points, self.points[1:]))
+
+
+def lead_routes(layout: Layout) -> tuple[LeadRoute, ...]:
+    """Every element's leads, by number."""
+    found = [_route(layout, board, place) for board in boards(layout) for place in board.places]
+    return tuple(sorted(found, key=lambda route: route.place.number))
+
+
+def _route(layout: Layout, board: ReadBoard, place: ElementPlace) -> LeadRoute:
+    d, side = layout.design, 1.0 if place.row == 1 else -1.0
+    terminal, recess = layout.recess_start + AHEAD_OF_LEADS, d.element.recess_depth
+    middle = (board.places[0].y + board.places[-1].y) / 2
+    tie = layout.rear_end + d.wiring.gather
+    points = (
+        (side * terminal, place.y, recess),
+        (side * layout.rear_end, place.y, recess),
+        (side * tie, middle, recess),
+        (side * (tie + d.wiring.to_board), middle, recess),
+    )
+    way = LeadRoute(place, points, 0.0).length
+    return LeadRoute(place, points, WHOLE * ceil(way * (1 + d.wiring.slack) / WHOLE - 1e-9))
+
+
+def recess_length(layout: Layout) -> float:
+    """Of the wire recess, mm."""
+    return layout.rear_end - layout.recess_start
+
+
+def colours(layout: Layout) -> tuple[str, ...]:
+    """Of each gauge's leads, in their order."""
+    return COLOURS[layout.design.readout.connection]
+
+
+def leads(layout: Layout) -> int:
+    """How many each gauge has."""
+    return len(colours(layout))
+
+
+def longest_lead_resistance(layout: Layout) -> float:
+    """Of one lead, ohm."""
+    return max(route.cut for route in lead_routes(layout)) * lead_ohm(layout)
+
+
+def lead_ohm(layout: Layout) -> float:
+    """Of a millimetre of lead."""
+    return WIRES[layout.design.wiring.wire].ohm_per_metre * 1e-3
+
+
+@dataclass(frozen=True)
+class ReadBoard:
+    """A board by its number from 1, and its elements in the order of the multiplexer's channels."""
+
+    number: int
+    places: tuple[ElementPlace, ...]
+
+
+def boards(layout: Layout) -> tuple[ReadBoard, ...]:
+    """Every board of the array."""
+    channels = MULTIPLEXERS[layout.design.readout.multiplexer].channels
+    taken = []
+    for row in (1, 2):
+        own = [p for p in layout.elements if p.row == row]
+        taken += [tuple(own[i : i + channels]) for i in range(0, len(own), channels)]
+    return tuple(ReadBoard(number, places) for number, places in enumerate(taken, start=1))
+
+
+PITCH = 2.54  # of the headers' pins, mm
+# mm2 with pads and the room that an iron takes around them; chosen: bodies by JEDEC and EIA, 1 mm around.
+ROOM = {
+    "radial": 40.0,
+    "0805": 15.0,
+    "1206": 18.0,
+    "SOT-23": 16.0,
+    "SOIC-8": 42.0,
+    "SO16": 77.0,
+    "TSSOP-28": 88.0,
+    "pin": 3 * PITCH,
+}
+PARTS_SHARE = 0.5  # of the board that parts take; chosen: the other half for tracks and corners' holes
+EDGE = 5.0  # mm from a header's end to the board's edge; chosen: a corner's hole of M3 beside it
+BOARD_STEP = 5.0  # mm, the board's sides are whole steps of; chosen: so that nobody asks about tenths
+
+
+def header_pins(design: Design) -> tuple[int, int]:
+    """Pins of a board's header for leads, and of that to the converter's card."""
+    part = MULTIPLEXERS[design.readout.multiplexer]
+    return len(COLOURS[design.readout.connection]) * part.channels, CARD_SIGNALS + len(part.address)
+
+
+def board_size(design: Design) -> tuple[float, float]:
+    """Length and width that a board needs at least, mm: all channels of its multiplexer are on it."""
+    r, pins = design.readout, header_pins(design)
+    channel = 3 * ROOM[COMPLETIONS[r.completion].package] + ROOM["SOT-23"]
+    circuits = ROOM["SOIC-8"] + ROOM["TSSOP-28"] + ROOM["SO16"]
+    small = (ON_SUPPLIES + 1 + (gain_resistance(design) is not None)) * ROOM["0805"] + ROOM["1206"]
+    area = MULTIPLEXERS[r.multiplexer].channels * channel + circuits + small + sum(pins) * ROOM["pin"]
+    length = _whole(max(max(pins) * PITCH + 2 * EDGE, (area / PARTS_SHARE) ** 0.5))
+    return length, _whole(area / PARTS_SHARE / length)
+
+
+def _whole(mm: float) -> float:
+    return BOARD_STEP * ceil(mm / BOARD_STEP)

@@ -1,0 +1,173 @@
+"""Parts that are taken as rigid, and how much they bend: a line for each part and load, of the array and its
+rigs.
+
+Beams and round plates (mechanics.bending) on supports that let their ends turn, unless a line says
+otherwise; real parts mostly bend less. Bought parts are left out: their makers state their stiffness.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+from tactcad.design.tree import Design
+from tactcad.mechanics.statics import Beam
+
+from ..language.finding import Severity
+from . import seating
+from .layout import Layout
+from .seating import carrier_beam, carrier_opens
+from .stop_give import SHARE
+
+# Share that one load may take of the pads' tolerance, of a calibration step, of the allowed tilt. A tenth
+# adds 0.5 % in root sum of squares, so that a dozen together add less than a tenth.
+TENTH = 0.1
+# Relative excess that is still rounding: sums of the same numbers in another order.
+ROUNDING = 1e-9
+
+
+@dataclass(frozen=True)
+class Deflection:
+    """One part under one load.
+
+    scene       where it stands under this load
+    part, model what bends, and the model of it
+    load        N, and `origin`, why so much
+    gives       um; negative where that closes a gap
+    allowed     um, and `why`
+    fields      paths of the design's fields that make it bend less, the most useful first
+    severity    `flag`: the array works all the same, but whoever builds or holds it has to know
+    """
+
+    scene: str
+    part: str
+    model: str
+    load: float
+    origin: str
+    gives: float
+    allowed: float
+    why: str
+    fields: tuple[str, ...]
+    severity: Severity = "fail"
+
+    @property
+    def too_much(self) -> bool:
+        return self.gives > self.allowed * (1.0 + ROUNDING)
+
+    def __str__(self) -> str:
+        return (
+            f"{self.scene}: {self.part} gives way by {self.gives:.3g} um under {self.load:.3g} N "
+            f"({self.origin}), "
+            f"{self.model}; allowed are {self.allowed:.3g} um, {self.why}"
+        )
+
+
+# A scene's part of the stiffness table; the design must keep its rules.
+Lines = Callable[[Design], Iterator[Deflection]]
+
+
+def pads_plane(design: Design) -> tuple[float, str]:
+    """Allowed displacement of pads against each other by one load, um, and why."""
+    return 1e3 * TENTH * design.tolerance.pad_height, "a tenth of tolerance.pad_height"
+
+
+def array_lines(design: Design) -> Iterator[Deflection]:
+    layout = Layout(design)
+    yield from _stop_lines(layout)
+    force = design.rating.overload_force
+    origin = "rating.overload_force"
+    alloy = carrier_beam(layout, 1.0)
+    z0, z1 = layout.end_plate_z
+    plate = Beam(
+        2 * layout.carrier_screw_x,
+        design.clamp.end_plate_thickness,
+        z1 - z0,
+        alloy.youngs_modulus,
+        alloy.poisson,
+    )
+    yield Deflection(
+        "array",
+        "end plate",
+        "between the carrier's screws, load in the middle",
+        force,
+        f"{origin}, all on one end",
+        1e3 * force * plate.supported(),
+        *pads_plane(design),
+        ("clamp.end_plate_thickness", "tolerance.pad_height", origin),
+        "flag",  # nothing is measured during an overload, and the stop's gap is independent of the end plates
+    )
+    stack = seating.stack_beam(layout)
+    yield Deflection(
+        "array",
+        "stack of elements",
+        "between the end plates, load spread; clamped as one",
+        force,
+        f"{origin}, on all pads",
+        1e3 * force * stack.supported_evenly(),
+        *pads_plane(design),
+        ("element.rear_height", "tolerance.pad_height", origin),
+        "flag",
+    )
+    screw = seating.force(layout)
+    load = 2 * screw * len(layout.hold_down_y)
+    turned = f"{screw:.0f} N of each set screw at {seating.torque(layout):g} N m"
+    yield Deflection(
+        "array",
+        "stack of elements",
+        "between the end plates, pressed under each set screw",
+        load,
+        turned,
+        1e3 * screw * seating.stack_bow(layout),
+        1e3 * seating.BOW * design.tolerance.pad_height,
+        "half of tolerance.pad_height: the pads' error an eighth larger",
+        ("tolerance.pad_height",),
+    )
+    yield Deflection(
+        "array",
+        "carrier",
+        "between the end plates, pressed at each set screw",
+        load,
+        turned,
+        1e3 * screw * seating.carrier_bow(layout),
+        1e3 * seating.FLAT,
+        "as flat as the plate that it is screwed on",
+        ("clamp.carrier_thickness",),
+    )
+
+
+def _stop_lines(layout: Layout) -> Iterator[Deflection]:
+    """What bends between arm and stop, under the arm that has least room for it."""
+    from .stop_gap import stop_limit
+
+    held = carrier_beam(layout, 2 * layout.end_plate_y).supported()
+    force_field = "rating.overload_force"
+    plate, carrier = ("clamp.stop_plate_thickness", force_field), ("clamp.carrier_thickness", force_field)
+    cases: tuple[tuple[str, str, Callable[[Layout, float], float], tuple[str, ...], Severity], ...] = (
+        ("stop plate", "strip between rows of set screws, plate between pairs", _plate, plate, "fail"),
+        ("carrier", "held by its threads in the middle", carrier_opens, carrier, "fail"),
+        ("carrier", "the array held by its end plates alone", lambda layout, y: held, carrier, "flag"),
+    )
+    for part, model, give, fields, severity in cases:
+        states = []
+        for p in layout.elements:
+            force = layout.design.rating.overload_force * p.load_arm / p.arm
+            gap = max(stop_limit(layout, p, give=0.0).gap, 1e-9)  # of none, any share is passed
+            allowed = 1e3 * SHARE * gap
+            states.append((give(layout, p.y) * force * 1e3 / allowed, force, allowed))
+        share, force, allowed = max(states)
+        yield Deflection(
+            "array",
+            part,
+            model,
+            force,
+            f"{force_field} on one arm, at its tip",
+            share * allowed,
+            allowed,
+            "a tenth of the stop's gap",
+            fields,
+            severity,
+        )
+
+
+def _plate(layout: Layout, y: float) -> float:
+    return layout.stop_give

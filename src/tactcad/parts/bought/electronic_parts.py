@@ -1,0 +1,61 @@
+"""Part numbers and values of the electronic parts, and how many spares are ordered."""
+
+from __future__ import annotations
+
+from math import floor, log10
+
+from tactcad.design.sensing import AMPLIFIERS, COMPLETIONS
+from tactcad.design.tree import Design
+
+GAUGE, COMPLETION, TERMINAL = "STRAIN-GAUGE", "BRIDGE-RESISTOR", "TERMINAL"
+GAIN_RESISTOR = "GAIN-RESISTOR"
+BOARD, CARD_CABLE, STANDOFFS = "CIRCUIT-BOARD", "CABLE-CARD", "STANDOFFS"
+# At every supply pin of every circuit, and at the bridges' supply of every board; chosen: usual practice.
+DECOUPLING, RESERVOIR = "CAPACITOR-100N", "CAPACITOR-10U"
+TO_LEADS, TO_CARD = "HEADER-LEADS", "HEADER-CARD"
+ON_SUPPLIES = 5  # of decoupling capacitors: two at the amplifier, two at the multiplexer, one at the decoder
+CARD_SIGNALS = 8  # of the connector to the card beside the address: supplies, ground twice, enable, output
+
+
+def lead_part(colour: str) -> str:
+    """Lead wire of a colour (code of IEC 60757)."""
+    return f"LEAD-WIRE-{colour}"
+
+
+def completion_resistance(design: Design) -> float:
+    """Of each of a bridge's three other arms, ohm."""
+    own = design.readout.completion_resistance
+    return design.gauge.resistance if own is None else own
+
+
+def completion_tolerance(design: Design) -> float:
+    """Of each completing resistance, relative."""
+    own = design.readout.completion_tolerance
+    return COMPLETIONS[design.readout.completion].tolerance if own is None else own
+
+
+def completion_drift(design: Design) -> float:
+    """Temperature coefficient of a completing resistance, 1/K."""
+    own = design.readout.completion_drift
+    return COMPLETIONS[design.readout.completion].drift if own is None else own
+
+
+def gain_resistance(design: Design) -> float | None:
+    """Between the amplifier's RG pins, ohm, of the series E192; None where pins set the gain or none is
+    needed."""
+    amplifier, gain = AMPLIFIERS[design.readout.amplifier], design.readout.gain
+    return None if amplifier.gains or gain == 1 else nearest_e192(amplifier.gain_ohm / (gain - 1))
+
+
+def nearest_e192(ohm: float) -> float:
+    """The value of the series E192 (IEC 60063) that is nearest by ratio."""
+    decade = 10.0 ** floor(log10(ohm))
+    series = [round(100 * 10 ** (i / 192)) for i in range(193)]
+    series[185] = 920  # IEC 60063 has 920 where the formula gives 919
+    return min((decade * s / 100 for s in series), key=lambda r: abs(log10(r / ohm)))
+
+
+def set_gain(design: Design) -> float:
+    """The gain that the parts give: the design's, or by the resistor's standard value."""
+    ohm = gain_resistance(design)
+    return design.readout.gain if ohm is None else 1 + AMPLIFIERS[design.readout.amplifier].gain_ohm / ohm

@@ -1,0 +1,177 @@
+"""Standard parts beside screws, from rows of their tables (mm): ISO 8734 pins and the ground rod where the
+standard's lengths end; ball bearings of ISO 15; O-rings of ISO 3601-1 in static face seals; linear stages as
+they are sold.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import pi, sqrt
+
+from tactcad.contour import chain, circle
+
+from ..language.description import Extrusion, Material, Part, Purchase, Revolution
+from ..language.fits import deviations
+from ..language.tables import number, rows
+
+# Least diametral play of a sliding pin, mm; chosen: what a plug gauge tells from none.
+LEAST_PLAY = 0.002
+HARDENED = Material("hardened steel", 7850)
+
+_SERIES = (4, 5, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30, 32, 35, 40, 45, 50)
+_ROWS = {row["size"]: row for row in rows(__file__, "dowels")}
+
+
+def dowel_lengths(size: str) -> tuple[float, ...]:
+    """Preferred lengths, mm, of the pin of that diameter."""
+    return tuple(float(n) for n in _SERIES if 2 * float(size) <= n <= number(_ROWS[size]["longest"]))
+
+
+def dowel_diameter(size: str) -> float:
+    """Diameter as modelled, mm: the middle of tolerance m6."""
+    return round(sum(dowel_limits(size)) / 2, 6)
+
+
+def dowel_limits(size: str) -> tuple[float, float]:
+    """Limits of the diameter, mm."""
+    low, high = deviations("m6", float(size))
+    return (round(float(size) + low, 6), round(float(size) + high, 6))
+
+
+def dowel(size: str, length: float) -> Part:
+    """ISO 8734 pin (or, beyond the standard's lengths, ground rod cut to length), along +z from 0."""
+    standard = length in dowel_lengths(size)
+    designation = (
+        f"ISO 8734 {size} m6 x {length:g} - A - St"
+        if standard
+        else f"ground rod {size} m6, cut to {length:g} mm"
+    )
+    return Part(
+        part_no=f"ISO8734-{size}x{length:g}-pin" if standard else f"GROUND-{size}m6x{length:g}-rod",
+        name=f"Dowel pin {size}x{length:g}",
+        process="bought",
+        material=HARDENED,
+        body=Extrusion(circle((0, 0), dowel_diameter(size)), length),
+        colour="#6f7378",
+        purchase=Purchase(designation, alternates="DIN 6325" if standard else "silver steel, ground"),
+        spares=1 if standard else 0,
+    )
+
+
+BEARING_STEEL = Material("bearing steel 100Cr6", 7850)
+
+
+@dataclass(frozen=True)
+class Bearing:
+    """Bore d, outside diameter D, width B, and largest diameter that may press on the inner ring (mm).
+
+    Mass in g, None: the body's. data/bearings.csv says where each is from.
+    """
+
+    d: float
+    D: float
+    B: float
+    inner: float
+    mass: float | None = None
+
+
+BEARINGS = {
+    row["size"]: Bearing(
+        **{name: number(row[name]) for name in ("d", "D", "B", "inner")},
+        mass=number(row["mass"]) if row["mass"] else None,
+    )
+    for row in rows(__file__, "bearings")
+}
+
+
+# Deviations of bore and outside diameter, mm: ISO 492, class Normal, d from 2.5 to 10, D from 6 to 18.
+BORE = OUTSIDE = (-0.008, 0.0)
+
+
+def bearing(size: str) -> Part:
+    """The bearing of that designation; axis z, from z = 0 to its width."""
+    b = BEARINGS[size]
+    return Part(
+        part_no=f"ISO15-{size}",
+        name=f"Ball bearing {size}",
+        process="bought",
+        material=BEARING_STEEL,
+        body=Revolution(chain([(b.d / 2, 0), (b.D / 2, 0), (b.D / 2, b.B), (b.d / 2, b.B)])),
+        colour="#a7adb5",
+        purchase=Purchase(
+            f"ISO 15 {size}", alternates=f"{size.split('-')[0]}-2RS, same dimensions, more drag"
+        ),
+        mass_override=b.mass,
+        spares=1,
+    )
+
+
+NITRILE = Material("NBR 70", 1200)
+SECTION = 1.78
+# Inside diameter by size code, mm.
+INSIDE = {row["code"]: number(row["inside"]) for row in rows(__file__, "orings")}
+# Groove of a static face seal for 1.78: depth 1.27 to 1.40, width 2.41 (makers' tables, as in bd_warehouse
+# 0.4.0).
+GROOVE_DEPTH = 1.32
+GROOVE_WIDTH = 2.4
+
+
+def size_around(diameter: float) -> str | None:
+    """The smallest ring whose inside clears a circle of that diameter; None where the table ends."""
+    return next((code for code, inside in INSIDE.items() if inside >= diameter), None)
+
+
+def groove(code: str) -> tuple[float, float]:
+    """Inner and outer diameter of the groove. Air presses from outside: the ring lies on the inner wall."""
+    return INSIDE[code], round(INSIDE[code] + 2 * GROOVE_WIDTH, 6)
+
+
+def o_ring(code: str) -> Part:
+    """The ring as it lies squeezed in its groove: groove's height, the free ring's volume; z from 0 up."""
+    inner = INSIDE[code] / 2 + 0.05
+    rubber = pi * SECTION**2 / 4 * pi * (INSIDE[code] + SECTION)
+    outer = sqrt(inner**2 + rubber / (pi * GROOVE_DEPTH))
+    return Part(
+        part_no=f"ISO3601-{code}-{INSIDE[code]:.2f}x{SECTION:g}-NBR70-ring",
+        name=f"O-ring {INSIDE[code]:.2f}x{SECTION:g}",
+        process="bought",
+        material=NITRILE,
+        body=Revolution(chain([(inner, 0), (outer, 0), (outer, GROOVE_DEPTH), (inner, GROOVE_DEPTH)])),
+        colour="#2b2b2e",
+        notes=("modelled as squeezed",),
+        purchase=Purchase(
+            f"ISO 3601-1 {code}A {INSIDE[code]:.2f}x{SECTION:g} NBR 70", alternates="FKM 75, same size"
+        ),
+        spares=1,
+    )
+
+
+@dataclass(frozen=True)
+class Stage:
+    """Two square plates of `size` and thickness `plate`, M4 at +-`hole`, moving +-`travel` (mm).
+
+    maker, part_no: where the row was read in the maker's own data (`verified`), else empty.
+    """
+
+    size: float
+    plate: float
+    hole: float
+    travel: float
+    maker: str = ""
+    part_no: str = ""
+    verified: bool = False
+
+    @property
+    def height(self) -> float:
+        return 2 * self.plate
+
+
+STAGES = tuple(
+    Stage(
+        **{name: number(row[name]) for name in ("size", "plate", "hole", "travel")},
+        maker=row["maker"],
+        part_no=row["part_no"],
+        verified=row["verified"] == "true",
+    )
+    for row in rows(__file__, "stages")
+)

@@ -1,1 +1,0 @@
-"""Standard parts: sizes from their standards (CSV in data/), as part descriptions."""

@@ -1,0 +1,262 @@
+"""What several rigs share: stand, cart with holder and sample, and the vertical axis with the force gauge."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from tactcad.design.fields import present
+from tactcad.parts import rigs
+from tactcad.parts.bought import screws, standard_parts
+from tactcad.parts.bought.standard_parts import STAGES, bearing
+from tactcad.parts.bought.supply import MECHANICAL, Supply
+from tactcad.parts.language.metric import METRIC
+from tactcad.parts.rigs.cart import LOOSE_WHEEL, CartLayout
+from tactcad.parts.rigs.force_gauge import GAUGE_SCREW_X, GAUGE_SCREW_Z, GAUGE_THREADS
+from tactcad.parts.rigs.frame import (
+    BASE,
+    GAUGE_SHAFT,
+    PLATE,
+    PLATE_SCREW,
+    POST,
+    POST_Y,
+    STAGE_HOLE,
+    STAGE_PLATE,
+    TIP,
+)
+from tactcad.parts.rigs.stand import BASE_SCREW, POST_SCREWS, StandLayout
+
+from .builder import Builder
+from .scene import AGAINST_Y, ALONG_Y
+
+CORNERS = tuple((sx, sy) for sx in (-1, 1) for sy in (-1, 1))
+STAND = "BP1"  # the base plate
+AXIS_LIFT = 200.0  # exploded views: the vertical axis over everything else
+THREAD, LENGTH, UNDER = PLATE_SCREW
+SQUARE = "precision square, 100 mm"
+JAM_SPANNER = f"spanner {screws.JAM_NUT[2][0]:g} mm: the tip's jam nut"
+
+
+def place_stand(b: Builder, rig: StandLayout, stages: bool) -> str:
+    """Base plate (STAND) and post; returns the post's designator."""
+    b.unit("stand")
+    base = b.place("BP", rigs.base_plate(rig), (0, 0, -BASE[1]))
+    post = b.place("PO", rigs.post(rig), (0, POST_Y, 0), ALONG_Y)
+    b.meet(base, post)
+    head = METRIC["M5"].head_height
+    for x, y in POST_SCREWS:
+        at = (x, POST_Y + POST[1] / 2 + y, -BASE[1] + head)
+        b.screw("M5", BASE_SCREW, at, (0, 0, 1), base, post)
+    b.step(
+        "Stand",
+        (0, 0, 0) if stages else (0, 0, -60),
+        "Screw the post on the base plate from below. Before the last turn, check with a square on the upper "
+        "face that the post's front stands square within 0.02 mm on 100 mm, both ways."
+        + (
+            ""
+            if stages
+            else " Set the cart on the plate: it must roll at a breath, and stand still where it is left."
+        ),
+        tools=(SQUARE,),
+    )
+    return post
+
+
+def place_cart(
+    b: Builder, rig: CartLayout, roll: float, dents: tuple[tuple[float, float], ...] = (), depth: float = 0.0
+) -> str:
+    """Cart for the base plate, with holder and sample; returns the sample's designator."""
+    b.group("cart")
+    b.unit("cart with holder and sample")
+    c, bear = rig.cart, rig.bearing
+    plate = b.place("CT", rigs.cart_plate(rig), (roll, 0, c.clearance))
+    shim, wheel = rigs.axle_shim(rig), bearing(c.bearing)
+    side, outer = c.width / 2, c.width / 2 + c.shim + bear.B
+    b.step("Cart plate", (0, 0, 25), "Lay the cart plate ready, holder's threads up.")
+    for sy, which in ((-1, "front"), (1, "back")):
+        xs, z = [roll + sx * c.wheel_base / 2 for sx in (-1, 1)], rig.axle_z
+
+        def y(start: float, thick: float, sy: int = sy) -> float:
+            return start if sy > 0 else -start - thick
+
+        inner = [b.place("SH", shim, (x, y(side, c.shim), z), ALONG_Y) for x in xs]
+        balls = [b.place("BB", wheel, (x, y(side + c.shim, bear.B), z), ALONG_Y) for x in xs]
+        far = [b.place("SH", shim, (x, y(outer, c.shim), z), ALONG_Y) for x in xs]
+        for x, near, ball, beyond in zip(xs, inner, balls, far):
+            at = (x, y(outer + c.shim, 0), z)
+            axle = b.screw(rig.axle_thread, rig.axle_length, at, (0, -sy, 0), beyond, plate)
+            b.meet(plate, near)
+            b.meet(near, ball)
+            b.meet(ball, beyond)
+            b.meet(axle, ball, "press")
+            b.meet(ball, STAND)
+        b.step(
+            f"Wheels, {which}",
+            (0, sy * 70, 25),
+            "Put shim, bearing, shim on each axle and start its thread; polish a shank that the bearing "
+            "does not pass."
+            + (
+                " Then stand the cart on a surface plate, press lightly on its middle so that all four "
+                "wheels touch, and tighten the axles in that state, crosswise: the axles' play in the bores "
+                "takes up the threads' error. No wheel may be loose over a "
+                f"{LOOSE_WHEEL:g} mm feeler gauge. Every outer "
+                f"ring must turn at a breath: it has {c.shim:g} mm of air to plate and head."
+                if sy > 0
+                else ""
+            ),
+            fan=2,
+            tools=("surface plate, grade 1 or better", f"feelers, {LOOSE_WHEEL * 1e3:g} um"),
+        )
+    h, (length, under) = rig.holder_screw, present(rig.holder_fixing)
+    body = b.place("HB", rigs.holder_body(rig), (roll, 0, rig.cart_top))
+    top = rig.cart_top + rig.holder_body
+    ring = b.place(
+        "OR", standard_parts.o_ring(present(rig.o_ring)), (roll, 0, top - standard_parts.GROOVE_DEPTH)
+    )
+    b.meet(plate, body)
+    b.meet(body, ring)
+    b.step(
+        "Holder's body and seal",
+        (0, 0, 60),
+        "Grease the O-ring with a trace of silicone grease and lay it in the body's groove.",
+        fan=1,
+    )
+    fitting = b.place(
+        "HF", rigs.hose_fitting(), (roll, -rig.holder_side / 2, top - rig.port_depth), AGAINST_Y
+    )
+    b.meet(fitting, body, "thread")
+    b.step(
+        "Hose fitting",
+        (0, -40, 45),
+        "Screw the hose fitting in by hand and a quarter turn more; its washer seals.",
+    )
+    lid = b.place("HL", rigs.holder_lid(rig), (roll, 0, top))
+    b.meet(body, lid)
+    b.meet(ring, lid)
+    for sx, sy in CORNERS:
+        at = (roll + sx * h, sy * h, top + under)
+        b.screw("M3", length, at, (0, 0, -1), lid, plate)
+    b.step(
+        "Holder's lid",
+        (0, 0, 95),
+        "Lid on, four screws through lid and body into the cart, crosswise. Close the holes with tape: with "
+        "the pump shut off, the vacuum must not fall by more than a tenth in a minute. The hose hangs slack "
+        "in a loop: it may not pull the cart.",
+        fan=1,
+    )
+    object_ = b.place("SA", rigs.sample(rig, dents, depth), (roll, 0, rig.lid_top))
+    b.meet(lid, object_)
+    b.step(
+        "Sample", (0, 0, 82), "Lay the sample on the middle of the lid, clean and dry, and open the vacuum."
+    )
+    b.supplies += [
+        Supply(
+            "HOSE-4",
+            "silicone hose 4 x 1 mm, soft",
+            1,
+            "m",
+            "silicone hose, bore 4 mm, wall 1 mm, 50 Shore A",
+            process=MECHANICAL,
+        ),
+        Supply(
+            "VACUUM-PUMP",
+            f"vacuum source, {rig.holder.vacuum:g} kPa below air, with gauge and valve",
+            1,
+            "pcs",
+            f"vacuum pump or ejector, at least {rig.holder.vacuum:g} kPa below air",
+            consumable=False,
+            process=MECHANICAL,
+        ),
+    ]
+    b.group(None)
+    return object_
+
+
+def place_force_axis(
+    b: Builder, rig: StandLayout, post: str, touch: float, height: float, roller: bool
+) -> str:
+    """Vertical stage with the force gauge, tip at z = touch + height; returns the tip's (or roller's)
+    designator."""
+    b.unit("force axis")
+    travel = present(rig.design.calibration).axis_travel
+    stage = replace(STAGES[0], travel=travel, maker="", part_no="", verified=False)
+    resolution = present(rig.design.calibration).micrometer_resolution
+    zs, z = rig.stage_middle(touch), rig.axis_middle(touch) + height
+    y = POST_Y
+    fixed = b.place("SF", rigs.stage_fixed(stage), (0, y, zs), AGAINST_Y)
+    b.meet(post, fixed)
+    for sx, sy in CORNERS:
+        at = (sx * STAGE_HOLE, y - UNDER, zs + sy * STAGE_HOLE)
+        b.screw(THREAD, LENGTH, at, (0, 1, 0), fixed, post)
+    head = b.place("MM", rigs.micrometer(travel, resolution), (0, y - STAGE_PLATE / 2, zs + 30.0))
+    b.meet(fixed, head)
+    b.group("axis")
+    moving = b.place("SM", rigs.stage_moving(stage), (0, y - STAGE_PLATE, z), AGAINST_Y)
+    b.meet(fixed, moving)
+    b.group(None)
+    b.step(
+        "Vertical stage",
+        (0, -40, AXIS_LIFT),
+        "Turn the moving half up by its micrometer until two screws are free, fix the fixed half on the "
+        f"post's rows at z = {zs - STAGE_HOLE:g} and {zs + STAGE_HOLE:g} mm, then the other two. It must run "
+        "square to the base plate: 0.01 mm on the whole travel against a square.",
+        aside=(moving,),
+        tools=(SQUARE, "lever indicator, 1 um, on a stand"),
+    )
+    b.group("axis")
+    back = y - 2 * STAGE_PLATE
+    plate = b.place("AP", rigs.axis_plate(rig), (0, back - PLATE, z), ALONG_Y)
+    b.meet(moving, plate)
+    for sx, sy in CORNERS:
+        b.screw(
+            THREAD, LENGTH, (sx * STAGE_HOLE, back - UNDER, z + sy * STAGE_HOLE), (0, 1, 0), plate, moving
+        )
+    b.step("Axis plate", (0, -80, AXIS_LIFT), "Screw the axis plate on the stage's moving half.")
+    front = back - 2 * PLATE
+    gauge_plate = b.place("GP", rigs.gauge_plate(rig), (0, front, z), ALONG_Y)
+    gauge_end = rig.gauge_bottom(touch) + height - GAUGE_SHAFT
+    gauge = b.place("FG", rigs.force_gauge(rig), (0, 0, gauge_end))
+    b.meet(gauge_plate, gauge)
+    for dz in GAUGE_THREADS:
+        b.screw(THREAD, LENGTH, (0, front + UNDER, z + dz), (0, -1, 0), gauge_plate, gauge)
+    b.step(
+        "Force gauge",
+        (0, -130, AXIS_LIFT),
+        "On the bench: screw the force gauge on its plate from behind, heads sunk.",
+        bench=True,
+    )
+    b.meet(plate, gauge_plate)
+    for sx, sy in CORNERS:
+        at = (sx * GAUGE_SCREW_X, front + PLATE - UNDER, z + sy * GAUGE_SCREW_Z)
+        b.screw(THREAD, LENGTH, at, (0, 1, 0), gauge_plate, plate)
+    b.step(
+        "Gauge on its axis",
+        (0, -150, AXIS_LIFT),
+        "Screw the gauge plate on the axis plate, beside the gauge. Zero the gauge only after its cable "
+        "is strapped to the post.",
+    )
+    tip_z = touch + height
+    if roller:
+        r = standard_parts.dowel_diameter(present(rig.design.calibration).roller) / 2
+        tip = b.place("TI", rigs.roller_tip(rig), (0, 5.0, tip_z), AGAINST_Y)
+        length = roller_length(rig)
+        contact = b.place(
+            "RO",
+            standard_parts.dowel(present(rig.design.calibration).roller, length),
+            (0, length / 2, tip_z + r),
+            AGAINST_Y,
+        )
+    else:
+        tip = contact = b.place("TI", rigs.flat_tip(rig), (0, 0, tip_z))
+    b.meet(gauge, tip, "thread")
+    nut = b.place("JN", screws.jam_nut(), (0, 0, tip_z + TIP))
+    b.meet(tip, nut)
+    b.meet(gauge, nut, "thread")
+    b.group(None)
+    return contact
+
+
+def roller_length(rig: StandLayout) -> float:
+    """Shortest standard pin that covers the pad; rule roller_clears_neighbours keeps it off the others."""
+    wide = rig.design.sheet.thickness
+    lengths = standard_parts.dowel_lengths(present(rig.design.calibration).roller)
+    return next((n for n in lengths if n >= wide), lengths[-1])

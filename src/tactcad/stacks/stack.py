@@ -1,0 +1,203 @@
+"""How limits add up: for each requirement nominal, worst case, spread, and what contributes how much."""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from math import isfinite
+
+import numpy as np
+
+from tactcad.design.family import family_of
+from tactcad.mechanics.section import Array
+from tactcad.parts.array.layout import Layout
+from tactcad.scenes.requirement import Deviations, DimensionLimits, Requirement
+
+from .mechanic import Assembled
+from .variables import made
+
+HEAD = ("requirement", "unit", "lower", "upper", "nominal", "worst_low", "worst_high", "sigma", "yield")
+CONTRIBUTORS = 5  # columns of the table; a stack's further ones are small
+SEED = 20261122  # published: the day on which stacks were first made
+CORNERS, EFFECTS = 250, 125  # arrays on their corners, and of these for effects: to some percent of the whole
+# A requirement counts as kept where it is missed by no more than rounding, in its unit.
+ROUNDING = 1e-9
+
+
+@dataclass(frozen=True)
+class Contributor:
+    """A variable's share of a requirement's variance."""
+
+    name: str
+    share: float
+
+
+@dataclass(frozen=True)
+class StackLine:
+    """One requirement of an array, at its instance that is nearest to a limit.
+
+    nominal                 all parts at the middle of their limits
+    worst_low, worst_high   every contributor at the limit that lowers, or raises, the value; behind contacts
+                            the worst corner found
+    sigma                   standard deviation with normal parts
+    kept                    share of arrays that keep it, normal parts
+    contributors            the largest first; shares sum to 1
+    """
+
+    requirement: Requirement
+    nominal: float
+    worst_low: float
+    worst_high: float
+    sigma: float
+    kept: float
+    contributors: tuple[Contributor, ...]
+
+    @property
+    def shortfall(self) -> float:
+        """By how much the worst case leaves the limits, in the requirement's unit; 0 where it does not."""
+        r = self.requirement
+        return max(0.0, r.lower - self.worst_low, self.worst_high - r.upper)
+
+
+def stack(
+    layout: Layout, variables: dict[str, DimensionLimits], wanted: Sequence[Requirement], count: int = 1000
+) -> list[StackLine]:
+    """The stack of every requirement, for the published seed.
+
+    Parameters
+    ----------
+    layout
+        The array.
+    variables, wanted
+        As `requirements` gives them.
+    count
+        Arrays drawn for spread and yield, and as many on their corners.
+    """
+    rng = np.random.default_rng(SEED)
+    assemble = family_of(layout.design).stack.built
+    built = assemble(layout, made(variables, count, "normal", rng))
+    lines = {r.name: _summed(r, variables, built) for r in wanted if r.linear}
+    behind = [r for r in wanted if not r.linear]
+    lines |= {line.requirement.name: line for line in _behind_contacts(behind, variables, built, rng)}
+    return [lines[r.name] for r in wanted]
+
+
+def _summed(r: Requirement, variables: dict[str, DimensionLimits], built: Assembled) -> StackLine:
+    """A sum of deviations: exact but for spread and yield, which are the drawn arrays'."""
+    assert r.linear
+    middle, terms = r.linear
+    reach = {}
+    for name, c in terms:
+        v = variables[name]
+        middle += c * float((v.upper + v.lower).sum()) / 2
+        reach[name] = abs(c) * (v.upper - v.lower) / 2
+    half = sum(float(v.sum()) for v in reach.values())
+    value = r.value(built)
+    ranked = _ranked({name: float((v**2).sum()) for name, v in reach.items()})
+    return StackLine(r, middle, middle - half, middle + half, _spread(value), _kept(r, value), ranked)
+
+
+def _behind_contacts(
+    wanted: Sequence[Requirement],
+    variables: dict[str, DimensionLimits],
+    built: Assembled,
+    rng: np.random.Generator,
+) -> Iterator[StackLine]:
+    """Values behind contacts, from arrays with every part on one of its limits.
+
+    Shares are total effects (Jansen 1999): half the mean square by which the value changes where one variable
+    alone is drawn anew. The worst cases are the arrays with each part at the limit that its correlation with
+    the value points to, or what the drawn arrays show where that is worse.
+    """
+    if not wanted:
+        return
+    layout, count, assembled = built.layout, min(len(built.pads), CORNERS), type(built)
+    middle = assembled(layout, made(variables, 1, "normal", rng, only=()))
+    corners = assembled(layout, made(variables, count, "corners", rng, alike=False))
+    anew = made(variables, count, "corners", rng, alike=False)
+    instance = {r.name: int(np.argmin(r.margin(r.value(built)).min(axis=0))) for r in wanted}
+    seen = {r.name: _at(r.value(corners), instance[r.name]) for r in wanted}
+    some = assembled(layout, {name: v[:EFFECTS] for name, v in corners.made.items()})
+    effect: dict[str, dict[str, float]] = {r.name: {} for r in wanted}
+    for name, v in variables.items():
+        if v.matters == "joint":
+            continue
+        changed = some.with_new(v, anew[name][:EFFECTS])
+        for r in wanted:
+            moved = _at(r.value(changed), instance[r.name]) - seen[r.name][:EFFECTS]
+            effect[r.name][name] = float((moved**2).mean() / 2)
+    worst = []
+    for r in wanted:
+        ways = {name: _way(corners.made[name], seen[r.name]) for name in variables}
+        worst += [_corner(variables, ways, sign) for sign in (-1.0, 1.0)]
+    # all of them at once: a program's own cost is larger than that of a few arrays
+    extreme = assembled(layout, {name: np.vstack([made_[name] for made_ in worst]) for name in variables})
+    for n, r in enumerate(wanted):
+        value, at = seen[r.name], instance[r.name]
+        ends = _at(r.value(extreme), at)[2 * n : 2 * n + 2]
+        yield StackLine(
+            r,
+            float(_at(r.value(middle), at)[0]),
+            float(min(*ends, value.min())),
+            float(max(*ends, value.max())),
+            _spread(_at(r.value(built), at)),
+            _kept(r, r.value(built)),
+            _ranked(effect[r.name]),
+        )
+
+
+def _at(value: Array, instance: int) -> Array:
+    return value[:, min(instance, value.shape[1] - 1)]
+
+
+def _way(deviations: Array, value: Array) -> Array:
+    """By piece: 1 where a value rises with its deviation, -1 where it falls, 0 where chance would do as
+    much."""
+    d, v = deviations - deviations.mean(axis=0), value - value.mean()
+    norm = np.sqrt((d**2).sum(axis=0) * (v**2).sum())
+    correlation = np.divide(d.T @ v, norm, out=np.zeros(d.shape[1]), where=norm > 0)
+    # three standard deviations of the correlation of independent numbers
+    return np.where(np.abs(correlation) > 3.0 / np.sqrt(len(v)), np.sign(correlation), 0.0)
+
+
+def _corner(variables: dict[str, DimensionLimits], ways: dict[str, Array], sign: float) -> Deviations:
+    """One array with each piece at the limit that its way points to, in the middle where it has none."""
+    return {
+        name: ((v.upper + v.lower) / 2 + sign * ways[name] * (v.upper - v.lower) / 2)[np.newaxis]
+        for name, v in variables.items()
+    }
+
+
+def _spread(value: Array) -> float:
+    """Standard deviation; 0 where the values differ by rounding only."""
+    return float(value.std()) if np.ptp(value) > ROUNDING else 0.0
+
+
+def _kept(r: Requirement, value: Array) -> float:
+    return float((r.margin(value).min(axis=1) >= -ROUNDING).mean())
+
+
+def _ranked(variance: dict[str, float]) -> tuple[Contributor, ...]:
+    total = sum(variance.values())
+    if total <= 0.0:
+        return ()
+    shares = sorted(variance.items(), key=lambda item: (-item[1], item[0]))
+    return tuple(Contributor(name, v / total) for name, v in shares if v > 0.0)
+
+
+def stack_bytes(lines: Sequence[StackLine]) -> bytes:
+    """The table (RFC 4180, UTF-8): a row a requirement, its five largest contributors with their shares."""
+    text = io.StringIO(newline="")
+    writer = csv.writer(text)
+    pairs = [f"{what}_{n}" for n in range(1, CONTRIBUTORS + 1) for what in ("contributor", "share")]
+    writer.writerow((*HEAD, *pairs))
+    for line in lines:
+        r = line.requirement
+        limits = [f"{v:.6g}" if isfinite(v) else "" for v in (r.lower, r.upper)]
+        figures = (line.nominal, line.worst_low, line.worst_high, line.sigma, line.kept)
+        cells = [c for x in line.contributors[:CONTRIBUTORS] for c in (x.name, f"{x.share:.3f}")]
+        row = [r.name, r.unit, *limits, *(f"{v + 0.0:.5g}" for v in figures), *cells]
+        writer.writerow(row + [""] * (len(HEAD) + len(pairs) - len(row)))
+    return text.getvalue().encode()

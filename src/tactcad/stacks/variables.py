@@ -1,0 +1,162 @@
+"""Every dimension of an array that may differ from its drawing, with the limits that the parts state, and the
+virtual shop, which makes each somewhere within its limits."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Mapping
+from typing import Literal
+
+import numpy as np
+from scipy.special import ndtr, ndtri
+
+from tactcad.design.fields import present
+from tactcad.mechanics.section import Array
+from tactcad.parts.array.clamp import STACK, end_plate, stop_plate
+from tactcad.parts.array.element import DOWEL_HOLE, LEDGE, PAD_HEIGHT, blank, element, spacer
+from tactcad.parts.array.layout import Layout
+from tactcad.parts.bought.standard_parts import dowel_limits
+from tactcad.parts.language.description import Part
+from tactcad.scenes.requirement import Deviations, DimensionLimits, Matters, variable
+
+# The stack's length once its spacers are chosen to the measured sheet.
+STACK_LENGTH = "stack: length, spacers to suit"
+IN_PLAY, SHEET, MODULUS = (
+    "element: place in its dowel hole's play, share",
+    "sheet: thickness",
+    "sheet: Young's modulus, relative",
+)
+# What an element's limits matter to, by the limit; the others matter to neither contact.
+OF_ELEMENT: dict[str, Matters] = {PAD_HEIGHT: "pads", DOWEL_HOLE: "pads", LEDGE: "plate"}
+
+
+def array_variables(layout: Layout) -> dict[str, DimensionLimits]:
+    """Variables of the array by name; what is cut from one sheet has one thickness, a single piece."""
+    return {v.name: v for v in _array(layout)}
+
+
+def _array(layout: Layout) -> Iterable[DimensionLimits]:
+    d, places = layout.design, layout.elements
+    kinds: dict[tuple, dict[str, tuple[float, float]]] = {}
+    for p in places:  # a long row has few kinds of element
+        if (p.arm, p.hinge) not in kinds:
+            own_limits = element(layout, p).characteristics
+            kinds[p.arm, p.hinge] = {c.name: (c.lower - c.nominal, c.upper - c.nominal) for c in own_limits}
+    limits = [kinds[p.arm, p.hinge] for p in places]
+    for name in dict.fromkeys(name for each in kinds.values() for name in each):
+        own = [each.get(name, (0.0, 0.0)) for each in limits]
+        if name == "sheet thickness":
+            yield variable(SHEET, *own[0])
+        else:
+            lower, upper = np.array(own).T
+            matters = OF_ELEMENT.get(name, "neither")
+            yield DimensionLimits(f"element: {name}", lower, upper, element=name, matters=matters)
+    yield variable(IN_PLAY, -1.0, 1.0, len(places))
+    modulus = present(d.tolerance.youngs_modulus)
+    yield variable(MODULUS, -modulus, modulus)
+    if layout.blanks():
+        yield _zone("blank: ledge over the dowel hole", "ledge", len(layout.blanks()), "plate", blank(layout))
+    yield _characteristic("spacer", spacer(layout), "thickness")
+    yield variable(STACK_LENGTH, -STACK, STACK)
+    pins = 2 * len(layout.dowel_x)
+    low, high = (limit - float(d.clamp.dowel) for limit in dowel_limits(d.clamp.dowel))
+    yield variable("dowel pin: diameter", low, high, pins, matters="pads")
+    pair = (end_plate(layout, False), end_plate(layout, True))
+    for which, part in zip(("tapped", "head"), pair):
+        name = f"end plate, {which}"
+        on: Matters = "pads" if which == "tapped" else "neither"
+        if (
+            part is pair[0]
+        ):  # the pair is made together: what it shares lies in one zone, its difference in another
+            for axis in "xz":
+                yield _zone(f"end plates: dowel holes along {axis}", "dowel holes", pins, "pads", *pair)
+                square = f"{name}: dowel holes' squareness along {axis}"
+                yield _zone(square, "dowel holes' squareness", pins, "pads", part)
+        for axis in "xz":
+            against = f"{name}: dowel holes against the pair's along {axis}"
+            yield _zone(against, "dowel holes of the pair", pins, on, part)
+        bore = next(c for c in part.characteristics if c.name == "dowel hole diameter")
+        size = float(d.clamp.dowel)  # pin and hole are both counted from it
+        of = ((part.part_no, bore.name),)
+        yield variable(f"{name}: dowel hole diameter", bore.lower - size, bore.upper - size, pins, of, on)
+    plate = stop_plate(layout)
+    flat = next(g for g in plate.geometric if g.name == "flatness")
+    of = ((plate.part_no, flat.name),)
+    yield variable("stop plate: flatness", 0.0, flat.zone, len(places), of)
+    yield _characteristic("stop plate", plate, "thickness")
+
+
+def _zone(name: str, limit: str, pieces: int, matters: Matters, *parts: Part) -> DimensionLimits:
+    """Deviations within a zone that every one of these parts states."""
+    half = next(g.zone for g in parts[0].geometric if g.name == limit) / 2
+    return variable(name, -half, half, pieces, tuple((p.part_no, limit) for p in parts), matters)
+
+
+def _characteristic(who: str, part: Part, name: str, pieces: int = 1) -> DimensionLimits:
+    c = next(c for c in part.characteristics if c.name == name)
+    of = ((part.part_no, name),)
+    return variable(f"{who}: {name}", c.lower - c.nominal, c.upper - c.nominal, pieces, of)
+
+
+Distribution = Literal["normal", "uniform", "corners"]
+# Limits stand at two standard deviations, and what lies beyond them is sorted out.
+SIGMAS = 2.0
+# Share of a dimension's variance that one machine's offset gives all pieces of a batch alike; chosen: as much
+# as each piece has of its own.
+OFFSET_SHARE = 0.5
+
+
+def made(
+    variables: Mapping[str, DimensionLimits],
+    count: int,
+    distribution: Distribution,
+    rng: np.random.Generator,
+    only: Collection[str] | None = None,
+    alike: bool = True,
+) -> Deviations:
+    """Deviations of the parts of `count` arrays.
+
+    Parameters
+    ----------
+    variables
+        Every dimension with its limits.
+    count
+        Arrays to make parts for.
+    distribution
+        `normal`, cut at its limits, which stand at SIGMAS standard deviations; `uniform` between them;
+        `corners`: on one of them.
+    rng
+        Source of chance.
+    only
+        Names of variables that differ at all; the others are at the middle of their limits.
+    alike
+        Whether pieces of one array share their machine's offset.
+
+    Returns
+    -------
+    dict of str to Array
+        By variable, of shape (count, pieces). Pieces of one array share an offset: a Gaussian copula with a
+        correlation of OFFSET_SHARE, so that each piece's own distribution is just the one asked for.
+    """
+    out = {}
+    own_chance = rng.spawn(1)[0]  # which draws nothing from rng itself
+    for name, v in variables.items():
+        chance = own_chance if v.apart else rng
+        middle, half = (v.upper + v.lower) / 2, (v.upper - v.lower) / 2
+        if only is not None and name not in only:
+            out[name] = np.broadcast_to(middle, (count, v.pieces))
+            continue
+        shared, own = chance.standard_normal((count, 1)), chance.standard_normal((count, v.pieces))
+        z = np.sqrt(OFFSET_SHARE) * shared + np.sqrt(1.0 - OFFSET_SHARE) * own if alike else own
+        out[name] = middle + half * within_limits(z, distribution)
+    return out
+
+
+def within_limits(z: Array, distribution: Distribution) -> Array:
+    """Standard normal numbers as shares of the way from the middle (0) to the limits (-1, 1)."""
+    if distribution == "corners":
+        return np.where(z < 0.0, -1.0, 1.0)
+    share = ndtr(z)
+    if distribution == "uniform":
+        return 2.0 * share - 1.0
+    least = ndtr(-SIGMAS)
+    return ndtri(least + share * (1.0 - 2.0 * least)) / SIGMAS
