@@ -25,6 +25,7 @@ EXAMPLES = """\
                                               a rig in a chosen configuration
   tactcad export --guide                      with the assembly guides, to open in a browser
   tactcad export --drawings                   with a dimensioned sheet of every part made, as PDF and SVG
+  tactcad export --robot                      with robot/: URDF, MJCF and a table of taxels (docs/robot.md)
   tactcad export --within 0.1%                with an STL of every part made, its volume within 0.1 %
   tactcad export --in 60                      the same, as fine as 60 s allow where nothing is in the cache
 
@@ -61,6 +62,12 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--drawings",
         action="store_true",
         help="with drawing sheets: drawings/PART_REVISION.pdf and .svg, of every part made",
+    )
+    parser.add_argument(
+        "--robot",
+        action="store_true",
+        help="with robot/: the array as URDF and MJCF, and its taxels as CSV and JSON; with --detail "
+        "envelope without meshes to look at",
     )
     add_strict(parser)
     parser.add_argument("--out", metavar="DIR", help="folder to write (default exports/<design>)")
@@ -105,6 +112,7 @@ def _exported(source: str, args: argparse.Namespace, say: Progress) -> tuple[dic
     out = args.out or f"exports/{design.name}" + ("" if args.detail == "full" else f"-{args.detail}")
     refuse_overwriting(out, find(source))
     options = ExportOptions(tuple(scenes), pose_of(args.pose, design), args.guide, args.detail, args.drawings)
+    options = replace(options, robot=args.robot)
     picked = None
     if asked:
         from tactcad.costs.grades import VOLUME, export_grades, meshing_of

@@ -117,6 +117,18 @@ class FamilyReadings:
 
 
 @dataclass(frozen=True)
+class FamilyRobot:
+    """The sensor as robots and their simulators take it.
+
+    mechanism  (design) to what stands and what moves on which joints, `tactcad.robot.mechanism.Mechanism`
+    jobs       (plan of an export) to the jobs that make its files
+    """
+
+    mechanism: Late
+    jobs: Late
+
+
+@dataclass(frozen=True)
 class Family:
     """A kind of sensor.
 
@@ -138,6 +150,7 @@ class Family:
     variables  the search of `tactcad design` over what may vary, (target, arrays, seconds, tell); None: none,
                and sweeps measure no rung
     checks     name of the folder or module that declares its checks, besides those of all families
+    robot      how it moves, for robots' simulators; None: unknown
     """
 
     name: str
@@ -155,6 +168,7 @@ class Family:
     readings: FamilyReadings | None
     variables: Late | None
     checks: str
+    robot: FamilyRobot | None = None
 
     def __post_init__(self) -> None:
         if not (isinstance(self.spec, type) and issubclass(self.spec, CommonTables)):

@@ -30,7 +30,8 @@ class ExportOptions:
 
     `pose`: a rig's configuration, None for its rest pose. `guides`: with assembly guides. `detail`: `full` or
     `envelope`. `drawings`: with sheets, marked PRELIMINARY where a `draft`, not for order
-    where a `sample`. `meshing`: with the mesh of every part made, as STL, so fine.
+    where a `sample`. `meshing`: with the mesh of every part made, as STL, so fine. `robot`: with the files
+    for robots and their simulators.
     """
 
     scenes: tuple[str, ...]
@@ -41,6 +42,7 @@ class ExportOptions:
     draft: bool = False
     sample: bool = False
     meshing: Meshing | None = None
+    robot: bool = False
 
 
 @dataclass(frozen=True)

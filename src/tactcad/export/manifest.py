@@ -23,6 +23,7 @@ KINDS = {f.kind for f in part_formats()} | {
     "report",
     "netlist",
     "wiring",
+    "robot",
 }
 
 

@@ -49,6 +49,7 @@ ROOMS = (
 KERNEL = first_installed("cadquery-ocp", "cadquery-ocp-novtk")
 LIBRARIES = ("build123d", KERNEL, "ezdxf", "numpy", "scipy")
 DRAWN_WITH = ("matplotlib", "reportlab")  # where drawings are asked for: font and PDF
+FOR_ROBOTS = ("contact", "lab", "robot")  # rooms besides, where robots' files are asked for
 
 
 class Progress(Protocol):
@@ -109,7 +110,9 @@ def export(
         was kept.
     """
     inputs = inputs_of(
-        {"design": design, "options": options}, ROOMS, LIBRARIES + (DRAWN_WITH if options.drawings else ())
+        {"design": design, "options": options},
+        ROOMS + (FOR_ROBOTS if options.robot else ()),
+        LIBRARIES + (DRAWN_WITH if options.drawings else ()),
     )
     earlier = looked_at(out, manifests.SCHEMA, others)
     why = _reasons(earlier, inputs)

@@ -242,6 +242,12 @@ def guide_files(plan: Plan) -> Iterator[Batch]:
         yield _one(Output(guide.page_path(scene), "report", "", key), partial(bytes, page))
 
 
+@product(lambda plan: plan.options.robot)
+def robot_files(plan: Plan) -> Iterator[Batch]:
+    """The array for robots and their simulators."""
+    yield from family_of(plan.design).must("robot", "export --robot").jobs(plan)
+
+
 @product(lambda plan: plan.options.drawings)
 def part_sheets(plan: Plan) -> Iterator[Batch]:
     """A sheet for every part made here, as PDF and SVG, which names the files that the part is made from."""

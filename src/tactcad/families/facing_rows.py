@@ -8,6 +8,7 @@ from tactcad.design.family import (
     FamilyPads,
     FamilyReadings,
     FamilyReadout,
+    FamilyRobot,
     FamilyStack,
     Late,
 )
@@ -52,4 +53,7 @@ FAMILY = Family(
     ),
     variables=Late("tactcad.synthesis.synthesise:design"),
     checks="tactcad.checks.facing_rows",
+    robot=FamilyRobot(
+        mechanism=Late("tactcad.robot.cantilevers:cantilevers"), jobs=Late("tactcad.robot.robot_files:jobs")
+    ),
 )

@@ -201,13 +201,14 @@ def _limits(
         ]
         at["with the load cell's limits"] = cells[1:]
     if coupling is not None:
-        at["with coupling of the pads too"] = [
-            uncoupled.coupled(share * shape)
-            for shape in (coupling, _even(coupling))
-            for share in COUPLED
-            for uncoupled in cells
-        ]
+        at["with coupling of the pads too"] = coupled(cells, coupling)
     return at
+
+
+def coupled(slopes: list[Slopes], coupling: np.ndarray) -> list[Slopes]:
+    """The slopes at shares of a coupling, [element, element], and at the same of an even one."""
+    shapes = (coupling, _even(coupling))
+    return [each.coupled(share * shape) for shape in shapes for share in COUPLED for each in slopes]
 
 
 def _even(coupling: np.ndarray) -> np.ndarray:
@@ -242,14 +243,41 @@ def common_slopes(element: np.ndarray, signal: np.ndarray, calibration: Sensitiv
     InputError
         An element without calibration.
     """
-    rows = [_row(calibration, int(n)) for n in element]
     centred = signal - signal.mean(1, keepdims=True)
     u, size, vt = np.linalg.svd(centred, full_matrices=False)
     dof = (len(element) - 1) * (signal.shape[1] - 2)
     variance = float((size[1:] ** 2).sum()) / dof
-    k_v, k = calibration.signal_per_deflection[rows], calibration.stiffness[rows]
+    k_v = calibration.signal_per_deflection[[_row(calibration, int(n)) for n in element]]
     p = vt[0] * np.sign((u[:, 0] / k_v).sum() or 1.0)
     g = centred @ p  # V per unit approach; p has unit length, so each g has the variance of one signal
+    return slopes_of(element, g, calibration, variance, dof), variance**0.5
+
+
+def slopes_of(
+    element: np.ndarray, g: np.ndarray, calibration: Sensitivity, variance: float, dof: int
+) -> Slopes:
+    """Slopes of force and deflection from those of the signals.
+
+    Parameters
+    ----------
+    element : array, [element]
+        Numbers.
+    g : array, [element]
+        V per unit approach.
+    calibration : Sensitivity
+        Of these elements at least.
+    variance : float
+        Of each g, V2.
+    dof : int
+        Degrees of freedom of that variance.
+
+    Raises
+    ------
+    InputError
+        An element without calibration.
+    """
+    rows = [_row(calibration, int(n)) for n in element]
+    k_v, k = calibration.signal_per_deflection[rows], calibration.stiffness[rows]
     s, f = g / k_v, g * k / k_v
     signal_part = np.array([[[b * b, b * a], [a * b, a * a]] for a, b in zip(1 / k_v, k / k_v)]) * variance
     se_k, se_v = calibration.stiffness_se[rows], calibration.signal_per_deflection_se[rows]
@@ -258,7 +286,7 @@ def common_slopes(element: np.ndarray, signal: np.ndarray, calibration: Sensitiv
     for i in range(len(rows)):
         jacobian = np.array([[g[i] / k_v[i], -f[i] / k_v[i]], [0.0, -s[i] / k_v[i]]])  # of (f, s) in (K, K_v)
         part[i] = jacobian @ np.array([[se_k[i] ** 2, cross[i]], [cross[i], se_v[i] ** 2]]) @ jacobian.T
-    return Slopes(element, s, f, signal_part, part, dof, calibration.dof[rows]), variance**0.5
+    return Slopes(element, s, f, signal_part, part, dof, calibration.dof[rows])
 
 
 def _strays(element: np.ndarray, signal: np.ndarray) -> list[str]:

@@ -50,6 +50,15 @@ def volume(shape: TopoDS_Shape) -> float:
     return solid.Mass()
 
 
+def moments(shape: TopoDS_Shape) -> dict:
+    """`volume` (mm3), `centre` of mass (mm), and `inertia` about that at density 1, 3 x 3 (mm5)."""
+    solid = GProp_GProps()
+    BRepGProp.VolumeProperties_s(shape, solid)
+    centre, matrix = solid.CentreOfMass(), solid.MatrixOfInertia()
+    inertia = [[matrix.Value(i, j) for j in (1, 2, 3)] for i in (1, 2, 3)]
+    return {"volume": solid.Mass(), "centre": [centre.X(), centre.Y(), centre.Z()], "inertia": inertia}
+
+
 def bounding_box(shape: TopoDS_Shape) -> list[list[float]]:
     """Least and largest corner, mm, of the exact surfaces."""
     box = Bnd_Box()

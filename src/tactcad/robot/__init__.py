@@ -1,0 +1,10 @@
+"""The sensor in a robot: URDF, MJCF and a table of taxels, and joint positions back to force and K_obj.
+
+In: a design, or the table that an export wrote of it. Its family declares what moves on which joints
+(`mechanism`); every file follows from that.
+"""
+
+from .felt import Felt, read
+from .taxel_table import Taxels, read_taxels
+
+__all__ = ["Felt", "Taxels", "read", "read_taxels"]

@@ -1,0 +1,109 @@
+"""From joint positions to forces and to the stiffness of what is touched, as `tactcad stiffness` has it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from math import inf
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from tactcad.design.messages import InputError
+from tactcad.lab.calibration_file import Sensitivity
+from tactcad.lab.combine import Interval, combine, hull
+from tactcad.lab.grasp import coupled, slopes_of
+from tactcad.lab.load_cell import RIGID
+from tactcad.lab.pads import INCOMPRESSIBLE
+from tactcad.lab.regression import KNOWN, require_level
+from tactcad.mechanics.sample_coupling import shares_between
+
+from .taxel_table import Taxels
+
+TOUCHES = 5.0  # standard deviations of a reading from which on a pad is taken to touch; chosen
+NEAR_STOP = 0.999  # of the range: beyond it the stop bears
+
+
+@dataclass(frozen=True)
+class Felt:
+    """What the taxels feel, in the table's order; with several frames, a row a frame.
+
+    deflection  of the pads' middles, mm
+    force       N; at its stop a pad bears more
+    used        pads that touch and are off their stops
+    object      K_obj of each frame, N/mm, with its interval; None where fewer than two pads are used
+    """
+
+    deflection: np.ndarray
+    force: np.ndarray
+    used: np.ndarray
+    object: tuple[Interval | None, ...]
+
+
+def read(taxels: Taxels, joints: ArrayLike, level: float = 0.95, coupling: float = 1.0) -> Felt:
+    """Forces and K_obj from the elements' joint positions, from one frame or from many.
+
+    The rest position is zero. The interval is by the read-out's noise, by how far K and the pads' heights are
+    known of an array as made, and by the object's coupling of the pads.
+
+    Parameters
+    ----------
+    taxels
+        Of `read_taxels`.
+    joints
+        Positions of all joints in the table's order, rad (of slides mm): [joint], or [frame, joint].
+    level
+        Confidence level of the intervals.
+    coupling
+        From 0 (pads on separate springs) to 1 (a half-space), as of `tactcad stiffness`; the interval holds
+        for all up to it.
+
+    Raises
+    ------
+    InputError
+        Positions that are not finite or not one for each joint, a level or a share out of range.
+    """
+    require_level(level)
+    if not 0 <= coupling <= 1:
+        raise InputError("coupling", "out of range", value=coupling, legal="from 0 to 1")
+    sinks, q = [t.sink_mm_per_rad for t in taxels.taxels], np.asarray(joints, float)
+    count, first = sum(map(len, sinks)), np.cumsum([0, *map(len, sinks)])[:-1]
+    if q.ndim not in (1, 2) or q.shape[-1] != count or not np.isfinite(q).all():
+        legal = f"[{count}] or [frame, {count}], finite"
+        raise InputError("joints", "not a position for each joint", value=q.shape, legal=legal)
+    deflection = np.add.reduceat(q * np.concatenate(sinks), first, axis=-1)
+    quiet = TOUCHES * taxels.column("noise_V") / np.abs(taxels.column("signal_V_per_mm"))
+    used = (deflection > quiet) & (deflection < NEAR_STOP * taxels.column("range_mm"))
+    frames = zip(np.atleast_2d(deflection), np.atleast_2d(used))
+    objects = tuple(_object(taxels, s, u, level, coupling) for s, u in frames)
+    return Felt(deflection, taxels.column("stiffness_N_per_mm") * deflection, used, objects)
+
+
+def _object(taxels: Taxels, s: np.ndarray, used: np.ndarray, level: float, share: float) -> Interval | None:
+    """K_obj of one frame: each pad's way stands for its slope over the approach."""
+    rows = np.flatnonzero(used)
+    if len(rows) < 2:
+        return None
+    volts, zero = taxels.column("signal_V_per_mm"), np.zeros(len(s))
+    K, variance = taxels.column("stiffness_N_per_mm"), taxels.column("variance_stiffness_N2_per_mm2")
+    many, rigid = zero + KNOWN, zero + RIGID
+    known = Sensitivity(taxels.column("number"), K, variance**0.5, volts, zero, zero, many, rigid, zero)
+    noise = float(taxels.column("noise_V").max()) ** 2
+    slopes = slopes_of(known.element[rows], (volts * s)[rows], known, noise, int(KNOWN))
+    # a pad that stands back is pressed less: its height enters as an error of s
+    part = slopes.from_calibration.copy()
+    part[:, 1, 1] += taxels.column("variance_offset_mm2")[rows]
+    part[:, [0, 1], [1, 0]] -= (s * taxels.column("covariance_stiffness_offset_N"))[rows, None]
+    slopes = replace(slopes, from_calibration=part)
+    best, _, _ = combine(slopes, level)
+    if share == 0:
+        return best
+    shape = share * _shares(taxels)[np.ix_(rows, rows)]
+    return hull(best, [combine(at, level)[0] for at in coupled([slopes], shape)])
+
+
+@lru_cache(maxsize=16)
+def _shares(taxels: Taxels) -> np.ndarray:
+    """What the force on one pad does to another on a half-space, over what it does to the first."""
+    x, y, length, width = (taxels.column(f"{name}_mm") for name in ("x", "y", "length", "width"))
+    return shares_between(x, y, float(length[0]), float(width[0]), inf, INCOMPRESSIBLE)

@@ -1,0 +1,115 @@
+"""An export's files for robots: robot/NAME.urdf, NAME.xml, taxels.csv, taxels.json and meshes, read back."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Collection, Iterator, Sequence
+from functools import partial
+from pathlib import PurePosixPath
+from typing import TYPE_CHECKING
+from xml.etree import ElementTree
+
+import numpy as np
+
+from tactcad.design.family import family_of
+from tactcad.design.messages import InputError
+from tactcad.export.inputs import digest
+from tactcad.export.products import Batch, Output, Plan
+from tactcad.parts.language.description import NOT_MADE, Part
+from tactcad.scenes.scene import Placement
+from tactcad.solids.meshing import CHORD_MM, USUAL
+
+from . import mjcf, taxel_table, urdf
+from .mechanism import Inertia, Mechanism, Solid, mesh_name, seen, together
+
+if TYPE_CHECKING:
+    from tactcad.export.shapes import Shapes
+
+MM = 1e-3  # m
+
+
+def jobs(plan: Plan) -> Iterator[Batch]:
+    """One job for all files: they follow from one mechanism. Envelopes have no meshes to look at."""
+    design, detail = plan.design, plan.options.detail
+    mechanism: Mechanism = family_of(design).must("robot", "export --robot").mechanism(design)
+    placed = (*mechanism.fixed, *(m.arm for m in mechanism.moving))
+    meshes = {mesh_name(p): p.part for p in placed} if detail == "full" else {}
+    key, name = digest(("robot", plan.shapes.made_by, design, detail)), design.design.name
+    paths = [f"robot/{p}" for p in ("taxels.csv", "taxels.json", f"{name}.urdf", f"{name}.xml", *meshes)]
+    files = tuple(Output(path, "robot", "", f"{key} {path}") for path in paths)
+    yield Batch(files, partial(_made, mechanism, plan.shapes, meshes), size=200)
+
+
+def _made(mechanism: Mechanism, shapes: Shapes, meshes: dict[str, Part]) -> Sequence[bytes]:
+    base, arms = solids(mechanism, shapes, bool(meshes))
+    step, name = mjcf.timestep(mechanism, arms), mechanism.design.design.name
+    taxels = taxel_table.as_made(mechanism.design, (m.taxel for m in mechanism.moving))
+    texts = [urdf.text(mechanism, base, arms), mjcf.text(mechanism, base, arms, step)]
+    refuse_foreign_meshes(f"{name}.urdf", texts[0], meshes)
+    refuse_foreign_meshes(f"{name}.xml", texts[1], meshes)
+    tables = [taxel_table.csv_bytes(taxels), taxel_table.json_bytes(taxels, step)]
+    return [*tables, *texts, *(stl(part, shapes) for part in meshes.values())]
+
+
+def refuse_foreign_meshes(name: str, text: bytes, known: Collection[str]) -> None:
+    """Raise InputError for a mesh of a model, as read back, that is none of its folder's."""
+    root = ElementTree.fromstring(text)
+    compiler = root.find("compiler")
+    folder = PurePosixPath("" if compiler is None else compiler.get("meshdir", ""))
+    for mesh in root.iter("mesh"):
+        asked = mesh.get("filename") or mesh.get("file") or ""
+        if str(folder / asked) not in known:
+            legal = "a file in meshes/ of the robot's folder"
+            raise InputError(
+                f"{name}: mesh", "leads out of the folder, or to nothing", value=asked, legal=legal
+            )
+
+
+def solids(mechanism: Mechanism, shapes: Shapes, drawn: bool) -> tuple[Solid, tuple[Solid, ...]]:
+    """What stands, in the mount's frame, and every element in its own; `drawn`: with looks."""
+    made = [p for p in mechanism.fixed if p.part.process not in NOT_MADE]
+    stands = together([_inertia(p, shapes) for p in mechanism.fixed])
+    base = Solid(stands, mechanism.fixed if drawn else (), tuple(_box(p, shapes) for p in made))
+    arms = []
+    for m in mechanism.moving:
+        arm, sides = seen(m.arm, m.origin, m.turn), MM * m.box
+        box = (sides.mean(axis=0), (sides[1] - sides[0]) / 2)
+        arms.append(Solid(_inertia(arm, shapes), (arm,) if drawn else (), (box,)))
+    return base, tuple(arms)
+
+
+def _measured(part: Part, shapes: Shapes) -> dict:
+    """Volume, centre, inertia (mm, density 1) and box of a part, by the kernel."""
+
+    def measured() -> bytes:
+        from tactcad.solids.measure import bounding_box, moments
+
+        return json.dumps(moments(shapes.of(part)) | {"box": bounding_box(shapes.of(part))}).encode()
+
+    return json.loads(shapes.cache.get_or_make(f"moments {shapes.made_by} {digest(part)}", measured))
+
+
+def _inertia(p: Placement, shapes: Shapes) -> Inertia:
+    facts, R, mass = _measured(p.part, shapes), np.array(p.rotation), MM * p.part.mass
+    tensor = R @ np.array(facts["inertia"]) @ R.T * mass / facts["volume"] * MM**2
+    return Inertia(mass, MM * (R @ np.array(facts["centre"]) + p.origin), tensor)
+
+
+def _box(p: Placement, shapes: Shapes) -> tuple[np.ndarray, np.ndarray]:
+    """Middle and half sides, m, of a part that stands square."""
+    (low, high), R = np.array(_measured(p.part, shapes)["box"]), np.array(p.rotation)
+    return MM * (R @ (low + high) / 2 + p.origin), MM * np.abs(R) @ (high - low) / 2
+
+
+def stl(part: Part, shapes: Shapes) -> bytes:
+    """A part's mesh as binary STL in metres, closed."""
+    import trimesh
+    from trimesh.exchange.stl import export_stl
+
+    from tactcad.export.part_formats.stl import HEADING, check_stl
+    from tactcad.solids.triangles import triangles
+
+    points, faces = triangles(shapes.of(part), CHORD_MM, USUAL.angular)
+    data = export_stl(trimesh.Trimesh(points * MM, faces, process=False))
+    check_stl(part.part_no, data, part.volume * MM**3, None)
+    return f"tactcad {part.part_no}, m".encode("ascii", "replace")[:HEADING].ljust(HEADING) + data[HEADING:]
