@@ -29,8 +29,8 @@ def cantilevers(design: Design) -> Mechanism:
 
     The hinge lies level with the leaf's middle, so far from the pad's middle that pad and tip deflect as the
     estimator says: the stop closes at its gap at the tip, and K at the pad's middle is the estimate. What is
-    left of the leaf's middle moves. The pad touches by a roller whose axis is level with the hinge, so that
-    a rigid face presses at the pad's middle, as the estimate takes it, however far the arm has turned.
+    left of the leaf's middle moves. The pad touches by a ball whose middle is level with the hinge, so that a
+    rigid face presses at the pad's middle, as the estimate takes it, however far the arm has turned.
 
     Raises CheckFailure where an element is out of the estimator's range.
     """

@@ -51,7 +51,7 @@ class Moving:
     joints     one, or three of a cell (sink and two tilts) along its stiffness matrix's own axes
     arm        what of it moves, at its place
     box        least and largest corner of what of it can be hit besides the pad, in its frame
-    roller     radius of the cylinder along y that stands for the pad where it touches; 0: the flat pad
+    ball       radius of the ball that stands for the pad where it touches; 0: the flat pad
     """
 
     taxel: Taxel
@@ -60,7 +60,7 @@ class Moving:
     joints: tuple[Joint, ...]
     arm: Placement
     box: np.ndarray
-    roller: float
+    ball: float
 
     @property
     def name(self) -> str:

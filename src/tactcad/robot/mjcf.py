@@ -103,11 +103,9 @@ def _solid(body: Element, solid: Solid) -> None:
 def _pad(body: Element, m: Moving) -> None:
     """What touches, and the site at the pad's face whose box takes in where it does."""
     face, length, width = -m.joints_at, m.taxel.length_mm / 2, m.taxel.width_mm / 2
-    deep = m.roller or min(length, width)
-    geom: dict = {"type": "box", "size": np.array([length, width, deep]) * MM}
-    if m.roller:
-        along_y = (0.5**0.5, -(0.5**0.5), 0, 0)
-        geom = {"type": "cylinder", "size": np.array([m.roller, width]) * MM, "quat": along_y}
-    add(body, "geom", name=f"{m.name}_pad", class_="collision", pos=(face - [0, 0, deep]) * MM, **geom)
-    box = np.array([length, 1.1 * width, deep / 4]) * MM
+    deep = m.ball or min(length, width)
+    shape, size = ("sphere", (deep,)) if m.ball else ("box", (length, width, deep))
+    geom = {"type": shape, "size": np.array(size) * MM, "pos": (face - [0, 0, deep]) * MM}
+    add(body, "geom", name=f"{m.name}_pad", class_="collision", **geom)
+    box = np.array([length, width, deep / 4]) * MM
     add(body, "site", name=f"{m.name}_taxel", type="box", pos=face * MM, size=box, group=4)

@@ -1,4 +1,4 @@
-"""The sensor as URDF: metres, kilograms, radians. It has no springs: the table of taxels has their stiffness."""
+"""The sensor as URDF: metres, kilograms, radians. It has no springs; the table of taxels says K."""
 
 from __future__ import annotations
 
@@ -91,11 +91,10 @@ def _shape(link: Element, kind: str, at: np.ndarray, turn: Iterable[float]) -> t
 
 def _pad(link: Element, m: Moving) -> None:
     length, width = m.taxel.length_mm, m.taxel.width_mm
-    deep = m.roller or min(length, width) / 2
-    turn = (np.pi / 2 if m.roller else 0.0, 0.0, 0.0)
-    _, geometry = _shape(link, "collision", (-m.joints_at - [0, 0, deep]) * MM, turn)
-    if m.roller:
-        add(geometry, "cylinder", radius=m.roller * MM, length=width * MM)
+    deep = m.ball or min(length, width) / 2
+    _, geometry = _shape(link, "collision", (-m.joints_at - [0, 0, deep]) * MM, np.zeros(3))
+    if m.ball:
+        add(geometry, "sphere", radius=m.ball * MM)
     else:
         add(geometry, "box", size=np.array([length, width, 2 * deep]) * MM)
 
