@@ -59,7 +59,7 @@ def test_installed_versions_are_the_pinned_ones():
     assert metadata.version(SHIM["name"]) == SHIM["version"]
 
 
-@pytest.mark.parametrize("extra", ["", "cad", "cadquery", "review", "sweep", "test"])
+@pytest.mark.parametrize("extra", ["", "cad", "cadquery", "review", "robot", "sweep", "test"])
 def test_pins_meet_what_the_project_asks_for(extra):
     asked = PROJECT["optional-dependencies"][extra] if extra else PROJECT["dependencies"]
     pins = {_plain(name): version for name, version in PINS.items()}

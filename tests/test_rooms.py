@@ -27,6 +27,7 @@ ROOMS = (
     "export",
     "release",
     "lab",
+    "robot",
     "paper",
     "costs",
     "synthesis",
@@ -51,6 +52,7 @@ NEED_SOLIDS = {
     "tactcad.export.part_formats.stl",  # loads trimesh when it runs
     "tactcad.export.step_file",
     "tactcad.export.step_pmi",
+    "tactcad.robot.robot_files",  # loads trimesh when it runs
 }
 
 # Scripts that other programs run, or that show what they do without tactcad: no module, never imported.
@@ -153,7 +155,7 @@ def test_kernel_is_imported_only_where_solids_are_made_or_needed():
 
 def test_the_listed_modules_exist_and_stand_above_solids():
     assert NEED_SOLIDS <= {dotted(p) for p in MODULES}
-    assert {room(name) for name in NEED_SOLIDS} <= {"checks", "drawing", "export"}
+    assert {room(name) for name in NEED_SOLIDS} <= {"checks", "drawing", "export", "robot"}
 
 
 # File names of different rooms that may stand twice, each with its reason; no class name may.

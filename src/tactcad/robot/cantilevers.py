@@ -53,7 +53,7 @@ def cantilevers(design: Design) -> Mechanism:
         back = p.row == 1  # the pad's x runs from hinge to tip
         turn = np.diag([-1.0, -1.0, 1.0]) if back else np.eye(3)
         reach = springs.stop[i] / lever
-        taxel = Taxel(
+        taxel = Taxel(  # type: ignore[call-arg]  # the starred ones have a known length
             p.number,
             p.designator,
             "cantilever",

@@ -6,7 +6,6 @@ import json
 from collections.abc import Collection, Iterator, Sequence
 from functools import partial
 from pathlib import PurePosixPath
-from typing import TYPE_CHECKING
 from xml.etree import ElementTree
 
 import numpy as np
@@ -15,15 +14,13 @@ from tactcad.design.family import family_of
 from tactcad.design.messages import InputError
 from tactcad.export.inputs import digest
 from tactcad.export.products import Batch, Output, Plan
+from tactcad.export.shapes import Shapes
 from tactcad.parts.language.description import NOT_MADE, Part
 from tactcad.scenes.scene import Placement
 from tactcad.solids.meshing import CHORD_MM, USUAL
 
 from . import mjcf, taxel_table, urdf
 from .mechanism import Inertia, Mechanism, Solid, mesh_name, seen, together
-
-if TYPE_CHECKING:
-    from tactcad.export.shapes import Shapes
 
 MM = 1e-3  # m
 
@@ -37,7 +34,8 @@ def jobs(plan: Plan) -> Iterator[Batch]:
     key, name = digest(("robot", plan.shapes.made_by, design, detail)), design.design.name
     paths = [f"robot/{p}" for p in ("taxels.csv", "taxels.json", f"{name}.urdf", f"{name}.xml", *meshes)]
     files = tuple(Output(path, "robot", "", f"{key} {path}") for path in paths)
-    yield Batch(files, partial(_made, mechanism, plan.shapes, meshes), size=200)
+    own = Shapes(plan.shapes.cache, plan.shapes.made_by)  # whole parts, where the export's are envelopes
+    yield Batch(files, partial(_made, mechanism, own, meshes), size=200)
 
 
 def _made(mechanism: Mechanism, shapes: Shapes, meshes: dict[str, Part]) -> Sequence[bytes]:

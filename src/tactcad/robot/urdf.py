@@ -107,7 +107,9 @@ def add(parent: Element, tag: str, **values: object) -> Element:
 def _attribute(value: object) -> str:
     if isinstance(value, str):
         return value
-    return " ".join(repr(float(v) + 0.0) for v in value) if isinstance(value, Iterable) else repr(value)
+    if isinstance(value, int):
+        return repr(value)
+    return " ".join(repr(v + 0.0) for v in np.atleast_1d(np.asarray(value, float)).tolist())
 
 
 def document(root: Element) -> bytes:
