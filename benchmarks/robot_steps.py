@@ -38,7 +38,7 @@ def steps_a_second(text: str, pressed: bool, rigid: bool) -> float:
     spec = mujoco.MjSpec.from_string(text)
     spec.option.gravity = [0, 0, 0]
     if rigid:
-        for joint in list(spec.joints):
+        for joint in (*spec.sensors, *spec.joints):
             spec.delete(joint)
         spec.body("base").add_freejoint()
     if pressed:

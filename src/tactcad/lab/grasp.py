@@ -256,26 +256,8 @@ def common_slopes(element: np.ndarray, signal: np.ndarray, calibration: Sensitiv
 def slopes_of(
     element: np.ndarray, g: np.ndarray, calibration: Sensitivity, variance: float, dof: int
 ) -> Slopes:
-    """Slopes of force and deflection from those of the signals.
-
-    Parameters
-    ----------
-    element : array, [element]
-        Numbers.
-    g : array, [element]
-        V per unit approach.
-    calibration : Sensitivity
-        Of these elements at least.
-    variance : float
-        Of each g, V2.
-    dof : int
-        Degrees of freedom of that variance.
-
-    Raises
-    ------
-    InputError
-        An element without calibration.
-    """
+    """Slopes of force and deflection from those of the signals, g (V per unit approach), each with that
+    variance (V2) and its degrees of freedom. Raises InputError for an element without calibration."""
     rows = [_row(calibration, int(n)) for n in element]
     k_v, k = calibration.signal_per_deflection[rows], calibration.stiffness[rows]
     s, f = g / k_v, g * k / k_v

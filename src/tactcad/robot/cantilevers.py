@@ -20,7 +20,7 @@ from tactcad.scenes import make_scene
 from tactcad.scenes.rig import ARRAY
 from tactcad.scenes.scene import DOWN
 
-from .mechanism import Joint, Mechanism, Moving, seen
+from .mechanism import ElementJoint, Mechanism, Moving, seen
 from .taxel_table import Taxel
 
 
@@ -72,7 +72,7 @@ def cantilevers(design: Design) -> Mechanism:
             (float(lever),),
             tuple(sorted(b if a == p.number else a for a, b in beside if p.number in (a, b))),
         )
-        hinge = Joint(taxel.joints[0], "hinge", (0.0, 1.0, 0.0), float(K[i] * lever**2), float(reach))
+        hinge = ElementJoint(taxel.joints[0], "hinge", (0.0, 1.0, 0.0), float(K[i] * lever**2), float(reach))
         top = hinge_z - arm.extrusion.outer.box[3]
         least, most = (lever + half - p.arm, -width / 2, top), (lever + half, width / 2, hinge_z)
         at, box = np.array([-lever, 0.0, -level]), np.array([least, most])

@@ -25,7 +25,7 @@ NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_.-]*")  # of XML 1.0's names those that 
 
 
 @dataclass(frozen=True)
-class Joint:
+class ElementJoint:
     """One freedom of an element, in its frame.
 
     kind       hinge: turns about an axis through the origin; slide: moves along it
@@ -57,7 +57,7 @@ class Moving:
     taxel: Taxel
     turn: np.ndarray
     joints_at: np.ndarray
-    joints: tuple[Joint, ...]
+    joints: tuple[ElementJoint, ...]
     arm: Placement
     box: np.ndarray
     ball: float

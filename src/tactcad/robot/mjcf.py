@@ -9,7 +9,7 @@ from xml.etree.ElementTree import Element
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from .mechanism import Joint, Mechanism, Moving, Solid, mesh_name
+from .mechanism import ElementJoint, Mechanism, Moving, Solid, mesh_name
 from .taxel_table import SCHEMA, VERSION
 from .urdf import MM, OUTWARD, add, colour, document, unit, way
 
@@ -23,7 +23,7 @@ DAMPING = 0.01  # of the critical one; chosen: metal has less, bonded gauges and
 SETTLING, IMPEDANCE = 4, 0.9999
 
 
-def moment(joint: Joint, arm: Solid) -> float:
+def moment(joint: ElementJoint, arm: Solid) -> float:
     """What a joint moves: kg m2, or kg."""
     axis = np.array(joint.axis)
     return float(axis @ arm.inertia.at(np.zeros(3)) @ axis) if joint.kind == "hinge" else arm.inertia.mass
@@ -81,7 +81,7 @@ def _defaults(root: Element, step: float) -> None:
     add(hit, "geom", contype=1, conaffinity=0, group=3, condim=1, priority=1, **hard)
 
 
-def _joint(body: Element, j: Joint, moved: float) -> None:
+def _joint(body: Element, j: ElementJoint, moved: float) -> None:
     K = j.stiffness * unit(j)
     spring = {"stiffness": K, "damping": 2 * DAMPING * sqrt(K * moved)}
     ends = (-way(j, OUTWARD), way(j, j.reach))

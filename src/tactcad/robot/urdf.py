@@ -8,19 +8,19 @@ from xml.etree.ElementTree import Element, SubElement, indent, tostring
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from .mechanism import Joint, Mechanism, Moving, Solid, mesh_name
+from .mechanism import ElementJoint, Mechanism, Moving, Solid, mesh_name
 
 MM = 1e-3  # m
 OUTWARD = 0.5  # rad or mm that an arm may swing out toward the object: nothing stops it there
 SPEED = 10.0  # rad/s or m/s, which URDF asks for; chosen beyond what any arm reaches
 
 
-def unit(joint: Joint) -> float:
+def unit(joint: ElementJoint) -> float:
     """SI units in one of the joint's stiffness: N mm/rad, or N/mm."""
     return MM if joint.kind == "hinge" else 1 / MM
 
 
-def way(joint: Joint, value: float) -> float:
+def way(joint: ElementJoint, value: float) -> float:
     """rad as they are, mm in m."""
     return value if joint.kind == "hinge" else value * MM
 
