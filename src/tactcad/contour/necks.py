@@ -111,10 +111,7 @@ def _pieces(contour: Contour) -> list[_Piece]:
     run = contour.segments
     return [
         _Piece(
-            s,
-            direction(run[i - 1], run[i - 1].end),
-            direction(run[(i + 1) % len(run)], s.end),
-            box_around(s),
+            s, direction(run[i - 1], run[i - 1].end), direction(run[(i + 1) % len(run)], s.end), box_around(s)
         )
         for i, s in enumerate(run)
     ]
