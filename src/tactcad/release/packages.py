@@ -130,11 +130,6 @@ def _material(part: Part) -> dict[str, object]:
     }
 
 
-def _size(part: Part) -> dict[str, object]:
-    low, high = part_box(part)
-    return {f"{axis}_mm": f"{round(b - a, 3):g}" for axis, a, b in zip("xyz", low, high)}
-
-
 def _made(line: OrderLine) -> Part:
     assert line.part is not None  # what is made has a solid
     return line.part
@@ -156,10 +151,11 @@ def _wire_row(line: OrderLine, taken: Mapping[str, str], shop: Shop) -> Row:
 
 def _machined_row(line: OrderLine, taken: Mapping[str, str], shop: Shop) -> Row:
     part = _made(line)
+    low, high = part_box(part)
     return (
         {"process": part.process}
         | _material(part)
-        | _size(part)
+        | {f"{axis}_mm": f"{round(b - a, 3):g}" for axis, a, b in zip("xyz", low, high)}
         | {"mass_g": f"{part.mass:.4g}", "finish": part.finish}
     )
 

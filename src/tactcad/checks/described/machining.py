@@ -8,7 +8,7 @@ from itertools import combinations
 from math import dist, inf
 
 from tactcad.checks.shop import Machining
-from tactcad.contour import Arc, Contour, Segment
+from tactcad.contour import Arc, Contour
 from tactcad.contour.inside import clearance, side
 from tactcad.contour.nearest import distance
 from tactcad.contour.necks import direction
@@ -77,7 +77,10 @@ def _tight(
     contour = contour if contour.ccw else contour.reversed()
     segments = list(contour)
     for s, after in zip(segments, segments[1:] + segments[:1]):
-        turn = _turn(s, after)
+        # Sine of the turn from the end of a to the start of b; positive to the left.
+        ux, uy = direction(s, s.end)
+        vx, vy = direction(after, after.start)
+        turn = ux * vy - uy * vx
         if (turn if inside else -turn) > 1e-6:
             what = (
                 f"{name}: sharp inside corner, {depth:g} deep: a cutter leaves a radius of "
@@ -87,13 +90,6 @@ def _tight(
         if isinstance(s, Arc) and s.ccw == inside:
             what = f"{name}: inside radius {s.radius:.3g} mm, {depth:g} deep, wants {least:.3g} mm or more"
             yield from at_least("mill-corner", part.part_no, s.radius, least, what, (*s.at(0.5), 0.0))
-
-
-def _turn(a: Segment, b: Segment) -> float:
-    """Sine of the turn from the end of a to the start of b; positive to the left."""
-    ux, uy = direction(a, a.end)
-    vx, vy = direction(b, b.start)
-    return ux * vy - uy * vx
 
 
 def _narrow_pockets(part: Part, limit: Machining) -> Iterator[Finding]:
