@@ -12,7 +12,7 @@ from tactcad.parts import rigs
 from tactcad.parts.array.element import element
 from tactcad.parts.array.layout import ElementPlace
 from tactcad.parts.array.leads import AHEAD_OF_LEADS, leads
-from tactcad.parts.array.supplies import bonding_supplies
+from tactcad.parts.array.supplies import supplies
 from tactcad.parts.bought.standard_parts import dowel
 from tactcad.parts.rigs.bonding_fixture import BASE, BondingLayout, bonding_rigs
 from tactcad.parts.rigs.frame import STANDARD_GRAVITY
@@ -32,11 +32,9 @@ LIFTED = 40.0  # exploded view: what comes from above
 def bonding(design: Design, pose: Pose = REST) -> Scene:
     """Scene `bonding`: every kind of hinge in its fixture, the first element of that kind; it has no pose
     but rest."""
-    # loads numpy, which nothing needs that only asks which scenes there are
-
     stations = bonding_rigs(design)
     b = Builder()
-    b.supplies += bonding_supplies()
+    b.supplies += supplies("bonding", {})
     middles = [n * (rig.width + BETWEEN) for n, rig in enumerate(stations)]
     for rig, y in zip(stations, middles):
         foot = -(rig.rest + BASE)
