@@ -230,18 +230,9 @@ def _snapped(chain: list[Segment]) -> Contour:
 def check_dxf(written: str | Path | bytes, part: Part) -> list[str]:
     """What is wrong with a written cut file against its part.
 
-    Parameters
-    ----------
-    written
-        Path of the file, or its bytes.
-    part
-        A part that has a cut file (`cut_section`).
-
-    Returns
-    -------
-    list of str
-        Version, units, layers, gaps, double entities, and contours that differ in area, length or box; empty
-        where nothing is wrong.
+    `written`: path of the file, or its bytes; `part`: a part that has a cut file (`cut_section`). Returns
+    version, units, layers, gaps, double entities, and contours that differ in area, length or box; empty
+    where nothing is wrong.
     """
     try:
         file = read_dxf(written)
