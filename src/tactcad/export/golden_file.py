@@ -67,9 +67,9 @@ def read_golden(path: Path) -> Record:
 def check_golden(design: Design, path: Path) -> list[Finding]:
     """Hold a design against its golden file.
 
-    `design`: a design that keeps its rules; `path`: of the golden file, which may be absent. Geometry that the
-    golden file's revision does not have fails; under a new revision, and where there is no golden file yet,
-    what `make golden` would take up is flagged.
+    `design`: a design that keeps its rules; `path`: of the golden file, which may be absent. Geometry that
+    the golden file's revision does not have fails; under a new revision, and where there is no golden file
+    yet, what `make golden` would take up is flagged.
     """
     if not path.exists():
         return [

@@ -177,16 +177,9 @@ def _sheet_row(line: OrderLine, taken: Mapping[str, str], shop: Shop) -> Row:
 
 def _bought_row(line: OrderLine, taken: Mapping[str, str], shop: Shop) -> Row:
     row = line.row
-    return {
-        "designation": row.standard_designation,
-        "material": row.material,
-        "manufacturer": row.manufacturer,
-        "mpn": row.mpn,
-        "supplier": row.supplier,
-        "alternates": row.alternates,
-        "consumable": "true" if row.consumable else "false",
-        "source_verified": "true" if row.source_verified else "false",
-    }
+    texts = ("material", "manufacturer", "mpn", "supplier", "alternates")
+    told = {"designation": row.standard_designation} | {name: getattr(row, name) for name in texts}
+    return told | {n: str(getattr(row, n)).lower() for n in ("consumable", "source_verified")}
 
 
 WIRE = Package("wire-cutting", "wire cutting", ("wire-cut",), ("dxf", "pdf"), _wire_row)

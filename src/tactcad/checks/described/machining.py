@@ -40,10 +40,9 @@ def check_machining(part: Part, limit: Machining) -> list[Finding]:
     return [finding for rule in rules for finding in rule(part, limit)]
 
 
-def _thin(
-    check: str, part: Part, at: Vector, wall: float, limit: Machining, message: str
-) -> Iterator[Finding]:
+def _thin(check: str, part: Part, at: Vector, wall: float, limit: Machining, what: str) -> Iterator[Finding]:
     """A wall is flagged where it is thinner than advised, and fails where no workshop would make it."""
+    message = f"{what}, advised {limit.wall:g}, at least {limit.wall_least:g}"
     for finding in at_least(check, part.part_no, wall, limit.wall, message, at):
         yield finding if wall < limit.wall_least - SAME else replace(finding, severity="flag")
 
@@ -142,11 +141,9 @@ def _under_head(part: Part, h: Hole, left: float, limit: Machining) -> Iterator[
         what = f"hole {h.name}: counterbore as deep as the hole"
         yield from at_least("counterbore", part.part_no, left, limit.wall, what, h.at)
     elif h.through:
-        what = (
-            f"hole {h.name}: {left:.3g} mm left under the head, advised {limit.wall:g}, at least "
-            f"{limit.wall_least:g}"
+        yield from _thin(
+            "counterbore", part, h.at, left, limit, f"hole {h.name}: {left:.3g} mm left under the head"
         )
-        yield from _thin("counterbore", part, h.at, left, limit, what)
 
 
 def _threads(part: Part, limit: Machining) -> Iterator[Finding]:
@@ -179,11 +176,7 @@ def _hole_walls(part: Part, limit: Machining) -> Iterator[Finding]:
         if h is k:
             continue
         wall = _between(a, b, c, d) - r - q
-        what = (
-            f"{wall:.3g} mm between {h.name} and {k.name}, advised {limit.wall:g}, at least "
-            f"{limit.wall_least:g}"
-        )
-        yield from _thin("hole-web", part, a, wall, limit, what)
+        yield from _thin("hole-web", part, a, wall, limit, f"{wall:.3g} mm between {h.name} and {k.name}")
     if not isinstance(part.body, Extrusion):
         return
     t = part.body.thickness
@@ -193,11 +186,9 @@ def _hole_walls(part: Part, limit: Machining) -> Iterator[Finding]:
             wall = (clearance(part.body.outer, a[:2]) if inside else -inf) - r
         else:
             wall = min(a[2], t - a[2], b[2], t - b[2]) - r
-        what = (
-            f"{wall:.3g} mm between {h.name} and the part's side, advised {limit.wall:g}, at least "
-            f"{limit.wall_least:g}"
+        yield from _thin(
+            "hole-wall", part, a, wall, limit, f"{wall:.3g} mm between {h.name} and the part's side"
         )
-        yield from _thin("hole-wall", part, a, wall, limit, what)
 
 
 def _cylinders(h: Hole) -> Iterator[tuple[Hole, Vector, Vector, float]]:

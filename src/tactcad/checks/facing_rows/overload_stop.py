@@ -43,11 +43,11 @@ def _about(layout: Layout, state: Overload) -> list[Finding]:
     number, at_hinge = element_number(design, place), (place.hinge_x, place.hinge.t / 2)
     findings: list[Finding] = []
 
-    def find(check: str, severity: Severity, value: float, limit: float, message: str) -> None:
+    def _finding(check: str, severity: Severity, value: float, limit: float, message: str) -> None:
         findings.append(Finding(check, severity, place.designator, at_hinge, value, limit, message, number))
 
     if state.refused:
-        find("strength", "flag", 0, 0, f"the estimator cannot tell its strength: {state.refused}")
+        _finding("strength", "flag", 0, 0, f"the estimator cannot tell its strength: {state.refused}")
         return findings
     closed = (
         f"when {design.rating.overload_force:g} N have closed the stop at {state.gap:g} mm, "
@@ -59,24 +59,24 @@ def _about(layout: Layout, state: Overload) -> list[Finding]:
             f"the hinge gives way by {state.deflection:.4g} mm {closed}; it is rated for "
             f"{state.rated_deflection:.4g}"
         )
-        find("overload", "fail", state.deflection, state.rated_deflection, message)
+        _finding("overload", "fail", state.deflection, state.rated_deflection, message)
     if state.stress > stress * (1 + ROUNDING):
         message = (
             f"the fillet bears {state.stress:.4g} MPa {closed}; at its rated deflection it bears {stress:.4g}"
         )
-        find("overload", "fail", state.stress, stress, message)
+        _finding("overload", "fail", state.stress, stress, message)
     if state.closing_force < state.rated_force * (1 - ROUNDING):
         message = (
             f"the stop closes at {state.closing_force:.3g} N at most, its gap {state.gap:g} mm with its "
             f"tolerance: the hinge never bends as at the {state.rated_force:.3g} N that it is rated for"
         )
-        find("stop-below-rated", "flag", state.closing_force, state.rated_force, message)
+        _finding("stop-below-rated", "flag", state.closing_force, state.rated_force, message)
     if state.rated_force < design.rating.force:
         message = (
             f"rated at {state.rated_force:.3g} N, not at the {design.rating.force:g} N asked for: there "
             f"the fillet would have less than its safety of {design.rating.yield_factor:g} against yield"
         )
-        find("rated-force", "flag", state.rated_force, design.rating.force, message)
+        _finding("rated-force", "flag", state.rated_force, design.rating.force, message)
     return findings
 
 
