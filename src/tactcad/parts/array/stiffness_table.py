@@ -104,8 +104,8 @@ def array_lines(design: Design) -> Iterator[Deflection]:
         1e3 * screw * seating.carrier_bow(layout),
     )
     flat, why = 1e3 * seating.FLAT, "as flat as the plate that it is screwed on"
-    fields = ("clamp.carrier_thickness",)
-    yield Deflection("array", "carrier", model, load, turned, gives, flat, why, fields)
+    thicker = ("clamp.carrier_thickness",)
+    yield Deflection("array", "carrier", model, load, turned, gives, flat, why, thicker)
 
 
 def _stop_lines(layout: Layout) -> Iterator[Deflection]:

@@ -19,7 +19,7 @@ from ..bought.electronic_parts import (
     lead_part,
 )
 from ..bought.supply import Supply, board_spares, bonded_spares
-from ..language.tables import number, rows
+from ..language.tables import rows
 from .layout import Layout
 from .leads import board_size, boards, colours, header_pins, lead_routes, leads
 
@@ -33,7 +33,7 @@ def supplies(group: str, counts: dict[str, int], **figures: object) -> Iterator[
     """The rows of a group: quantities from `counts` by what is counted, texts with these figures."""
     for row in (row for row in ROWS if row["group"] == group):
         said = {name: text.format(**figures) for name, text in row.items()}
-        qty = counts[said["qty"]] if said["qty"] in counts else number(said["qty"])
+        qty = counts[said["qty"]] if said["qty"] in counts else int(said["qty"])
         same = (
             "part_no",
             "description",
