@@ -13,9 +13,8 @@ from .segment import Line, Point, Segment
 
 
 def side(contour: Contour, p: Point) -> int:
-    """1 where p is inside, 0 on the contour within rounding, -1 outside; the direction of the chain does
-    not matter.
-    """
+    """1 where p is inside, 0 on the contour within rounding, -1 outside; the direction of the chain does not
+    matter."""
     if min(distance_to(s, p) for s in contour) <= ROUNDING_MM:
         return 0
     return 1 if round(sum(_turn(s, p) for s in contour) / tau) else -1
@@ -35,21 +34,9 @@ def place_for_circle(contour: Contour, diameter: float, within: float = 1e-3) ->
     """A centre at which a circle fits inside a contour.
 
     Squares are quartered, the most promising first: clearance changes at most by the distance moved, so a
-    square of half side h holds nothing better than its centre's clearance + sqrt(2) h.
-
-    Parameters
-    ----------
-    contour
-        A simple closed contour, mm.
-    diameter
-        Of the circle, mm.
-    within
-        Less than this to spare (mm) may count as no place.
-
-    Returns
-    -------
-    Point or None
-        The centroid where the circle fits there; None where no place was found.
+    square of half side h holds nothing better than its centre's clearance + sqrt(2) h. `contour`: a simple
+    closed contour, mm; `diameter`: of the circle, mm; `within`: less than this to spare (mm) may count as no
+    place. Returns the centroid where the circle fits there; None where no place was found.
     """
     needed = diameter / 2 - ROUNDING_MM
     if clearance(contour, contour.centroid) >= needed:

@@ -53,17 +53,9 @@ class _Piece:
 def necks(outer: Contour, openings: Sequence[Contour] = (), below: float = float("inf")) -> list[Neck]:
     """Where material or the space around it is narrow.
 
-    Parameters
-    ----------
-    outer, openings
-        Outline and openings of the part, mm; the direction in which they run does not matter.
-    below
-        Only necks narrower than this, mm.
-
-    Returns
-    -------
-    list of Neck
-        The narrowest first; where walls run side by side, one for the pair.
+    `outer`, `openings`: outline and openings of the part, mm; the direction in which they run does not
+    matter; `below`: only necks narrower than this, mm. Returns the narrowest first; where walls run side by
+    side, one for the pair.
     """
     contours = [outer if outer.ccw else outer.reversed()]
     contours += [c.reversed() if c.ccw else c for c in openings]
@@ -124,9 +116,8 @@ def direction(s: Segment, p: Point) -> Point:
 
 
 def _side(piece: _Piece, p: Point, q: Point) -> Literal["material", "void"] | None:
-    """On which side of the piece the connection from p to q leaves it; None where it does not leave along
-    a normal.
-    """
+    """On which side of the piece the connection from p to q leaves it; None where it does not leave along a
+    normal."""
     s = piece.segment
     here = direction(s, p)
     before = piece.arriving if dist(p, s.start) <= ROUNDING_MM else here

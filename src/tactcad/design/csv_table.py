@@ -140,22 +140,8 @@ def half_step(text: str) -> float:
 
 
 def read(path: str | Path, fields: tuple[Field, ...], optional: tuple[Field, ...] = ()) -> Rows:
-    """Numeric columns of a CSV file.
-
-    Parameters
-    ----------
-    path
-        The file, as the user named it.
-    fields
-        Columns that must be there.
-    optional
-        Columns that are read where they are there.
-
-    Raises
-    ------
-    InputError
-        As `numeric`.
-    """
+    """Numeric columns of a CSV file. `path`: the file, as the user named it; `fields`: columns that must be
+    there; `optional`: columns that are read where they are there. Raises InputError as `numeric`."""
     return numeric(read_table(path, "readings (CSV)"), fields, optional)
 
 
@@ -215,21 +201,9 @@ def _at_once(table: Table, chosen: tuple[Field, ...]) -> Rows | None:
 def read_table(path: str | Path, kind: str, most_bytes: int = LARGEST_FILE, comments: bool = True) -> Table:
     """A CSV file up to its header.
 
-    Parameters
-    ----------
-    path
-        The file, as the user named it.
-    kind
-        What was expected, for messages: "readings (CSV)".
-    most_bytes
-        What is larger is refused unread.
-    comments
-        Whether lines that start with # are left out.
-
-    Raises
-    ------
-    InputError
-        With line and column: file not there, not text, no header, a column named twice.
+    `path`: the file, as the user named it; `kind`: what was expected, for messages: "readings (CSV)";
+    `most_bytes`: what is larger is refused unread; `comments`: whether lines that start with # are left out.
+    Raises InputError with line and column: file not there, not text, no header, a column named twice.
     """
     shown, text = str(path), read_text(path, most_bytes, kind)
     hint = re.match(r"sep=.\r?\n", text)  # Excel's
@@ -280,19 +254,8 @@ def require_columns(table: Table, names: Sequence[str], optional: Sequence[str] 
 def refuse_duplicates(rows: Rows, names: tuple[str, ...], legal: str = "each once") -> None:
     """Refuse a row that repeats an earlier one's values in some columns.
 
-    Parameters
-    ----------
-    rows
-        As `read` gives them.
-    names
-        The columns that are compared.
-    legal
-        What would be accepted, for the message.
-
-    Raises
-    ------
-    InputError
-        With line and column of the second row.
+    `rows`: as `read` gives them; `names`: the columns that are compared; `legal`: what would be accepted, for
+    the message. Raises InputError with line and column of the second row.
     """
     columns = [rows.values(n) for n in names]
     order = np.lexsort(columns)  # stable: of equal rows the first stays first

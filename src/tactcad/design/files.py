@@ -49,19 +49,9 @@ REFUSED_BY_MACHINE = NO_ROOM | {
 def read_bytes(path: str | Path, most_bytes: int, kind: str) -> bytes:
     """All bytes of a regular file.
 
-    Parameters
-    ----------
-    path
-        The file, as the user named it.
-    most_bytes
-        What is larger is refused unread.
-    kind
-        What was expected, for messages: "a design file (TOML)".
-
-    Raises
-    ------
-    InputError
-        Where there is no such file, it is a folder, pipe or device, too large, or may not be read.
+    `path`: the file, as the user named it; `most_bytes`: what is larger is refused unread; `kind`: what was
+    expected, for messages: "a design file (TOML)". Raises InputError where there is no such file, it is a
+    folder, pipe or device, too large, or may not be read.
     """
     shown = str(path)
     if "\0" in shown:
@@ -92,15 +82,8 @@ def read_bytes(path: str | Path, most_bytes: int, kind: str) -> bytes:
 def read_text(path: str | Path, most_bytes: int, kind: str) -> str:
     """All of a regular file as UTF-8 text, without a byte order mark.
 
-    Parameters
-    ----------
-    path, most_bytes, kind
-        As for `read_bytes`.
-
-    Raises
-    ------
-    InputError
-        As `read_bytes`; with line and column (in bytes) where it is not UTF-8, or holds a NUL.
+    `path`, `most_bytes`, `kind`: as for `read_bytes`. Raises InputError as `read_bytes`; with line and column
+    (in bytes) where it is not UTF-8, or holds a NUL.
     """
     data = read_bytes(path, most_bytes, kind)
     try:
@@ -122,16 +105,9 @@ def read_text(path: str | Path, most_bytes: int, kind: str) -> str:
 def read_json(path: str | Path, most_bytes: int, kind: str) -> Any:
     """The value of a JSON file.
 
-    Parameters
-    ----------
-    path, most_bytes, kind
-        As for `read_bytes`.
-
-    Raises
-    ------
-    InputError
-        As `read_text`; with line and column where it is not JSON, which has neither NaN nor infinities, where
-        it is nested too deeply, or where a text holds characters that nobody sees.
+    `path`, `most_bytes`, `kind`: as for `read_bytes`. Raises InputError as `read_text`; with line and column
+    where it is not JSON, which has neither NaN nor infinities, where it is nested too deeply, or where a text
+    holds characters that nobody sees.
     """
     text = read_text(path, most_bytes, f"{kind} (JSON)")
     try:
@@ -145,22 +121,19 @@ def read_json(path: str | Path, most_bytes: int, kind: str) -> Any:
     except ValueError as error:  # NaN, or an integer of thousands of digits
         raise InputError(str(path), f"not JSON: {error}", legal=kind) from None
     if not text.isascii() or "\\u" in text:
-        _refuse_hidden(value, str(path), kind)
+        # Raise InputError where a key or text holds half a pair, a control, or what turns the direction of
+        # text.
+        shown = str(path)
+        left = [value]
+        while left:
+            item = left.pop()
+            if isinstance(item, dict):
+                left += [*item, *item.values()]
+            elif isinstance(item, list):
+                left += item
+            elif isinstance(item, str) and (fault := hidden(item)):
+                raise InputError(shown, f"a text holds {fault}", value=item, legal=kind)
     return value
-
-
-def _refuse_hidden(value: Any, shown: str, kind: str) -> None:
-    """Raise InputError where a key or text holds half a pair, a control, or what turns the direction of
-    text."""
-    left = [value]
-    while left:
-        item = left.pop()
-        if isinstance(item, dict):
-            left += [*item, *item.values()]
-        elif isinstance(item, list):
-            left += item
-        elif isinstance(item, str) and (fault := hidden(item)):
-            raise InputError(shown, f"a text holds {fault}", value=item, legal=kind)
 
 
 def _within_floats(text: str) -> int:
@@ -208,7 +181,9 @@ def _mode(path: str | Path, place: Path) -> int:
     """Permissions of the file that is to be at `place`. Raises InputError where there can be none."""
     refuse_link(path)
     if not os.path.lexists(place):
-        return 0o666 & ~_umask()
+        mask = os.umask(0)
+        os.umask(mask)
+        return 0o666 & ~mask
     if not place.is_file():
         raise InputError(
             str(path), "not a file; nothing was changed", legal="a new name, or a file to replace"
@@ -343,9 +318,3 @@ def refusal(where: str, error: OSError) -> InputError | CheckFailure:
     if error.errno in NO_ROOM:
         return CheckFailure(f"{where}: cannot be written: {reason}; nothing was changed")
     return InputError(where, f"cannot be written: {reason}; nothing was changed", legal="a writable place")
-
-
-def _umask() -> int:
-    mask = os.umask(0)
-    os.umask(mask)
-    return mask

@@ -64,8 +64,7 @@ class Progress(Protocol):
 @dataclass(frozen=True)
 class Exported:
     """Result of an export: its folder, how many files it holds, which were made anew, which parts the kernel
-    built, and why (empty where nothing had changed).
-    """
+    built, and why (empty where nothing had changed)."""
 
     folder: Path
     files: int
@@ -202,14 +201,8 @@ def made_files(
 ) -> Iterator[tuple[Output, bytes, bool]]:
     """Every file of the jobs, its bytes, and whether they were made anew; what the cache holds comes first.
 
-    Parameters
-    ----------
-    plan
-        That the jobs are of.
-    jobs
-        Made side by side (workers.py), the solids that they need before them.
-    step, say
-        Receive done, total and what is under way; and lines to keep.
+    `plan`: that the jobs are of; `jobs`: made side by side (workers.py), the solids that they need before
+    them; `step`, `say`: receive done, total and what is under way; and lines to keep.
     """
     cache, shapes = plan.shapes.cache, plan.shapes
     total, done, missing = sum(len(job.files) for job in jobs), 0, []
@@ -225,7 +218,10 @@ def made_files(
     if missing:
         from .products import solid
 
-        _load_makers()
+        # Load the kernel, and what works with it, once for all processes, and end its threads.
+        for module in ("solids.build", "solids.step", "drawing.parts.solid_views", "drawing.engine.picture"):
+            import_module(f"tactcad.{module}")
+        import_module("tactcad.solids.occt").end_threads()
         solids = [Task(f"solid of {part.part_no}", partial(solid, part, shapes)) for part in plan.parts]
         missing.sort(key=lambda job: -job.size)
         tasks = [*solids, *(Task(job.files[0].path, job.make, job.turn) for job in missing)]
@@ -240,13 +236,6 @@ def made_files(
                     done += 1
                     yield file, content, True
     step(total, total, "done")
-
-
-def _load_makers() -> None:
-    """Load the kernel, and what works with it, once for all processes, and end its threads."""
-    for module in ("solids.build", "solids.step", "drawing.parts.solid_views", "drawing.engine.picture"):
-        import_module(f"tactcad.{module}")
-    import_module("tactcad.solids.occt").end_threads()
 
 
 def _record(folder: Path, product: Output, design: Design) -> FileRecord:

@@ -78,8 +78,7 @@ def root_length(s: HingeSection, k: Constants | None = None) -> Array:
 
 def root_lengths(s: HingeSection, k: Constants | None = None) -> tuple[Array, Array]:
     """Lengths that the roots to arm and body add to the leaf between blocks of finite height, in hinge
-    thicknesses.
-    """
+    thicknesses."""
     k = k or by_sides("root", s.two_sided)
     g, t = root_length(s, k), s.hinge_thickness
     low, rise = _height_felt(s, k)
@@ -90,12 +89,23 @@ def root_lengths(s: HingeSection, k: Constants | None = None) -> tuple[Array, Ar
 
 def parts(s: HingeSection, k: Constants | None = None) -> Parts:
     """Tip compliance in plane stress by its parts; `k` are the root's constants, by default the shipped
-    ones.
-    """
+    ones."""
     k = k or by_sides("root", s.two_sided)
     per = s.youngs_modulus * s.width
     slope = (s.straight_length / s.hinge_thickness) ** 3 / per
-    return Parts(_hinge(s, k) / per, slope, _arm(s, k) / per, _body(s, k) / per, _shear(s, k) / per)
+    t, h, Hb, Lb = s.hinge_thickness, s.arm_height, s.body_height, s.body_length
+    slender, p = (s.load_arm - s.hinge_length / 2.0) / h, s.load_arm + s.hinge_length / 2.0
+    rho, q = s.fillet_radius / t, sum(_height_felt(s, k)) / Lb
+    beams = s.straight_length / t + slender + Lb / Hb + s.poisson * (p + Lb) / Hb
+    roots = k["v0"] + k["v1"] * rho + k["v2"] * np.sqrt(rho) * s.hinge_length / t
+    spread = _by_form(EDGE_FORCE, s.two_sided) * np.log(t * q * (t / h))
+    return Parts(
+        _hinge(s, k) / per,
+        slope,
+        _arm(s, k) / per,
+        _body(s, k) / per,
+        (beams / (SHEAR_FACTOR / 2.0) + roots - spread + 12.0 * k["e"] * (slender - p * q)) / per,
+    )
 
 
 def compliance(s: HingeSection, k: Constants | None = None) -> Array:
@@ -137,16 +147,6 @@ def _body(s: HingeSection, k: Constants) -> Array:
     return 4.0 * stout * stout * (3.0 * p + Lb) / s.body_height + 12.0 * (p / Lb) ** 2 * J
 
 
-def _shear(s: HingeSection, k: Constants) -> Array:
-    t, h, Hb, Lb = s.hinge_thickness, s.arm_height, s.body_height, s.body_length
-    slender, p = (s.load_arm - s.hinge_length / 2.0) / h, s.load_arm + s.hinge_length / 2.0
-    rho, q = s.fillet_radius / t, sum(_height_felt(s, k)) / Lb
-    beams = s.straight_length / t + slender + Lb / Hb + s.poisson * (p + Lb) / Hb
-    roots = k["v0"] + k["v1"] * rho + k["v2"] * np.sqrt(rho) * s.hinge_length / t
-    spread = _by_form(EDGE_FORCE, s.two_sided) * np.log(t * q * (t / h))
-    return beams / (SHEAR_FACTOR / 2.0) + roots - spread + 12.0 * k["e"] * (slender - p * q)
-
-
 def _cubic(s: HingeSection, k: Constants) -> Array:
     """d: factor of the term by which a root's length decreases, cubic in thickness over height."""
     return k["p4"] + k["p5"] * (s.fillet_radius / s.hinge_thickness)
@@ -154,8 +154,7 @@ def _cubic(s: HingeSection, k: Constants) -> Array:
 
 def _height_felt(s: HingeSection, k: Constants) -> tuple[Array, Array]:
     """2 p3/3, the body length over height below which the height has no effect, and u, by how much it is
-    exceeded.
-    """
+    exceeded."""
     low, fading = np.asarray(k["p3"]) / 1.5, _by_form(FADING, s.two_sided)
     return low, fading * np.logaddexp(0.0, (s.body_length / s.body_height - low) / fading)
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
@@ -53,23 +53,26 @@ class ScenePiece:
     rotation: Rotation
     remark: str = ""
 
+    def row(self, label: str, part_no: str) -> dict[str, Any]:
+        """Its place, as records of scenes have it: it takes no part in steps."""
+        return {
+            "designator": label,
+            "part_no": part_no,
+            "origin": self.origin,
+            "rotation": self.rotation,
+            "way": (0.0, 0.0, 0.0),
+            "step": 0,
+            "under": (self.kind,),
+        }
+
 
 def changed_scenes(
     designs: tuple[Design, Design], shapes: tuple[Shapes, Shapes], say: Callable[[int, int, str], None]
 ) -> dict[str, list[ScenePiece]]:
     """Every scene that both designs have, in pieces; loads the kernel.
 
-    Parameters
-    ----------
-    designs, shapes
-        As in `changed_scene`; both designs must keep their rules.
-    say
-        Receives (done, total, text) as the work goes on.
-
-    Raises
-    ------
-    CheckFailure
-        Where the designs have no scene in common.
+    `designs`, `shapes`: as in `changed_scene`; both designs must keep their rules; `say`: receives (done,
+    total, text) as the work goes on. Raises CheckFailure where the designs have no scene in common.
     """
     before, after = (chosen_scenes(design, None) for design in designs)
     names = [name for name in after if name in before]

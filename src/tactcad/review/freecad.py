@@ -72,21 +72,9 @@ def freecad_document(
 ) -> bytes:
     """The document.
 
-    Parameters
-    ----------
-    design
-        Must keep its rules.
-    scene_names
-        The scenes to hold; the first one is shown.
-    shapes
-        Makes solids, or takes them from its cache.
-    say
-        Receives (done, total, text) as the work goes on.
-
-    Raises
-    ------
-    CheckFailure
-        Where FreeCAD is not installed, or ends without a document.
+    `design`: must keep its rules; `scene_names`: the scenes to hold; the first one is shown; `shapes`: makes
+    solids, or takes them from its cache; `say`: receives (done, total, text) as the work goes on. Raises
+    CheckFailure where FreeCAD is not installed, or ends without a document.
     """
     command = program()
     scenes = tuple(make_scene(design, name) for name in scene_names)
@@ -272,7 +260,7 @@ def changes_record(
             if key not in parts:
                 parts[key] = _part(piece, len(parts))
                 texts.append(key[0])
-            placed[name].append(_placed(piece, parts[key]["part_no"]))
+            placed[name].append(piece.row(piece.designator, parts[key]["part_no"]))
     a, b = (design.design for design in designs)
     record = {
         "label": f"{a.name} {a.revision} to {b.name} {b.revision}",
@@ -304,17 +292,6 @@ def _part(piece: ScenePiece, number: int) -> dict[str, Any]:
     }
 
 
-def _placed(piece: ScenePiece, part: str) -> dict[str, Any]:
-    return {
-        "designator": piece.designator,
-        "part_no": part,
-        "origin": piece.origin,
-        "rotation": piece.rotation,
-        "way": (0.0, 0.0, 0.0),
-        "under": (piece.kind,),
-    }
-
-
 def reload_macro(arguments: Sequence[str], document: Path) -> bytes:
     """FreeCAD's macro that makes the document again, by this tactcad with these arguments, and reloads it."""
     text = RELOAD.read_text("utf-8")
@@ -332,21 +309,9 @@ def made_by_freecad(
 ) -> bytes:
     """The document of a record.
 
-    Parameters
-    ----------
-    command
-        As `program` found it.
-    record
-        As `peers/freecad_document.py` reads it.
-    texts
-        The shapes of its parts (BREP), in their order.
-    say
-        Receives (done, text) as the work goes on.
-
-    Raises
-    ------
-    CheckFailure
-        Where FreeCAD ends without a document.
+    `command`: as `program` found it; `record`: as `peers/freecad_document.py` reads it; `texts`: the shapes
+    of its parts (BREP), in their order; `say`: receives (done, text) as the work goes on. Raises CheckFailure
+    where FreeCAD ends without a document.
     """
     with scratch_folder("freecad") as folder:
         for n, (part, text) in enumerate(zip(record["parts"], texts, strict=True)):

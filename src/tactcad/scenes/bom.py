@@ -67,14 +67,8 @@ COLUMNS = tuple(f.name for f in fields(BomRow))
 def bom_rows(scene: Scene, revision: str, files: Mapping[str, tuple[str, str]]) -> tuple[BomRow, ...]:
     """The lines of a scene: made parts, then bought ones, then supplies; each in order of first placement.
 
-    Parameters
-    ----------
-    scene
-        Its placements and supplies.
-    revision
-        Of the design, for made parts.
-    files
-        By part number: path and SHA-256 of the file that the part is made from.
+    `scene`: its placements and supplies; `revision`: of the design, for made parts; `files`: by part number:
+    path and SHA-256 of the file that the part is made from.
     """
     parts = sorted(scene.parts, key=lambda part: part.bought)
     rows = [
@@ -87,59 +81,36 @@ def bom_rows(scene: Scene, revision: str, files: Mapping[str, tuple[str, str]]) 
 def _part_row(item: int, part: Part, scene: Scene, revision: str, file: str, sha256: str) -> BomRow:
     order = part.purchase or Purchase("")
     placed = [p.designator for p in scene.placements if p.part.part_no == part.part_no]
-    return BomRow(
+    return _filled(
+        order,
+        part,
         item=item,
-        part_no=part.part_no,
         rev=revision,
         qty=len(placed),
         unit="pcs",
         description=part.name,
         make_buy="buy" if part.bought else "make",
         material=str(part.material),
-        process=part.process,
-        finish=part.finish,
         standard_designation=order.designation,
-        manufacturer=order.manufacturer,
-        mpn=order.mpn,
-        supplier=order.supplier,
-        alternates=order.alternates,
-        spares=part.spares,
         consumable=False,
         file=file,
         sha256=sha256,
         mass_g=round(part.mass, 6),
-        source_verified=order.source_verified,
         designators=" ".join(placed),
         has_solid=True,
     )
 
 
 def _supply_row(item: int, supply: Supply) -> BomRow:
-    return BomRow(
-        item=item,
-        part_no=supply.part_no,
-        rev="",
-        qty=supply.qty,
-        unit=supply.unit,
-        description=supply.description,
-        make_buy="buy",
-        material="",
-        process=supply.process,
-        finish="",
-        standard_designation=supply.designation,
-        manufacturer=supply.manufacturer,
-        mpn=supply.mpn,
-        supplier="",
-        alternates=supply.alternates,
-        spares=supply.spares,
-        consumable=supply.consumable,
-        file="",
-        sha256="",
-        mass_g=None,
-        source_verified=supply.verified,
-        designators="",
-        has_solid=False,
-    )
+    own = {"standard_designation": supply.designation, "source_verified": supply.verified}
+    return _filled(supply, **own, item=item, make_buy="buy", mass_g=None, has_solid=False)
+
+
+def _filled(*records: object, **told: object) -> BomRow:
+    """What the records say under the columns' names, then what is `told`; empty where neither does."""
+    said = {name: value for r in records for name, value in vars(r).items() if name in COLUMNS}
+    values: Any = dict.fromkeys(COLUMNS, "") | said | told
+    return BomRow(**values)
 
 
 def csv_bytes(rows: Sequence[BomRow]) -> bytes:
@@ -184,15 +155,8 @@ def _parsed(column: Any, cell: str) -> object:
 
 
 def json_bytes(rows: Sequence[BomRow], design: str, revision: str, scene: str) -> bytes:
-    """The rows as JSON.
-
-    Parameters
-    ----------
-    rows
-        As `bom_rows` gives them.
-    design, revision, scene
-        That they belong to.
-    """
+    """The rows as JSON. `rows`: as `bom_rows` gives them; `design`, `revision`, `scene`: that they belong
+    to."""
     record = {
         "schema": SCHEMA,
         "design": design,

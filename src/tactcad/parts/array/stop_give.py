@@ -52,14 +52,9 @@ def stop_plate_beams(
 ) -> StopPlate:
     """The beams of a plate under set screws.
 
-    Parameters
-    ----------
-    rows, pitch
-        Between the rows of set screws, and along the row between two pairs, mm.
-    plate
-        Its length across the rows, width along them, and thickness, mm.
-    screw, length
-        Thread of the set screws, and their length, mm.
+    `rows`, `pitch`: between the rows of set screws, and along the row between two pairs, mm; `plate`: its
+    length across the rows, width along them, and thickness, mm; `screw`, `length`: thread of the set screws,
+    and their length, mm.
     """
     across, width, t = plate
     m = METRIC[screw]
@@ -75,8 +70,7 @@ def _steel(length: float, width: float, thickness: float) -> Beam:
 
 def derived_pitch(across: float, thickness: float, screw: str, force: float, room: float) -> float:
     """Largest pitch of the set screws, whole mm, at which the plate's bending along the row under `force` (N)
-    is within `room` (mm).
-    """
+    is within `room` (mm)."""
     least = shortest_pitch(screw)
     for pitch in range(LONGEST_PITCH, ceil(least), -1):
         if _steel(pitch, across, thickness).supported() * force <= room:

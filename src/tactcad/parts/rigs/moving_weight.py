@@ -9,7 +9,7 @@ from math import ceil
 from tactcad.contour import Contour, circle, rectangle
 
 from ..language.description import Extrusion, Feature, Part, Purchase
-from ..language.metric import METRIC, sunk, tapped_blind, tapped_depth
+from ..language.metric import METRIC, corners, sunk, tapped_blind, tapped_depth
 from ..language.part_materials import CARBON_STEEL, PLAIN_STEEL, plate_material
 from ..language.plate import plate
 from .frame import BAR_FRONT, BAR_WIDTH, BEHIND_BAR, FOOT, PIN, PLATFORM, carrier_pattern, under_carrier_screw
@@ -30,9 +30,8 @@ def bar(rig: GuideLayout) -> Part:
     """
     t, z, top = rig.bar, rig.carriage_on_bar, rig.bar_height
     features: list[Feature] = [
-        sunk("carriage", "M3", (sx * 7.5, z + sy * 5.0, 0.0), (0, 0, 1), t, BAR_UNDER_HEAD)
-        for sx in (-1, 1)
-        for sy in (-1, 1)
+        sunk("carriage", "M3", (px, z + py, 0.0), (0, 0, 1), t, BAR_UNDER_HEAD)
+        for px, py in corners(7.5, 5.0)
     ]
     for sx in (-1, 1):
         features.append(tapped_blind("foot", "M4", (sx * BAR_SCREW_X, 0.0, t / 2), (0, 1, 0)))
@@ -84,8 +83,7 @@ PLATFORM_UNDER_HEAD = 3.5  # heads sunk by 0.5: the weights lie flat
 
 
 def platform(rig: GuideLayout) -> Part:
-    """Plate on the bar's upper end; the weights' pin stands over the array's middle. z = 0 is the
-    underside.
+    """Plate on the bar's upper end; the weights' pin stands over the array's middle. z = 0 is the underside.
 
     +-----------+
     |   O   O   |   bar, sunk from above
@@ -118,8 +116,7 @@ def platform(rig: GuideLayout) -> Part:
 
 
 def pin(rig: GuideLayout, under: float = 0.0) -> Part:
-    """Pin that centres the weights, as high as their stack on `under` mm of ballast; M4 thread in its
-    foot.
+    """Pin that centres the weights, as high as their stack on `under` mm of ballast; M4 thread in its foot.
 
     +---+
     |   |
@@ -169,8 +166,7 @@ def disc_weight(rig: GuideLayout) -> Part:
 
 
 def ballast(rig: GuideLayout, mass: float) -> Part:
-    """Disc under the weights that brings the moving mass to the design's; `mass` in g, thickness to 0.01
-    mm.
+    """Disc under the weights that brings the moving mass to the design's; `mass` in g, thickness to 0.01 mm.
 
     +------+ +------+
     +------+ +------+   thickness from the missing mass

@@ -8,7 +8,6 @@ from math import ceil, floor, log10
 from operator import attrgetter
 from typing import TypeVar
 
-from tactcad.design.fields import Number, Whole
 from tactcad.design.tree import Design
 
 from ..array.layout import Layout
@@ -29,15 +28,14 @@ def too_much(layout: Layout, lines: Lines) -> Iterator[Finding]:
 
 
 def remedy(design: Design, line: Deflection, lines: Lines) -> tuple[str, object, str]:
-    """The first field that by itself brings a deflection, one of `lines`, below what is allowed.
-
-    Returns
-    -------
-    tuple
-        The field's path, its value now, and in words the values that suffice.
-    """
+    """The first field that by itself brings a deflection, one of `lines`, below what is allowed. Returns the
+    field's path, its value now, and in words the values that suffice."""
     for path in line.fields:
-        value, spec = attrgetter(path)(design), _spec(design, path)
+        section, name = path.split(".")
+        value, spec = (
+            attrgetter(path)(design),
+            getattr(design, section).__dataclass_fields__[name].metadata["spec"],
+        )
         for end, words in ((spec.high, "at least"), (spec.low, "at most")):
             if _helps(design, line, lines, path, end):
                 return (
@@ -55,8 +53,7 @@ def remedy(design: Design, line: Deflection, lines: Lines) -> tuple[str, object,
 
 def _nearest(design: Design, line: Deflection, lines: Lines, path: str, far: V, near: V) -> V:
     """The value nearest to `far` (which does not suffice) that still suffices, as `near` does; whole, or of
-    four digits.
-    """
+    four digits."""
     good, bad = near, far
     for _ in range(STEPS):
         middle = (good + bad) // 2 if isinstance(far, int) else (good + bad) / 2
@@ -75,8 +72,3 @@ def _helps(design: Design, line: Deflection, lines: Lines, path: str, value: flo
     changed = replace(design, **{section: replace(getattr(design, section), **{name: value})})
     same = (d for d in lines(changed) if (d.part, d.model) == (line.part, line.model))
     return not next(same).too_much
-
-
-def _spec(design: Design, path: str) -> Number | Whole:
-    section, name = path.split(".")
-    return getattr(design, section).__dataclass_fields__[name].metadata["spec"]
