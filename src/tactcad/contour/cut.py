@@ -16,9 +16,21 @@ def cut(
 ) -> tuple[Contour, ...]:
     """The parts of the enclosed area on one side of a line parallel to an axis.
 
-    `contour`: outline to cut; `axis`, `at`: the line x = at or y = at, mm; `keep`: which side is kept;
-    `name`: of the lines that then lie along the cut. Returns counter-clockwise; none where the whole contour
-    lies on the other side.
+    Parameters
+    ----------
+    contour
+        Outline to cut.
+    axis, at
+        The line x = at or y = at, mm.
+    keep
+        Which side is kept.
+    name
+        Of the lines that then lie along the cut.
+
+    Returns
+    -------
+    tuple of Contour
+        Counter-clockwise; none where the whole contour lies on the other side.
     """
     i = 0 if axis == "x" else 1
     side = -1.0 if keep == "below" else 1.0

@@ -201,9 +201,21 @@ def _at_once(table: Table, chosen: tuple[Field, ...]) -> Rows | None:
 def read_table(path: str | Path, kind: str, most_bytes: int = LARGEST_FILE, comments: bool = True) -> Table:
     """A CSV file up to its header.
 
-    `path`: the file, as the user named it; `kind`: what was expected, for messages: "readings (CSV)";
-    `most_bytes`: what is larger is refused unread; `comments`: whether lines that start with # are left out.
-    Raises InputError with line and column: file not there, not text, no header, a column named twice.
+    Parameters
+    ----------
+    path
+        The file, as the user named it.
+    kind
+        What was expected, for messages: "readings (CSV)".
+    most_bytes
+        What is larger is refused unread.
+    comments
+        Whether lines that start with # are left out.
+
+    Raises
+    ------
+    InputError
+        With line and column: file not there, not text, no header, a column named twice.
     """
     shown, text = str(path), read_text(path, most_bytes, kind)
     hint = re.match(r"sep=.\r?\n", text)  # Excel's

@@ -77,9 +77,19 @@ def started(source: str, name: str, today: date) -> str:
     """The text of a design under another name, its comments and origins kept; its title is left out, so that
     it follows the array, which is about to be another.
 
-    `source`: the design to start from: a path, or a name in hardware/; `name`: of the new design; `today`:
-    its date; its revision is A. Raises InputError where the source is no design, or its [design] is not
-    written a value a line.
+    Parameters
+    ----------
+    source
+        The design to start from: a path, or a name in hardware/.
+    name
+        Of the new design.
+    today
+        Its date; its revision is A.
+
+    Raises
+    ------
+    InputError
+        Where the source is no design, or its [design] is not written a value a line.
     """
     text = read_text(find(source), MOST_BYTES, "a design file (TOML)").replace("\r\n", "\n")
     old, revision = parse_toml(text, source), parse(text, source).design.revision

@@ -49,9 +49,19 @@ REFUSED_BY_MACHINE = NO_ROOM | {
 def read_bytes(path: str | Path, most_bytes: int, kind: str) -> bytes:
     """All bytes of a regular file.
 
-    `path`: the file, as the user named it; `most_bytes`: what is larger is refused unread; `kind`: what was
-    expected, for messages: "a design file (TOML)". Raises InputError where there is no such file, it is a
-    folder, pipe or device, too large, or may not be read.
+    Parameters
+    ----------
+    path
+        The file, as the user named it.
+    most_bytes
+        What is larger is refused unread.
+    kind
+        What was expected, for messages: "a design file (TOML)".
+
+    Raises
+    ------
+    InputError
+        Where there is no such file, it is a folder, pipe or device, too large, or may not be read.
     """
     shown = str(path)
     if "\0" in shown:
@@ -105,9 +115,16 @@ def read_text(path: str | Path, most_bytes: int, kind: str) -> str:
 def read_json(path: str | Path, most_bytes: int, kind: str) -> Any:
     """The value of a JSON file.
 
-    `path`, `most_bytes`, `kind`: as for `read_bytes`. Raises InputError as `read_text`; with line and column
-    where it is not JSON, which has neither NaN nor infinities, where it is nested too deeply, or where a text
-    holds characters that nobody sees.
+    Parameters
+    ----------
+    path, most_bytes, kind
+        As for `read_bytes`.
+
+    Raises
+    ------
+    InputError
+        As `read_text`; with line and column where it is not JSON, which has neither NaN nor infinities, where
+        it is nested too deeply, or where a text holds characters that nobody sees.
     """
     text = read_text(path, most_bytes, f"{kind} (JSON)")
     try:

@@ -230,9 +230,18 @@ def _snapped(chain: list[Segment]) -> Contour:
 def check_dxf(written: str | Path | bytes, part: Part) -> list[str]:
     """What is wrong with a written cut file against its part.
 
-    `written`: path of the file, or its bytes; `part`: a part that has a cut file (`cut_section`). Returns
-    version, units, layers, gaps, double entities, and contours that differ in area, length or box; empty
-    where nothing is wrong.
+    Parameters
+    ----------
+    written
+        Path of the file, or its bytes.
+    part
+        A part that has a cut file (`cut_section`).
+
+    Returns
+    -------
+    list of str
+        Version, units, layers, gaps, double entities, and contours that differ in area, length or box; empty
+        where nothing is wrong.
     """
     try:
         file = read_dxf(written)

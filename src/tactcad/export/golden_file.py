@@ -67,9 +67,18 @@ def read_golden(path: Path) -> Record:
 def check_golden(design: Design, path: Path) -> list[Finding]:
     """Hold a design against its golden file.
 
-    `design`: a design that keeps its rules; `path`: of the golden file, which may be absent. Geometry that
-    the golden file's revision does not have fails; under a new revision, and where there is no golden file
-    yet, what `make golden` would take up is flagged.
+    Parameters
+    ----------
+    design
+        A design that keeps its rules.
+    path
+        Of the golden file, which may be absent.
+
+    Returns
+    -------
+    list of Finding
+        Geometry that the golden file's revision does not have fails; under a new revision, and where there is
+        no golden file yet, what `make golden` would take up is flagged.
     """
     if not path.exists():
         return [
@@ -138,9 +147,19 @@ def changes_against(path: Path, design: Design) -> list[Change] | None:
 def accept(design: Design, path: Path, failures: Sequence[Finding]) -> None:
     """Write the golden file where anything changed.
 
-    `design`, `path`: the design, and where its golden file is or will be; `failures`: what the checks of the
-    design have found to fail. Raises CheckFailure with nothing written, where a check failed, or the golden
-    file's own revision has other geometry, InputError where the file cannot be written.
+    Parameters
+    ----------
+    design, path
+        The design, and where its golden file is or will be.
+    failures
+        What the checks of the design have found to fail.
+
+    Raises
+    ------
+    CheckFailure
+        With nothing written, where a check failed, or the golden file's own revision has other geometry.
+    InputError
+        Where the file cannot be written.
     """
     left = f"{path.name} is left as it was"
     if failures:

@@ -42,9 +42,24 @@ PLACE_AGREES = 1e-7
 def part_step(part: Part, shape: TopoDS_Shape, header: Header) -> bytes:
     """A part alone as a STEP file: one PRODUCT, no assembly.
 
-    `part`: what the file is compared with; `shape`: its solid in its own frame, mm; `header`: entries of the
-    file's header. Returns the file in canonical form. Raises CheckFailure where it reads back otherwise:
-    product, validity, or the volume by more than a share of 1e-6.
+    Parameters
+    ----------
+    part
+        What the file is compared with.
+    shape
+        Its solid in its own frame, mm.
+    header
+        Entries of the file's header.
+
+    Returns
+    -------
+    bytes
+        The file in canonical form.
+
+    Raises
+    ------
+    CheckFailure
+        Where it reads back otherwise: product, validity, or the volume by more than a share of 1e-6.
     """
     document, shape_tool = new_document()
     add_prototype(document, shape_tool, part, shape)

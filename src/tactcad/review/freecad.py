@@ -72,9 +72,21 @@ def freecad_document(
 ) -> bytes:
     """The document.
 
-    `design`: must keep its rules; `scene_names`: the scenes to hold; the first one is shown; `shapes`: makes
-    solids, or takes them from its cache; `say`: receives (done, total, text) as the work goes on. Raises
-    CheckFailure where FreeCAD is not installed, or ends without a document.
+    Parameters
+    ----------
+    design
+        Must keep its rules.
+    scene_names
+        The scenes to hold; the first one is shown.
+    shapes
+        Makes solids, or takes them from its cache.
+    say
+        Receives (done, total, text) as the work goes on.
+
+    Raises
+    ------
+    CheckFailure
+        Where FreeCAD is not installed, or ends without a document.
     """
     command = program()
     scenes = tuple(make_scene(design, name) for name in scene_names)
@@ -309,9 +321,21 @@ def made_by_freecad(
 ) -> bytes:
     """The document of a record.
 
-    `command`: as `program` found it; `record`: as `peers/freecad_document.py` reads it; `texts`: the shapes
-    of its parts (BREP), in their order; `say`: receives (done, text) as the work goes on. Raises CheckFailure
-    where FreeCAD ends without a document.
+    Parameters
+    ----------
+    command
+        As `program` found it.
+    record
+        As `peers/freecad_document.py` reads it.
+    texts
+        The shapes of its parts (BREP), in their order.
+    say
+        Receives (done, text) as the work goes on.
+
+    Raises
+    ------
+    CheckFailure
+        Where FreeCAD ends without a document.
     """
     with scratch_folder("freecad") as folder:
         for n, (part, text) in enumerate(zip(record["parts"], texts, strict=True)):

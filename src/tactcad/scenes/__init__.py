@@ -78,9 +78,19 @@ def chosen_scenes(design: Design, wanted: list[str] | None) -> tuple[str, ...]:
 def make_scene(design: Design, name: str, pose: Pose | None = None) -> Scene:
     """One scene of a design.
 
-    `design`: must keep every rule, as `tactcad.parts.designs.load` ensures; `name`: one of
-    `scene_names(design)`; `pose`: by default the rest pose; the scene `array` has no other. Raises InputError
-    where the pose is impossible.
+    Parameters
+    ----------
+    design
+        Must keep every rule, as `tactcad.parts.designs.load` ensures.
+    name
+        One of `scene_names(design)`.
+    pose
+        By default the rest pose; the scene `array` has no other.
+
+    Raises
+    ------
+    InputError
+        Where the pose is impossible.
     """
     from .scene import REST
 

@@ -25,9 +25,17 @@ def bridge_signal(
 ) -> tuple[float, float]:
     """Voltages of a bridge's two outputs over ground while its switch is on: at the gauge, at the other side.
 
-    `design`: its nominal resistances, excitation and switch; `lead`: of each lead of the gauge, ohm; `x`:
-    dR/R of the gauge beyond its unloaded `bridge_offset`; `gauge`, `arm`: relative errors of resistance: of
-    the gauge, and of the others, each in the direction that adds to a positive one's.
+    Parameters
+    ----------
+    design
+        Its nominal resistances, excitation and switch.
+    lead
+        Of each lead of the gauge, ohm.
+    x
+        dR/R of the gauge beyond its unloaded `bridge_offset`.
+    gauge, arm
+        Relative errors of resistance: of the gauge, and of the others, each in the direction that adds to a
+        positive one's.
     """
     r, nominal = design.readout, completion_resistance(design)
     active = design.gauge.resistance * (1 + gauge) * (1 + r.bridge_offset + x)
