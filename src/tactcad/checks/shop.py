@@ -127,8 +127,9 @@ def load_shop(path: str | Path = DEFAULT) -> Shop:
 def _section(
     where: str, table: Mapping[str, Any], kind: type, name: str, source_name: str, usual: Shop | None = None
 ) -> tuple[Any, Mapping[str, str]]:
-    """Limits and their sources from two tables of the same fields; missing ones are taken from `usual`, where
-    given."""
+    """Limits and their sources from two tables of the same fields; missing ones are taken from `usual`,
+    where given.
+    """
     known = {f.name for f in fields(kind)}
     given = []
     for section in (name, source_name):

@@ -47,8 +47,19 @@ def cut(
 def between(contour: Contour, x0: float, x1: float, names: tuple[str, str] = ("cut", "cut")) -> Contour:
     """The part of a contour between two lines parallel to y, as one closed contour.
 
-    `contour`: outline to cut; `x0`, `x1`: the lines, mm; x0 < x1; `names`: of the lines that then lie along
-    the two cuts. Raises ValueError where that is not one piece.
+    Parameters
+    ----------
+    contour
+        Outline to cut.
+    x0, x1
+        The lines, mm; x0 < x1.
+    names
+        Of the lines that then lie along the two cuts.
+
+    Raises
+    ------
+    ValueError
+        Where that is not one piece.
     """
     parts = [q for p in cut(contour, "x", x0, "above", names[0]) for q in cut(p, "x", x1, "below", names[1])]
     if len(parts) != 1:
@@ -59,8 +70,17 @@ def between(contour: Contour, x0: float, x1: float, names: tuple[str, str] = ("c
 def crossings(contour: Contour, axis: Literal["x", "y"], at: float) -> list[float]:
     """Where a line parallel to an axis crosses a contour.
 
-    `contour`: a closed contour, mm; `axis`, `at`: the line x = at or y = at, mm. Returns the other
-    coordinates (mm), sorted; a vertex on the line counts once for each segment that ends there.
+    Parameters
+    ----------
+    contour
+        A closed contour, mm.
+    axis, at
+        The line x = at or y = at, mm.
+
+    Returns
+    -------
+    list of float
+        The other coordinates (mm), sorted; a vertex on the line counts once for each segment that ends there.
     """
     i = 0 if axis == "x" else 1
     crossed = [p[1 - i] for s in contour for p in _crossings(s, i, at)]

@@ -13,8 +13,9 @@ from .segment import Line, Point, Segment
 
 
 def side(contour: Contour, p: Point) -> int:
-    """1 where p is inside, 0 on the contour within rounding, -1 outside; the direction of the chain does not
-    matter."""
+    """1 where p is inside, 0 on the contour within rounding, -1 outside; the direction of the chain does
+    not matter.
+    """
     if min(distance_to(s, p) for s in contour) <= ROUNDING_MM:
         return 0
     return 1 if round(sum(_turn(s, p) for s in contour) / tau) else -1

@@ -111,7 +111,8 @@ def distance(a: Segment, b: Segment) -> float:
 
 def meeting_points(a: Segment, b: Segment) -> list[Point]:
     """Points in which two segments meet, within rounding; where they overlap, the ends of the common
-    stretch."""
+    stretch.
+    """
     if not _discs_meet(a, b):
         return []
     if isinstance(a, Line):

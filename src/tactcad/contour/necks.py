@@ -124,8 +124,9 @@ def direction(s: Segment, p: Point) -> Point:
 
 
 def _side(piece: _Piece, p: Point, q: Point) -> Literal["material", "void"] | None:
-    """On which side of the piece the connection from p to q leaves it; None where it does not leave along a
-    normal."""
+    """On which side of the piece the connection from p to q leaves it; None where it does not leave along
+    a normal.
+    """
     s = piece.segment
     here = direction(s, p)
     before = piece.arriving if dist(p, s.start) <= ROUNDING_MM else here

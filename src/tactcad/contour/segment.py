@@ -16,7 +16,8 @@ LEAST_EDGE, LOST = 1e-3, 1e-9
 
 def is_sliver(length: float) -> bool:
     """Whether an edge of that length (mm) is too short for wire and kernel; rules and checks both ask
-    here."""
+    here.
+    """
     return length < LEAST_EDGE - LOST
 
 

@@ -140,8 +140,22 @@ def half_step(text: str) -> float:
 
 
 def read(path: str | Path, fields: tuple[Field, ...], optional: tuple[Field, ...] = ()) -> Rows:
-    """Numeric columns of a CSV file. `path`: the file, as the user named it; `fields`: columns that must be
-    there; `optional`: columns that are read where they are there. Raises InputError as `numeric`."""
+    """Numeric columns of a CSV file.
+
+    Parameters
+    ----------
+    path
+        The file, as the user named it.
+    fields
+        Columns that must be there.
+    optional
+        Columns that are read where they are there.
+
+    Raises
+    ------
+    InputError
+        As `numeric`.
+    """
     return numeric(read_table(path, "readings (CSV)"), fields, optional)
 
 
@@ -266,8 +280,19 @@ def require_columns(table: Table, names: Sequence[str], optional: Sequence[str] 
 def refuse_duplicates(rows: Rows, names: tuple[str, ...], legal: str = "each once") -> None:
     """Refuse a row that repeats an earlier one's values in some columns.
 
-    `rows`: as `read` gives them; `names`: the columns that are compared; `legal`: what would be accepted, for
-    the message. Raises InputError with line and column of the second row.
+    Parameters
+    ----------
+    rows
+        As `read` gives them.
+    names
+        The columns that are compared.
+    legal
+        What would be accepted, for the message.
+
+    Raises
+    ------
+    InputError
+        With line and column of the second row.
     """
     columns = [rows.values(n) for n in names]
     order = np.lexsort(columns)  # stable: of equal rows the first stays first

@@ -20,8 +20,15 @@ from .tree import Design, Identity
 
 
 def design_text(design: Design, heading: str = "") -> str:
-    """TOML text of a design: every table with every value that is not derived, then their origins. `design`:
-    as read or made; `heading`: lines of comment before the first table."""
+    """TOML text of a design: every table with every value that is not derived, then their origins.
+
+    Parameters
+    ----------
+    design
+        As read or made.
+    heading
+        Lines of comment before the first table.
+    """
     lines = [f"# {line}".rstrip() for line in heading.splitlines()]
     for f in dataclasses.fields(design):
         table = getattr(design, f.name)

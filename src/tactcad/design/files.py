@@ -92,8 +92,15 @@ def read_bytes(path: str | Path, most_bytes: int, kind: str) -> bytes:
 def read_text(path: str | Path, most_bytes: int, kind: str) -> str:
     """All of a regular file as UTF-8 text, without a byte order mark.
 
-    `path`, `most_bytes`, `kind`: as for `read_bytes`. Raises InputError as `read_bytes`; with line and column
-    (in bytes) where it is not UTF-8, or holds a NUL.
+    Parameters
+    ----------
+    path, most_bytes, kind
+        As for `read_bytes`.
+
+    Raises
+    ------
+    InputError
+        As `read_bytes`; with line and column (in bytes) where it is not UTF-8, or holds a NUL.
     """
     data = read_bytes(path, most_bytes, kind)
     try:

@@ -68,7 +68,8 @@ class Alloy:
 @dataclass(frozen=True)
 class Difference:
     """A property for which a design and the table's row of its material differ. origin: the value's
-    source."""
+    source.
+    """
 
     alloy: str
     name: str
@@ -139,7 +140,8 @@ def leaf_conductivity(given: float | None) -> float:
 
 def modulus_per_kelvin(name: str) -> float:
     """Share of Young's modulus by which it falls per kelvin, 1/K; for a label of its own the table's largest
-    one."""
+    one.
+    """
     row = ALLOYS.get(name)
     return max(present(r.modulus_per_kelvin) for r in ([row] if row else ALLOYS.values()))
 

@@ -39,8 +39,15 @@ def nearest(word: str, known: Iterable[str]) -> str:
 
 
 def one_of(word: object, known: Iterable[str]) -> str:
-    """The legal words in place of a mistyped one: the whole list, and a suggestion. `word`: what was typed;
-    `known`: the legal words."""
+    """The legal words in place of a mistyped one: the whole list, and a suggestion.
+
+    Parameters
+    ----------
+    word
+        What was typed.
+    known
+        The legal words.
+    """
     known = list(known)
     return "one of " + ", ".join(known) + in_brackets(near(str(word), known))
 

@@ -31,9 +31,14 @@ Settle = Callable[[Path], None]
 def staged_folder(parent: Path, stem: str, settle: Settle = lambda _: None) -> Iterator[Path]:
     """A folder `parent/STEM.tactcad-XXXXXXXX` of this process alone, removed when the block ends.
 
-    What killed runs left there of the same stem is removed first. `parent`, `stem`: where it stands, and how
-    its name begins; `settle`: called with each of these folders before its removal, to save what is not ours
-    to remove.
+    What killed runs left there of the same stem is removed first.
+
+    Parameters
+    ----------
+    parent, stem
+        Where it stands, and how its name begins.
+    settle
+        Called with each of these folders before its removal, to save what is not ours to remove.
     """
 
     def removed(folder: Path) -> None:

@@ -23,7 +23,8 @@ _NUMBER = re.compile(r"[+-]?(([0-9]+\.?[0-9]*|\.[0-9]+)(e[+-]?[0-9]+)?|nan|inf(i
 
 def as_number(text: str) -> float:
     """The number that a text stands for, with or without blanks around it. Raises ValueError where it is
-    none."""
+    none.
+    """
     plain = text.strip(" \t")
     if not _NUMBER.fullmatch(plain):
         raise ValueError(f"not a number: {text!r}")
@@ -42,7 +43,8 @@ def as_whole(text: str) -> int:
 
 def filling_radius(radius: float, length: float) -> float:
     """The fillet radius in a slot, mm, of numbers or arrays: exactly half its length where two fillets fill
-    it to nine digits (a full round)."""
+    it to nine digits (a full round).
+    """
     full = abs(2 * radius - length) <= NINE_DIGITS * length
     return full * (length / 2) + (1 - full) * radius
 
@@ -71,8 +73,9 @@ _LONG_KEY = re.compile(
 
 
 def parse_toml(text: str, where: str) -> dict[str, Any]:
-    """The table that TOML text holds; `where` names the text in messages. Raises InputError where it is not
-    TOML."""
+    """The table that TOML text holds; `where` names the text in messages. Raises InputError where it is
+    not TOML.
+    """
     text = text.replace("\r\n", "\n")
     long = next((token for token in _LONG_KEY.finditer(text) if token["long"]), None)
     if long:

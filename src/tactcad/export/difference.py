@@ -98,7 +98,8 @@ def _is_number(value: Any) -> bool:
 
 def _compare_contours(old: list, new: list, path: tuple[str, ...]) -> Iterator[Change]:
     """Contours differ where they do not cover the same curve; their division into segments does not
-    matter."""
+    matter.
+    """
     if old == new:
         return
     before, after = [contour_of(rows) for rows in old], [contour_of(rows) for rows in new]

@@ -66,8 +66,17 @@ def _section(part: Part) -> Extrusion:
 def dxf_bytes(part: Part) -> bytes:
     """The cut file of a part that is cut from sheet or plate.
 
-    Its bytes depend on neither process, time zone nor home folder. `part`: a part that has a cut file
-    (`tactcad.parts.language.description`). Raises ValueError where the part has none.
+    Its bytes depend on neither process, time zone nor home folder.
+
+    Parameters
+    ----------
+    part
+        A part that has a cut file (`tactcad.parts.language.description`).
+
+    Raises
+    ------
+    ValueError
+        Where the part has none.
     """
     import ezdxf
 

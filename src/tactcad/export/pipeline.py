@@ -64,7 +64,8 @@ class Progress(Protocol):
 @dataclass(frozen=True)
 class Exported:
     """Result of an export: its folder, how many files it holds, which were made anew, which parts the kernel
-    built, and why (empty where nothing had changed)."""
+    built, and why (empty where nothing had changed).
+    """
 
     folder: Path
     files: int
@@ -201,8 +202,14 @@ def made_files(
 ) -> Iterator[tuple[Output, bytes, bool]]:
     """Every file of the jobs, its bytes, and whether they were made anew; what the cache holds comes first.
 
-    `plan`: that the jobs are of; `jobs`: made side by side (workers.py), the solids that they need before
-    them; `step`, `say`: receive done, total and what is under way; and lines to keep.
+    Parameters
+    ----------
+    plan
+        That the jobs are of.
+    jobs
+        Made side by side (workers.py), the solids that they need before them.
+    step, say
+        Receive done, total and what is under way; and lines to keep.
     """
     cache, shapes = plan.shapes.cache, plan.shapes
     total, done, missing = sum(len(job.files) for job in jobs), 0, []

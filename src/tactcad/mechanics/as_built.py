@@ -46,8 +46,17 @@ def without_layer(s: HingeSection, layer: Array | float) -> HingeSection:
 
 
 def in_clamp(s: HingeSection, stiffness: Array, turn: Array | float) -> Array:
-    """Tip stiffness in a clamp that turns under the moment at its edge, N/mm. `stiffness`: tip stiffness in a
-    rigid clamp, N/mm; `turn`: rotation of the clamp per moment, rad/(N mm)."""
+    """Tip stiffness in a clamp that turns under the moment at its edge, N/mm.
+
+    Parameters
+    ----------
+    s
+        One design or many.
+    stiffness
+        Tip stiffness in a rigid clamp, N/mm.
+    turn
+        Rotation of the clamp per moment, rad/(N mm).
+    """
     lever = s.load_arm + s.hinge_length / 2.0 + s.body_length
     return stiffness / (1.0 + stiffness * turn * lever * lever)
 

@@ -31,8 +31,9 @@ from .section import Array, HingeSection
 class Gauge:
     """A foil gauge centred on the hinge; lengths mm, moduli MPa.
 
-    grid_height: from the leaf's face to the foil, backing and glue. foil_coverage: share of the grid's width
-    that is metal. carrier_width may not exceed the sheet's thickness; what is wider does not lie on the leaf.
+    grid_height: from the leaf's face to the foil, backing and glue. foil_coverage: share of the grid's
+    width that is metal. carrier_width may not exceed the sheet's thickness; what is wider does not lie on
+    the leaf.
     """
 
     factor: float
@@ -49,7 +50,8 @@ class Gauge:
 @dataclass(frozen=True)
 class Composite:
     """Leaf with its gauge: bending stiffness over the bare leaf's, and foil strain over the bare leaf's
-    surface strain at the same moment."""
+    surface strain at the same moment.
+    """
 
     stiffening: Array
     reading: Array
@@ -57,7 +59,8 @@ class Composite:
 
 def composite(s: HingeSection, gauge: Gauge) -> Composite:
     """Section of leaf, carrier and foil by the theory of composite beams (plane sections, E-weighted
-    areas)."""
+    areas).
+    """
     t, b, E = s.hinge_thickness, s.width, s.youngs_modulus
     h, f = gauge.grid_height, gauge.foil_thickness
     # E A, centre (from the leaf's mid-plane) and own E I of each layer
@@ -73,8 +76,9 @@ def composite(s: HingeSection, gauge: Gauge) -> Composite:
 
 
 def leaf_share(s: HingeSection, rung: str = ladder.DEFAULT_RUNG) -> Array:
-    """Share of the compliance that is inversely proportional to the leaf's bending stiffness: dln K/dln t /
-    3."""
+    """Share of the compliance that is inversely proportional to the leaf's bending stiffness: dln K/dln t
+    / 3.
+    """
     return elasticity(s, "hinge_thickness", rung) / 3
 
 
@@ -121,10 +125,21 @@ def reading(s: HingeSection, grid_length: Array | float, shift: Array | float) -
     """Mean strain under a grid bonded `shift` mm towards the pad, over that of one on the hinge's middle.
 
     The face's strain is (1 - x/L) p(|x|), x towards the pad: the load's moment times the profile that
-    `strain.grid_factor` was fitted for. By parts, with P the integral of p from 0, mean = [(1 - x1/L) P(x1) -
-    (1 - x0/L) P(x0) + int P dx/L]/grid. Within 0.7 % of plane elements 0.1 mm off the middle, and 0.4 % where
-    the slot has a flat part (tests/mechanics/test_gauge_place.py). `grid_length`, `shift`: mm. Raises
-    CheckFailure where a two-sided hinge's flat part is too short for the grid at that place.
+    `strain.grid_factor` was fitted for. By parts, with P the integral of p from 0,
+    mean = [(1 - x1/L) P(x1) - (1 - x0/L) P(x0) + int P dx/L]/grid. Within 0.7 % of plane elements 0.1 mm off
+    the middle, and 0.4 % where the slot has a flat part (tests/mechanics/test_gauge_place.py).
+
+    Parameters
+    ----------
+    s
+        One design or many.
+    grid_length, shift
+        mm.
+
+    Raises
+    ------
+    CheckFailure
+        Where a two-sided hinge's flat part is too short for the grid at that place.
     """
     grid, middle = np.asarray(grid_length, dtype=float), np.asarray(shift, dtype=float)
     L = s.load_arm
@@ -187,7 +202,8 @@ class Power:
 @dataclass(frozen=True)
 class Heating:
     """power W at the grid, power_density kW/m2 of grid, rise K of grid over body, drift dR/R left in the
-    bridge."""
+    bridge.
+    """
 
     power: float
     power_density: float
@@ -196,8 +212,15 @@ class Heating:
 
 
 def continuous(excitation: float, gauge: Gauge, power: Power) -> Heating:
-    """Heating with power on all the time. `excitation`: of the bridge, V; `gauge`, `power`: the gauge, and
-    what heats it."""
+    """Heating with power on all the time.
+
+    Parameters
+    ----------
+    excitation
+        Of the bridge, V.
+    gauge, power
+        The gauge, and what heats it.
+    """
     watts = (excitation / 2) ** 2 / power.resistance
     return _heating(watts, watts * (thermal_resistance(gauge, power) + power.leaf_resistance), gauge, power)
 
@@ -206,8 +229,17 @@ def switched(excitation: float, gauge: Gauge, power: Power) -> Heating:
     """Heating with power on for on_time in every period, at the end of a reading in the settled cycle, its
     warmest moment.
 
-    `excitation`: of the bridge, V; `gauge`, `power`: the gauge, and what heats it. Raises InputError where
-    on_time is longer than the period.
+    Parameters
+    ----------
+    excitation
+        Of the bridge, V.
+    gauge, power
+        The gauge, and what heats it.
+
+    Raises
+    ------
+    InputError
+        Where on_time is longer than the period.
     """
     if power.on_time > power.period:
         raise InputError(

@@ -43,8 +43,20 @@ class Result:
 
 
 def evaluate(s: HingeSection, rung: str = DEFAULT_RUNG) -> Result:
-    """Tip stiffness of every design by a closed-form rung. `rung`: one of `CLOSED_FORMS`. Returns arrays of
-    the section's shape; out of the rung's range NaN and the first rule that is broken."""
+    """Tip stiffness of every design by a closed-form rung.
+
+    Parameters
+    ----------
+    s
+        One design or many.
+    rung
+        One of `CLOSED_FORMS`.
+
+    Returns
+    -------
+    Result
+        Arrays of the section's shape; out of the rung's range NaN and the first rule that is broken.
+    """
     broken = validity.first_broken(s, rung)
     valid = ~broken.astype(bool)
     stiffness = np.full(s.shape, np.nan)
@@ -56,8 +68,22 @@ def evaluate(s: HingeSection, rung: str = DEFAULT_RUNG) -> Result:
 def stiffness(s: HingeSection, rung: str = DEFAULT_RUNG) -> Array:
     """Tip stiffness by a closed-form rung, friction at the pad included, N/mm.
 
-    `rung`: one of `CLOSED_FORMS`. Returns arrays of the section's shape. Raises CheckFailure where any design
-    is out of the rung's range; names the rule and the design.
+    Parameters
+    ----------
+    s
+        One design or many.
+    rung
+        One of `CLOSED_FORMS`.
+
+    Returns
+    -------
+    Array
+        Of the section's shape.
+
+    Raises
+    ------
+    CheckFailure
+        Where any design is out of the rung's range; names the rule and the design.
     """
     require_range(s, rung)
     return _stiffness(s, rung)

@@ -78,7 +78,8 @@ def root_length(s: HingeSection, k: Constants | None = None) -> Array:
 
 def root_lengths(s: HingeSection, k: Constants | None = None) -> tuple[Array, Array]:
     """Lengths that the roots to arm and body add to the leaf between blocks of finite height, in hinge
-    thicknesses."""
+    thicknesses.
+    """
     k = k or by_sides("root", s.two_sided)
     g, t = root_length(s, k), s.hinge_thickness
     low, rise = _height_felt(s, k)
@@ -89,7 +90,8 @@ def root_lengths(s: HingeSection, k: Constants | None = None) -> tuple[Array, Ar
 
 def parts(s: HingeSection, k: Constants | None = None) -> Parts:
     """Tip compliance in plane stress by its parts; `k` are the root's constants, by default the shipped
-    ones."""
+    ones.
+    """
     k = k or by_sides("root", s.two_sided)
     per = s.youngs_modulus * s.width
     slope = (s.straight_length / s.hinge_thickness) ** 3 / per
@@ -154,7 +156,8 @@ def _cubic(s: HingeSection, k: Constants) -> Array:
 
 def _height_felt(s: HingeSection, k: Constants) -> tuple[Array, Array]:
     """2 p3/3, the body length over height below which the height has no effect, and u, by how much it is
-    exceeded."""
+    exceeded.
+    """
     low, fading = np.asarray(k["p3"]) / 1.5, _by_form(FADING, s.two_sided)
     return low, fading * np.logaddexp(0.0, (s.body_length / s.body_height - low) / fading)
 

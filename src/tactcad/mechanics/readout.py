@@ -71,14 +71,18 @@ class ReadOut:
 def transmission(gauge: float, arm: float, lead: float, on: float, three_wires: bool) -> float:
     """Slope of a bridge with leads and a switch over that of four equal arms alone, at zero.
 
-    Its halves are the gauge's, A + B with A = R + n L and B = C + m L, and that of two arms C; three wires: n
-    = m = 1, two: n = 2, m = 0. The switch takes its part of the supply, and the gauge's half divides what is
-    left:
+    Its halves are the gauge's, A + B with A = R + n L and B = C + m L, and that of two arms C; three wires:
+    n = m = 1, two: n = 2, m = 0. The switch takes its part of the supply, and the gauge's half divides
+    what is left:
 
         T = 4 R B/(A + B)^2 H/(H + on), H = (A + B) 2 C/(A + B + 2 C)
 
-    `gauge`, `arm`, `lead`, `on`: R, C, L and the closed switch, ohm; `three_wires`: whether each gauge has
-    three leads.
+    Parameters
+    ----------
+    gauge, arm, lead, on
+        R, C, L and the closed switch, ohm.
+    three_wires
+        Whether each gauge has three leads.
     """
     a, b = (gauge + lead, arm + lead) if three_wires else (gauge + 2 * lead, arm)
     halves = (a + b) * 2 * arm / (a + b + 2 * arm)
@@ -112,8 +116,14 @@ def unlimited_output(strain: ArrayLike, factor: float, readout: ReadOut) -> Arra
 def volts_per_strain(factor: float, readout: ReadOut, strain: ArrayLike = 0.0) -> Array:
     """Sensitivity of the amplifier's output to strain at a foil strain, V: T U G GF 4/(4 + 2 x)^2.
 
-    `factor`: gauge factor GF; `readout`: supply U, gain G, transmission T and offset; x = GF strain + offset;
-    `strain`: foil strain at which the slope is taken.
+    Parameters
+    ----------
+    factor
+        Gauge factor GF.
+    readout
+        Supply U, gain G, transmission T and offset; x = GF strain + offset.
+    strain
+        Foil strain at which the slope is taken.
     """
     x = factor * np.asarray(strain, dtype=float) + readout.bridge_offset
     return readout.excitation * readout.gain * readout.transmission * factor * 4 / (4 + 2 * x) ** 2

@@ -107,8 +107,9 @@ class HingeSection:
         return replace(self, **{name: np.asarray(value) for name, value in changes.items()})
 
     def rows(self, index: int | slice | Sequence[int] | NDArray[Any]) -> HingeSection:
-        """The designs at `index` of the flattened common shape; a parameter that is one number for all stays
-        so."""
+        """The designs at `index` of the flattened common shape; a parameter that is one number for all
+        stays so.
+        """
         shape = self.shape
         picked = {}
         for each in fields(self):

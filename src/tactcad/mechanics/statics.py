@@ -35,23 +35,27 @@ class Beam:
 
     def supported(self) -> float:
         """Deflection in the middle (mm/N) on supports that let the ends turn: an upper bound for real
-        supports."""
+        supports.
+        """
         return self.length**3 / (48.0 * self.bending) + self.length / (4.0 * self.shear)
 
     def clamped(self) -> float:
         """Deflection in the middle (mm/N) between supports that prevent rotation: a lower bound for real
-        supports."""
+        supports.
+        """
         return self.length**3 / (192.0 * self.bending) + self.length / (4.0 * self.shear)
 
     def supported_beside(self, at: float) -> float:
         """Deflection in the middle (mm/N) under a force `at` mm from one of two supports that let the ends
-        turn."""
+        turn.
+        """
         a = min(at, self.length - at)
         return a * (3.0 * self.length**2 - 4.0 * a**2) / (48.0 * self.bending) + a / (2.0 * self.shear)
 
     def supported_evenly(self) -> float:
         """Deflection in the middle (mm/N) under a load spread over the length; the supports let the ends
-        turn."""
+        turn.
+        """
         return 5.0 * self.length**3 / (384.0 * self.bending) + self.length / (8.0 * self.shear)
 
     def cantilever(self) -> float:
@@ -77,8 +81,14 @@ class Beam:
 def rod(length: float, diameter: float, youngs_modulus: float, poisson: float) -> Beam:
     """A round bar as a rectangular one of the same height and the same second moment of area, pi d^4/64.
 
-    The rectangle is a third softer in shear than the round bar. `length`, `diameter`: mm; `youngs_modulus`,
-    `poisson`: MPa; Poisson's ratio.
+    The rectangle is a third softer in shear than the round bar.
+
+    Parameters
+    ----------
+    length, diameter
+        mm.
+    youngs_modulus, poisson
+        MPa; Poisson's ratio.
     """
     return Beam(length, 3.0 * pi / 16.0 * diameter, diameter, youngs_modulus, poisson)
 
@@ -88,8 +98,17 @@ def round_plate(
 ) -> tuple[float, float]:
     """Deflection of the middle of a round plate supported on its rim.
 
-    `radius`, `thickness`: mm; `youngs_modulus`, `poisson`: MPa; Poisson's ratio. Returns under a force in the
-    middle, mm/N, and under pressure on the face, mm/MPa.
+    Parameters
+    ----------
+    radius, thickness
+        mm.
+    youngs_modulus, poisson
+        MPa; Poisson's ratio.
+
+    Returns
+    -------
+    tuple of float
+        Under a force in the middle, mm/N, and under pressure on the face, mm/MPa.
     """
     D = youngs_modulus * thickness**3 / (12.0 * (1.0 - poisson**2))
     nu = poisson
@@ -119,8 +138,14 @@ def tipping_margin(contacts: Sequence[Point], half: float) -> float:
     """How far a vertical load anywhere on the square |x|, |y| <= half stays inside the wheels' contacts, mm.
 
     A vertical load inside their polygon leaves every wheel pressed, however large it is; the cart's own
-    weight only helps. The square's corners are the critical places. `contacts`: contact points of the wheels,
-    mm: a convex polygon, counter-clockwise; `half`: half the square's side, mm.
+    weight only helps. The square's corners are the critical places.
+
+    Parameters
+    ----------
+    contacts
+        Contact points of the wheels, mm: a convex polygon, counter-clockwise.
+    half
+        Half the square's side, mm.
     """
     return min(inside_by(contacts, (sx * half, sy * half)) for sx in (-1, 1) for sy in (-1, 1))
 

@@ -65,8 +65,21 @@ def peak(s: HingeSection, force: Array | float, rung: str = ladder.DEFAULT_RUNG)
     """Largest surface strain at mid-width: at the slot-side fillet towards the body.
 
     The rungs short, beam and section do not model the fillet: theirs is the nominal strain at the slot's end
-    (short: at its centre). `force`: at the load line, N; `rung`: a closed-form rung. Raises CheckFailure
-    where a design is out of the rung's range.
+    (short: at its centre).
+
+    Parameters
+    ----------
+    s
+        One design or many.
+    force
+        At the load line, N.
+    rung
+        A closed-form rung.
+
+    Raises
+    ------
+    CheckFailure
+        Where a design is out of the rung's range.
     """
     ladder.require_range(s, rung)
     if rung in ladder.FITTED:
@@ -88,7 +101,8 @@ def peak_stress(s: HingeSection, force: Array | float) -> Array:
 
 def stress_beyond_the_fit(s: HingeSection, force: Array | float) -> Array:
     """`peak_stress` without its check of the range, MPa: not accurate enough to report, but good for
-    bounds."""
+    bounds.
+    """
     return mean_stress(s, force) * peak_share(s)
 
 
@@ -102,7 +116,8 @@ def mean_stress(s: HingeSection, force: Array | float) -> Array:
 
 def peak_share(s: HingeSection) -> Array:
     """Largest principal stress over the width's mean, at the fillet: at mid-width, since the sheet's sides
-    carry less; never less than the mean itself."""
+    carry less; never less than the mean itself.
+    """
     return np.maximum(mid_width_share(s), 1.0)
 
 
@@ -110,8 +125,14 @@ def mid_width_share(s: HingeSection, data: dict | None = None) -> Array:
     """Largest principal stress at mid-width over the closed form's mean over the width, at the fillet.
 
     1 + nu^2 P, where P is a polynomial of second degree in l/b, t/b, nu and ln(r/t), each clipped to the
-    range that was sampled. The error of the closed form is fitted with it. `data`: constants by notch form,
-    by default the shipped ones.
+    range that was sampled. The error of the closed form is fitted with it.
+
+    Parameters
+    ----------
+    s
+        One design or many.
+    data
+        Constants by notch form, by default the shipped ones.
     """
     share = np.ones(s.shape)
     for side, k in (data or strain_data()["mid-width share"]).items():
@@ -134,7 +155,8 @@ def share_features(s: HingeSection) -> Array:
 
 def share_terms(s: HingeSection, k: Mapping[str, list[float]]) -> Array:
     """1, the features scaled to -1 to 1 over the sampled range, and their products; one row for each
-    design."""
+    design.
+    """
     low, high = np.array(k["low"]), np.array(k["high"])
     z = np.clip(2.0 * (share_features(s) - low) / (high - low) - 1.0, -1.0, 1.0)
     first, second = np.triu_indices(z.shape[1])
@@ -319,8 +341,17 @@ class StrainErrors:
 
 
 def stated(s: HingeSection, grid_length: float, rung: str) -> StrainErrors:
-    """Stated errors of a rung at every design; NaN for rungs other than solid and fem-solid. `grid_length`:
-    of the gauge's grid, mm."""
+    """Stated errors of a rung at every design; NaN for rungs other than solid and fem-solid.
+
+    Parameters
+    ----------
+    s
+        One design or many.
+    grid_length
+        Of the gauge's grid, mm.
+    rung
+        The rung's name.
+    """
     if rung != "solid":
         known = np.full(s.shape, 1.0 if rung == "fem-solid" else np.nan)
         short_slot = s.hinge_length < SHORT * s.hinge_thickness

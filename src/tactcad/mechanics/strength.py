@@ -63,7 +63,8 @@ def rated_force(s: HingeSection, alloy: Alloy, requested: Array | float, factor:
 
 def elastic(s: HingeSection, alloy: Alloy, force: Array | float) -> np.ndarray:
     """Whether the hinge stays elastic under a force, N; where it does not, its computed strain is
-    meaningless."""
+    meaningless.
+    """
     return np.asarray(strain.peak_stress(s, force) <= alloy.yield_strength)
 
 

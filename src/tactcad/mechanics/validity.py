@@ -222,8 +222,13 @@ def rules(rung: str) -> tuple[RangeRule, ...]:
 
 
 def broken_rules(s: HingeSection, rung: str) -> dict[str, np.ndarray]:
-    """The rung's rules that any design breaks: by the rule's name, the mask of the designs that break it, of
-    the section's shape."""
+    """The rung's rules that any design breaks.
+
+    Returns
+    -------
+    dict of str to ndarray of bool
+        By the rule's name, the mask of the designs that break it, of the section's shape.
+    """
     with np.errstate(all="ignore"):
         masks = {rule.name: np.broadcast_to(rule.broken(s), s.shape) for rule in rules(rung)}
     return {name: mask for name, mask in masks.items() if mask.any()}

@@ -13,8 +13,15 @@ from .rules import refuse_broken
 def load(source: str | Path) -> Design:
     """A design, checked against every rule between its fields.
 
-    `source`: a path (it has a '/' or ends in .toml), or the name of a design in hardware/. Raises InputError
-    where the file is missing or not a design, a value is not legal, or a rule is broken.
+    Parameters
+    ----------
+    source
+        A path (it has a '/' or ends in .toml), or the name of a design in hardware/.
+
+    Raises
+    ------
+    InputError
+        Where the file is missing or not a design, a value is not legal, or a rule is broken.
     """
     design = read(source)
     refuse_broken(design)

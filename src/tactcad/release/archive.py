@@ -59,7 +59,8 @@ def _seal(digest: str) -> bytes:
 
 def fault(path: Path) -> str:
     """Why the file is not, byte for byte, what `archive_bytes` made, with names of entries of another date or
-    other permissions; empty where it is. Nothing is unpacked. Raises OSError."""
+    other permissions; empty where it is. Nothing is unpacked. Raises OSError.
+    """
     with path.open("rb") as file:
         size, digest = os.fstat(file.fileno()).st_size, hashlib.sha256()
         for at in range(0, size - SEALED if size <= MOST_BYTES else 0, PIECE):

@@ -32,7 +32,8 @@ QUOTED = ("wire-cut", "machining")  # checks whose flags are reported to the sho
 @dataclass(frozen=True)
 class Released:
     """Result of a release: the zip, whether it is a draft or a sample, the files that it holds, failures
-    (drafts only), differences from the zip that stood there before, and the suppliers' packages beside it."""
+    (drafts only), differences from the zip that stood there before, and the suppliers' packages beside it.
+    """
 
     path: Path
     design: str

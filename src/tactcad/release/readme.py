@@ -249,8 +249,17 @@ BOARDS = (
 
 
 def package_readme(contents: ReleaseContents, one: Packed, whole: str, shop: Shop) -> bytes:
-    """The text. `contents`, `one`: the release, and the package; `whole`: name of the zip that the package
-    was taken from, with its SHA-256; `shop`: whose feed the wire's time was estimated with."""
+    """The text.
+
+    Parameters
+    ----------
+    contents, one
+        The release, and the package.
+    whole
+        Name of the zip that the package was taken from, with its SHA-256.
+    shop
+        Whose feed the wire's time was estimated with.
+    """
     lines = first_lines(contents, one.package.title)
     lines += paragraph(
         f"Taken from {whole}. What this order does not need is left out; ask for the rest if you miss it."

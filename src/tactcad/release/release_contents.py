@@ -21,7 +21,8 @@ PROCESSES = {"wire-cut": "Wire-cut from sheet", "milled": "Milled", "turned": "T
 @dataclass(frozen=True)
 class ReleaseContents:
     """Subject of a release: its scenes, what the checks flagged, why it is only a draft (empty where it is
-    not), whether it is a sample without owner, and how many sets are ordered."""
+    not), whether it is a sample without owner, and how many sets are ordered.
+    """
 
     design: Design
     scenes: Sequence[Scene]
@@ -82,7 +83,15 @@ class OrderLine:
 
 def ordered(scenes: Sequence[Scene], revision: str, sets: Sets) -> tuple[OrderLine, ...]:
     """The lines that the scenes need, in order of first placement; what comes with another part, and
-    reference parts, need no order. `scenes`, `revision`: of the design; `sets`: what is ordered (SETS)."""
+    reference parts, need no order.
+
+    Parameters
+    ----------
+    scenes, revision
+        Of the design.
+    sets
+        What is ordered (SETS).
+    """
     parts = {part.part_no: part for scene in scenes for part in scene.parts}
     bills = {scene.name: {row.part_no: row for row in bom_rows(scene, revision, {})} for scene in scenes}
     rows = {number: row for bill in bills.values() for number, row in reversed(bill.items())}

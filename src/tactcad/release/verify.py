@@ -280,8 +280,14 @@ def check_packages(
 ) -> list[str]:
     """What is wrong with the written packages; empty where nothing is.
 
-    `paths`, `packages`: the written zips, and what they are to hold, in the same order; `every`: the whole
-    zip's files, found right; `contents`: what the release is about.
+    Parameters
+    ----------
+    paths, packages
+        The written zips, and what they are to hold, in the same order.
+    every
+        The whole zip's files, found right.
+    contents
+        What the release is about.
     """
     wrong, orders = [], []
     for path, one in zip(paths, packages, strict=True):

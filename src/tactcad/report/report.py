@@ -80,8 +80,15 @@ class ValidationReport:
 
 
 def sig(value: float, digits: int = 3) -> str:
-    """A number as text without exponent between 1e-4 and 1e7. `value`: the number; `digits`: significant
-    digits."""
+    """A number as text without exponent between 1e-4 and 1e7.
+
+    Parameters
+    ----------
+    value
+        The number.
+    digits
+        Significant digits.
+    """
     value = float(value)
     if isnan(value):
         return "–"

@@ -71,8 +71,17 @@ def changed_scenes(
 ) -> dict[str, list[ScenePiece]]:
     """Every scene that both designs have, in pieces; loads the kernel.
 
-    `designs`, `shapes`: as in `changed_scene`; both designs must keep their rules; `say`: receives (done,
-    total, text) as the work goes on. Raises CheckFailure where the designs have no scene in common.
+    Parameters
+    ----------
+    designs, shapes
+        As in `changed_scene`; both designs must keep their rules.
+    say
+        Receives (done, total, text) as the work goes on.
+
+    Raises
+    ------
+    CheckFailure
+        Where the designs have no scene in common.
     """
     before, after = (chosen_scenes(design, None) for design in designs)
     names = [name for name in after if name in before]

@@ -88,8 +88,16 @@ def viewer_library() -> ViewerLibrary:
 
 
 def review_page(record: Mapping[str, Any], block: bytes, library: ViewerLibrary) -> bytes:
-    """The page (HTML, UTF-8). `record`, `block`: as `review_record` or `change_record` gives them; texts in
-    it may hold anything, the page shows them as text; `library`: the viewer."""
+    """The page (HTML, UTF-8).
+
+    Parameters
+    ----------
+    record, block
+        As `review_record` or `change_record` gives them; texts in it may hold anything, the
+        page shows them as text.
+    library
+        The viewer.
+    """
     folder, identity = files(__package__), record["design"]
     live = LIVE in record
     names = (*SCRIPTS, LIVE) if live else SCRIPTS

@@ -81,8 +81,17 @@ def show(design: str | Path | Design, scene: str = "array") -> ShownPage:
 def show_changes(before: str | Path | Design, after: str | Path | Design) -> ShownPage:
     """The page of what changed between two designs, and what each change means.
 
-    `before`, `after`: as `show` takes them; both are built by the present code. Raises InputError as `show`,
-    CheckFailure as `show`, and where the designs have no scene in common.
+    Parameters
+    ----------
+    before, after
+        As `show` takes them; both are built by the present code.
+
+    Raises
+    ------
+    InputError
+        As `show`.
+    CheckFailure
+        As `show`, and where the designs have no scene in common.
     """
     library = viewer_library()
     designs = _read(before)[0], _read(after)[0]
@@ -100,8 +109,17 @@ def show_changes(before: str | Path | Design, after: str | Path | Design) -> Sho
 def show_in_vscode(design: str | Path | Design, scene: str = "array") -> None:
     """The parts of one scene in OCP CAD Viewer: a tree of sub-assemblies and designators, with colours.
 
-    `design`, `scene`: as `show` takes them. Raises InputError as `show`, CheckFailure where the package
-    ocp-vscode is not installed, or no viewer listens.
+    Parameters
+    ----------
+    design, scene
+        As `show` takes them.
+
+    Raises
+    ------
+    InputError
+        As `show`.
+    CheckFailure
+        Where the package ocp-vscode is not installed, or no viewer listens.
     """
     viewer = _listening()
     read, _ = _read(design)

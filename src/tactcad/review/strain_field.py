@@ -35,8 +35,13 @@ class StrainField:
 
 
 def strain_field(layout: Layout, place: ElementPlace) -> StrainField:
-    """The field of one element, held at the clamp edge, pressed away from the object at its load line. Raises
-    CheckFailure where the mesh cannot follow its contour."""
+    """The field of one element, held at the clamp edge, pressed away from the object at its load line.
+
+    Raises
+    ------
+    CheckFailure
+        Where the mesh cannot follow its contour.
+    """
     contour = element(layout, place).extrusion.outer
     shape = cut_element(contour, layout.clamp_edge, place.hinge_x - place.load_arm)
     alloy = design_alloy(layout.design)

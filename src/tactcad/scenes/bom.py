@@ -67,8 +67,14 @@ COLUMNS = tuple(f.name for f in fields(BomRow))
 def bom_rows(scene: Scene, revision: str, files: Mapping[str, tuple[str, str]]) -> tuple[BomRow, ...]:
     """The lines of a scene: made parts, then bought ones, then supplies; each in order of first placement.
 
-    `scene`: its placements and supplies; `revision`: of the design, for made parts; `files`: by part number:
-    path and SHA-256 of the file that the part is made from.
+    Parameters
+    ----------
+    scene
+        Its placements and supplies.
+    revision
+        Of the design, for made parts.
+    files
+        By part number: path and SHA-256 of the file that the part is made from.
     """
     parts = sorted(scene.parts, key=lambda part: part.bought)
     rows = [
@@ -155,8 +161,15 @@ def _parsed(column: Any, cell: str) -> object:
 
 
 def json_bytes(rows: Sequence[BomRow], design: str, revision: str, scene: str) -> bytes:
-    """The rows as JSON. `rows`: as `bom_rows` gives them; `design`, `revision`, `scene`: that they belong
-    to."""
+    """The rows as JSON.
+
+    Parameters
+    ----------
+    rows
+        As `bom_rows` gives them.
+    design, revision, scene
+        That they belong to.
+    """
     record = {
         "schema": SCHEMA,
         "design": design,

@@ -34,7 +34,8 @@ POINTING: dict[Vector, Rotation] = {
 
 class Builder:
     """Collects placements in order. A group or a step takes what is placed while it is open; `placed_in`
-    keeps what was placed for a step whose title was given with the part."""
+    keeps what was placed for a step whose title was given with the part.
+    """
 
     def __init__(self) -> None:
         self.placements: list[Placement] = []

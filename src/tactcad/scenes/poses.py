@@ -23,7 +23,8 @@ def poses(design: Design, name: str) -> tuple[Pose, ...]:
 
 def pose_of(given: Sequence[str], design: Design) -> Pose | None:
     """The pose that KEY=VALUE texts describe; None where there are none. Raises InputError where they
-    describe none."""
+    describe none.
+    """
     grasping, cart = (getattr(design, table, None) for table in ("grasping", "cart"))
     limits = {
         "element": (1, len(family_of(design).layout(design).elements)),

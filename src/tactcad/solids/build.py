@@ -33,8 +33,13 @@ class SolidError(RuntimeError):
 
 
 def build(part: Part) -> Solid:
-    """The part's solid in its own frame, mm. Raises SolidError where the result is not one valid solid, or
-    its volume is not the closed form's."""
+    """The part's solid in its own frame, mm.
+
+    Raises
+    ------
+    SolidError
+        Where the result is not one valid solid, or its volume is not the closed form's.
+    """
     with making("solid", part.part_no):
         return _built(part)
 

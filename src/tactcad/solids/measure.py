@@ -23,8 +23,14 @@ from .occt import location, subshapes
 
 
 def measure(shape: TopoDS_Shape) -> dict:
-    """What the kernel measures on a shape. Returns `volume` (mm3), `area` of the surface (mm2), `centre` of
-    mass (mm), and `box` as (least, largest) corner (mm)."""
+    """What the kernel measures on a shape.
+
+    Returns
+    -------
+    dict
+        `volume` (mm3), `area` of the surface (mm2), `centre` of mass (mm), and `box` as (least, largest)
+        corner (mm).
+    """
     solid, surface = GProp_GProps(), GProp_GProps()
     BRepGProp.VolumeProperties_s(shape, solid)
     BRepGProp.SurfaceProperties_s(shape, surface)
@@ -94,8 +100,15 @@ def faces_within(faces: Faces, place: Placement, box: np.ndarray, reach: float) 
 def nearest(first: TopoDS_Shape | None, second: TopoDS_Shape | None) -> tuple[float, Vector]:
     """Distance between two sets of faces.
 
-    `first`, `second`: as `faces_within` gives them; None for an empty set. Returns the distance, mm, infinite
-    where a set is empty; and the point of the first set where it is taken.
+    Parameters
+    ----------
+    first, second
+        As `faces_within` gives them; None for an empty set.
+
+    Returns
+    -------
+    tuple
+        The distance, mm, infinite where a set is empty; and the point of the first set where it is taken.
     """
     if first is None or second is None:
         return inf, (0.0, 0.0, 0.0)

@@ -50,7 +50,8 @@ def read_step(data: bytes) -> TopoDS_Shape:
 
 def set_up_writer(schema: str = "AP214IS") -> None:
     """Settings of every STEP file that tactcad writes, and its schema by the kernel's name; the kernel knows
-    them once it has made a writer."""
+    them once it has made a writer.
+    """
     silence()
     Interface_Static.SetCVal_s("write.step.schema", schema)
     Interface_Static.SetCVal_s("write.step.unit", "MM")

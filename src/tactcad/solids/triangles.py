@@ -91,8 +91,13 @@ def _merged(points: np.ndarray, faces: np.ndarray) -> tuple[np.ndarray, np.ndarr
 
 
 def polyhedra(mesh: manifold3d.Manifold) -> TopoDS_Shape:
-    """A solid of each piece of a mesh that hangs together; triangles in one plane are one face. Raises
-    ValueError where a triangle has no area."""
+    """A solid of each piece of a mesh that hangs together; triangles in one plane are one face.
+
+    Raises
+    ------
+    ValueError
+        Where a triangle has no area.
+    """
     build, compound = BRep_Builder(), TopoDS_Compound()
     build.MakeCompound(compound)
     for piece in mesh.decompose():
@@ -160,8 +165,22 @@ class Facets:
 
 
 def facets(shape: TopoDS_Shape, linear: float, angular: float) -> Facets:
-    """Tessellate a shape for a viewer. `shape`: any shape of the kernel; `linear`: largest chord error, mm;
-    `angular`: largest turn between facets, radians. Raises ValueError where the kernel cannot mesh a face."""
+    """Tessellate a shape for a viewer.
+
+    Parameters
+    ----------
+    shape
+        Any shape of the kernel.
+    linear
+        Largest chord error, mm.
+    angular
+        Largest turn between facets, radians.
+
+    Raises
+    ------
+    ValueError
+        Where the kernel cannot mesh a face.
+    """
     faces = tessellated(shape, linear, angular)
     meshed = [_face(face) for face in faces]
     starts = np.cumsum([0, *(len(points) for points, _, _ in meshed)])

@@ -94,8 +94,15 @@ def screwed(scene: Scene) -> list[Screwed]:
 
 
 def joints(design: str, screws: Sequence[Screwed], known: dict[str, DimensionLimits]) -> list[ScrewedJoint]:
-    """Every kind of screwed joint of a scene. `design`, `screws`: the design's name, and the screws of a
-    scene of it; `known`: variables by name; those of the joints are added where they are not known yet."""
+    """Every kind of screwed joint of a scene.
+
+    Parameters
+    ----------
+    design, screws
+        The design's name, and the screws of a scene of it.
+    known
+        Variables by name; those of the joints are added where they are not known yet.
+    """
     return list(dict.fromkeys(_joint(design, s, known) for s in screws))
 
 
@@ -233,8 +240,12 @@ def patterns(
 ) -> Iterator[Requirement]:
     """For each part that several screws pass on their way into another one: that they enter.
 
-    `layout`, `screws`: the array, and the screws of a scene; `known`: variables by name; those of the holes'
-    places are added where they are not known yet.
+    Parameters
+    ----------
+    layout, screws
+        The array, and the screws of a scene.
+    known
+        Variables by name; those of the holes' places are added where they are not known yet.
     """
     design = layout.design.name
     pairs: dict[tuple[str, str, str], list[tuple[Screwed, Placement, Hole]]] = defaultdict(list)

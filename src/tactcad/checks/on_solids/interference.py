@@ -58,8 +58,14 @@ def check_interference(
 ) -> list[Finding]:
     """Findings on every pair of placed parts of a scene that overlap, or touch without being meant to.
 
-    `scene`: placements and intended contacts; `shapes`: by part number, each in its own frame, mm; `known`:
-    verdicts from other scenes of the design, extended here: an array in a rig is not measured again.
+    Parameters
+    ----------
+    scene
+        Placements and intended contacts.
+    shapes
+        By part number, each in its own frame, mm.
+    known
+        Verdicts from other scenes of the design, extended here: an array in a rig is not measured again.
     """
     meant = {frozenset((c.first, c.second)): c for c in scene.contacts}
     local = {part.part_no: bounding_box(shapes[part.part_no]) for part in scene.parts}

@@ -114,7 +114,8 @@ def _tiny(part: Part, shape: TopoDS_Shape, kind: TopAbs_ShapeEnum) -> Iterator[F
 
 def _size(sub: TopoDS_Shape, kind: TopAbs_ShapeEnum) -> tuple[float, tuple[float, float, float]]:
     """Length (mm) of an edge or area (mm2) of a face, and its centre; the edge at a cone's tip has no
-    length."""
+    length.
+    """
     sums = GProp_GProps()
     if kind == TopAbs_FACE:
         BRepGProp.SurfaceProperties_s(sub, sums)

@@ -94,7 +94,8 @@ def exploded_view(
     well: Container[int] | None = None,
 ) -> Exploded:
     """All visible lines, labelled: sub-assemblies by letter first, then items by number. Leaders go to all
-    pieces, or only to those (by index) that are seen `well`."""
+    pieces, or only to those (by index) that are seen `well`.
+    """
     own: dict[Label, list[Polyline]] = {}
     for n, (piece, some) in enumerate(zip(pieces, seen)):
         if some and (well is None or n in well):
@@ -165,7 +166,8 @@ def room(paper: Paper, with_list: bool) -> Box:
 @dataclass(frozen=True)
 class UnitView:
     """A view's letter and title, the scene whose contacts tell how its pieces meet, and the pieces; no pieces
-    where the whole scene is drawn as its steps explode it."""
+    where the whole scene is drawn as its steps explode it.
+    """
 
     letter: str
     title: str

@@ -155,7 +155,8 @@ def _front_view(sketch: Sketch, part: Part, o: Outline, called: Sequence[Group],
 
 def _radii(sketch: Sketch, view: View, o: Outline, names: Sequence[str], states: str = "") -> list[Callout]:
     """Fillets by name, equal ones together, which state that characteristic of the part where there is one;
-    none for a full round, whose width defines it."""
+    none for a full round, whose width defines it.
+    """
     named = ((n, o.index[n], o.segment(n)) for n in names if n in o)
     arcs = [(n.replace("_", " "), Radius(OUTER, i), s) for n, i, s in named if isinstance(s, Arc)]
     return equal_radii(sketch, view, arcs, states)

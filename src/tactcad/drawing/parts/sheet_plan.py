@@ -230,7 +230,8 @@ def opposite(v: Vector, share: float = 1.0) -> Vector:
 @dataclass(frozen=True)
 class Breaks:
     """Stretches that broken views leave out along an axis of the part (0 or 1): from where to where (mm of
-    the part, ascending), and the gap (mm) that replaces each."""
+    the part, ascending), and the gap (mm) that replaces each.
+    """
 
     axis: int
     left_out: tuple[tuple[float, float], ...]

@@ -51,8 +51,15 @@ def bridge_signal(
 
 
 def imbalance(design: Design, lead: float, arm: float) -> tuple[float, float]:
-    """Least and largest output of the amplifier with no load on any element, V. `design`, `lead`: as for
-    `bridge_signal`; `arm`: tolerance of the completing resistances."""
+    """Least and largest output of the amplifier with no load on any element, V.
+
+    Parameters
+    ----------
+    design, lead
+        As for `bridge_signal`.
+    arm
+        Tolerance of the completing resistances.
+    """
     ends = [amplified(design, lead, 0.0, sign, arm) for sign in (-1.0, 1.0)]
     return min(ends), max(ends)
 
@@ -60,8 +67,14 @@ def imbalance(design: Design, lead: float, arm: float) -> tuple[float, float]:
 def amplified(design: Design, lead: float, x: float, sign: float, arm: float) -> float:
     """The amplifier's output (V) at a dR/R of x, every tolerance at its worst in one direction (sign).
 
-    `design`, `lead`, `x`: as for `bridge_signal`; `sign`: 1 or -1; `arm`: tolerance of the completing
-    resistances.
+    Parameters
+    ----------
+    design, lead, x
+        As for `bridge_signal`.
+    sign
+        1 or -1.
+    arm
+        Tolerance of the completing resistances.
     """
     gauge = sign * design.gauge.resistance_tolerance
     plus, minus = bridge_signal(design, lead, x, gauge, sign * arm)
@@ -105,7 +118,8 @@ def drift(layout: Layout) -> float:
 
     Root of the sum of squares of: the gauge's thermal output, the completion's three arms, the amplifier's
     offset, the leads' warmth (tolerance.zero_drift; of two wires also their whole resistance in the gauge's
-    arm). Self-heating is alike in all readings of a settled cycle, and so in the zero.
+    arm). Self-heating is alike
+    in all readings of a settled cycle, and so in the zero.
     """
     d = layout.design
     r, span = d.readout, d.readout.temperature_span

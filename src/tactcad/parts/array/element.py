@@ -251,7 +251,8 @@ def sheet_material(design: Design) -> Material:
 
 def material_notes(design: Design) -> tuple[str, ...]:
     """Notes that the material requires: from its data, and on values in which the design differs from
-    them."""
+    them.
+    """
     bare = ("bare sheet, not clad",) if family(design.material.density) == "aluminium" else ()
     magnetic = ("demagnetise after cutting",) if design.material.magnetic == "yes" else ()
     # fatigue: sheet is stronger along its grain than across, and the hinge bends along the arm

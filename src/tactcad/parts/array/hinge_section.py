@@ -26,8 +26,20 @@ T = TypeVar("T")
 
 
 def hinge_section(layout: Layout, places: Sequence[ElementPlace]) -> HingeSection:
-    """Section parameters of elements of the array, mm and MPa. Returns a HingeSection of shape
-    (len(places),), or of many designs at once (..., len(places))."""
+    """Section parameters of elements of the array, mm and MPa.
+
+    Parameters
+    ----------
+    layout
+        The array.
+    places
+        The elements.
+
+    Returns
+    -------
+    HingeSection
+        Of shape (len(places),), or of many designs at once (..., len(places)).
+    """
     own = [own_parameters(p.hinge, p.load_arm, p.body_length) for p in places]
     stacked = {n: np.stack(np.broadcast_arrays(*(each[n] for each in own)), axis=-1) for n in own[0]}
     return HingeSection.of(**stacked, **shared_parameters(layout.design))
@@ -47,7 +59,8 @@ def thickness_elasticity(layout: Layout, place: ElementPlace) -> float:
 
 def own_parameters(hinge: HingeShape, load_arm: float, body_length: float) -> dict[str, float]:
     """Parameters that may differ between elements of one design, by the names of `HingeSection`'s fields;
-    mm."""
+    mm.
+    """
     return {
         "hinge_thickness": hinge.t,
         "hinge_length": hinge.l,
@@ -133,8 +146,9 @@ PATHS = {
 
 
 def in_design(why: Reason | None, layout: Layout, place: ElementPlace) -> str:
-    """Why the estimator refuses an element, with the design's own fields and what they give for it: "...
-    (array.row_arms: load_arm 30, element.body_height: 4)". "" for None."""
+    """Why the estimator refuses an element, with the design's own fields and what they give for it:
+    "... (array.row_arms: load_arm 30, element.body_height: 4)". "" for None.
+    """
     if why is None:
         return ""
     own = own_parameters(place.hinge, place.load_arm, place.body_length)

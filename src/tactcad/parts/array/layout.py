@@ -92,8 +92,13 @@ class HoldDown:
 
 @dataclass(frozen=True)
 class Layout:
-    """The array's derived dimensions, mm. `design`: a design as read; the rules between its fields are
-    computed from this."""
+    """The array's derived dimensions, mm.
+
+    Parameters
+    ----------
+    design
+        A design as read; the rules between its fields are computed from this.
+    """
 
     design: Design
 

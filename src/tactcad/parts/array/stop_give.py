@@ -75,7 +75,8 @@ def _steel(length: float, width: float, thickness: float) -> Beam:
 
 def derived_pitch(across: float, thickness: float, screw: str, force: float, room: float) -> float:
     """Largest pitch of the set screws, whole mm, at which the plate's bending along the row under `force` (N)
-    is within `room` (mm)."""
+    is within `room` (mm).
+    """
     least = shortest_pitch(screw)
     for pitch in range(LONGEST_PITCH, ceil(least), -1):
         if _steel(pitch, across, thickness).supported() * force <= room:

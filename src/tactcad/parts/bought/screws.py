@@ -50,8 +50,22 @@ def seating_force(thread: str) -> float:
 
 
 def cap_screw(thread: str, length: float) -> Part:
-    """ISO 4762 socket head cap screw. `thread`: such as "M3"; `length`: mm, a length of the standard. Raises
-    KeyError where the table has no such thread, ValueError where the standard has no such length."""
+    """ISO 4762 socket head cap screw.
+
+    Parameters
+    ----------
+    thread
+        Such as "M3".
+    length
+        mm, a length of the standard.
+
+    Raises
+    ------
+    KeyError
+        Where the table has no such thread.
+    ValueError
+        Where the standard has no such length.
+    """
     m = METRIC[thread]
     if length not in CAP_SCREW_LENGTHS[thread]:
         raise ValueError(f"ISO 4762 {thread} has no length {length:g}; it has {CAP_SCREW_LENGTHS[thread]}")

@@ -60,8 +60,15 @@ class Finding:
 def at_least(
     check: str, part: str, value: float, least: float, message: str, place: tuple[float, ...] = ()
 ) -> Iterator[Finding]:
-    """A failure where a value is too small. `check`, `part`, `message`, `place`: of the finding, see
-    `Finding`; `value`, `least`: in the unit that the message names; a shortfall of up to SAME is rounding."""
+    """A failure where a value is too small.
+
+    Parameters
+    ----------
+    check, part, message, place
+        Of the finding, see `Finding`.
+    value, least
+        In the unit that the message names; a shortfall of up to SAME is rounding.
+    """
     if value < least - SAME:
         yield Finding(check, "fail", part, place, value, least, message)
 

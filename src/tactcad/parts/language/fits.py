@@ -24,8 +24,17 @@ def _row(table: list[dict[str, str]], size: float, what: str) -> dict[str, str]:
 def deviations(code: str, size: float) -> tuple[float, float]:
     """Lower and upper deviation of an ISO 286 tolerance class, mm.
 
-    `code`: fundamental deviation and grade, capitals for holes: d to p, D to P, js, JS; `size`: nominal size,
-    mm. Raises ValueError where the tables do not hold the code or the size.
+    Parameters
+    ----------
+    code
+        Fundamental deviation and grade, capitals for holes: d to p, D to P, js, JS.
+    size
+        Nominal size, mm.
+
+    Raises
+    ------
+    ValueError
+        Where the tables do not hold the code or the size.
     """
     match = _CODE.fullmatch(code)
     letter, grade = (match[1], match[2]) if match else ("", "")

@@ -22,9 +22,10 @@ NEED_DATUM = ("position", "parallelism", "perpendicularity")
 class Characteristic:
     """A toleranced dimension: its value with limits (mm), and whether it is a key characteristic.
 
-    Of a fit (ISO 286) the nominal size may lie outside its limits. `between` names the two features that it
-    lies between, or the one feature of size; of three, it ends in the middle between the last two. `remark`:
-    by what it is made where that is not the drawn value.
+    Of a fit (ISO 286) the nominal size may lie outside its limits.
+    `between` names the two features that it lies between, or the one feature of size; of three,
+    it ends in the middle between the last two. `remark`: by what it is made where that is not
+    the drawn value.
     """
 
     name: str
@@ -77,8 +78,12 @@ def contradictions(
 ) -> Iterator[str]:
     """What is wrong with a part's limits, a line each, with what is legal.
 
-    `characteristics`, `geometric`, `datums`: as the part states them; `features`: names of the part's
-    features; datums and geometric tolerances may stand on these alone.
+    Parameters
+    ----------
+    characteristics, geometric, datums
+        As the part states them.
+    features
+        Names of the part's features; datums and geometric tolerances may stand on these alone.
     """
     known = ", ".join(sorted(set(features) - {""}))
     for c in characteristics:

@@ -265,7 +265,12 @@ class Measured:
 
 def measured(part: Part, c: Characteristic) -> Measured:
     """The pieces of the part that a characteristic stands on: of equal names, those at its nominal size.
-    Raises CheckFailure where its features have no such size."""
+
+    Raises
+    ------
+    CheckFailure
+        Where its features have no such size.
+    """
     groups = [pieces(part, feature) for feature in c.between]
     if len(groups) == 1:
         # of any size: a hole that a pin is pressed into is modelled as wide as the pin, not as its limits

@@ -16,5 +16,6 @@ def rows(module: str, name: str) -> list[dict[str, str]]:
 
 def number(text: str) -> float:
     """A cell's number, in mm unless its table says otherwise; an integer stays an integer, as in part
-    numbers."""
+    numbers.
+    """
     return float(text) if "." in text else int(text)

@@ -83,7 +83,8 @@ PLATFORM_UNDER_HEAD = 3.5  # heads sunk by 0.5: the weights lie flat
 
 
 def platform(rig: GuideLayout) -> Part:
-    """Plate on the bar's upper end; the weights' pin stands over the array's middle. z = 0 is the underside.
+    """Plate on the bar's upper end; the weights' pin stands over the array's middle. z = 0 is the
+    underside.
 
     +-----------+
     |   O   O   |   bar, sunk from above
@@ -116,7 +117,8 @@ def platform(rig: GuideLayout) -> Part:
 
 
 def pin(rig: GuideLayout, under: float = 0.0) -> Part:
-    """Pin that centres the weights, as high as their stack on `under` mm of ballast; M4 thread in its foot.
+    """Pin that centres the weights, as high as their stack on `under` mm of ballast; M4 thread in its
+    foot.
 
     +---+
     |   |
@@ -166,7 +168,8 @@ def disc_weight(rig: GuideLayout) -> Part:
 
 
 def ballast(rig: GuideLayout, mass: float) -> Part:
-    """Disc under the weights that brings the moving mass to the design's; `mass` in g, thickness to 0.01 mm.
+    """Disc under the weights that brings the moving mass to the design's; `mass` in g, thickness to 0.01
+    mm.
 
     +------+ +------+
     +------+ +------+   thickness from the missing mass

@@ -274,7 +274,8 @@ def array_mount(rig: StandLayout) -> Part:
 
 
 def stage_fixed(stage: Stage) -> Part:
-    """Fixed half of a micro-stage: back at z = 0, slideway at the top; screws enter from the slideway's side.
+    """Fixed half of a micro-stage: back at z = 0, slideway at the top; screws enter from the slideway's
+    side.
 
     O-----------O    z = thickness: slideway
     |           |

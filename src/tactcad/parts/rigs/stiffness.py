@@ -39,7 +39,8 @@ Load = tuple[str, float, str, float, str, tuple[str, ...]]
 
 def calibration_lines(design: Design) -> Iterator[Deflection]:
     """Parts in series with the gauge, each by itself and all together: their deflection is read as the
-    element's."""
+    element's.
+    """
     lines = tuple(_in_series(design))
     yield from lines
     one, own = lines[0], 1e3 * lines[0].load / present(design.calibration).load_cell_stiffness

@@ -60,7 +60,8 @@ def gauge_fits_width(layout: Layout) -> Iterator[Finding]:
 
 def neighbours_take(layout: Layout) -> float:
     """How much nearer tolerances bring an arm to its neighbour, a spacer away, mm: half of both sheets' and
-    the spacer's own."""
+    the spacer's own.
+    """
     return layout.design.tolerance.sheet_thickness + SPACER_TOLERANCE
 
 
@@ -80,7 +81,8 @@ def arms_clear_neighbours(layout: Layout) -> Iterator[Finding]:
 @rule(after="override_names_element")
 def leads_have_room(layout: Layout) -> Iterator[Finding]:
     """The leads fit: in the wire recess, as wide as element and spacer; in front of it under the face, beside
-    the gauge."""
+    the gauge.
+    """
     d, e, wire, count = layout.design, layout.design.element, lead(layout), leads(layout)
     if leads_that_fit(layout) < count:
         rows = -(-count // max(1, floor(d.array.pitch / wire + SAME)))

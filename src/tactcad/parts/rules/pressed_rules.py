@@ -124,7 +124,8 @@ _FIELD = {
 @rule(after="pressed_arms_clear_opposite_row")
 def no_slivers(layout: Layout) -> Iterator[Finding]:
     """Every piece of every element's contour is at least LEAST_EDGE long: neither wire nor kernel makes a
-    shorter one."""
+    shorter one.
+    """
     seen = set()
     for p in layout.elements:
         gap = stop_gap(layout, p)

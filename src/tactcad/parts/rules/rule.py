@@ -53,8 +53,14 @@ def misfit(layout: Layout, rules: Iterable[Rule]) -> Finding | None:
 def wrong(path: str, what: str, value: object, legal: str) -> Finding:
     """A finding on a field; the rule's name is added where the rule is tried.
 
-    `path`: of the field, such as "element.hinge_thickness"; `what`: is wrong: one clause; `value`, `legal`:
-    the field's value, and in words what would be accepted.
+    Parameters
+    ----------
+    path
+        Of the field, such as "element.hinge_thickness".
+    what
+        Is wrong: one clause.
+    value, legal
+        The field's value, and in words what would be accepted.
     """
     return Finding("", "fail", path, (), value, legal, what)
 

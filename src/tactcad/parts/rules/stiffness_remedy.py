@@ -28,8 +28,13 @@ def too_much(layout: Layout, lines: Lines) -> Iterator[Finding]:
 
 
 def remedy(design: Design, line: Deflection, lines: Lines) -> tuple[str, object, str]:
-    """The first field that by itself brings a deflection, one of `lines`, below what is allowed. Returns the
-    field's path, its value now, and in words the values that suffice."""
+    """The first field that by itself brings a deflection, one of `lines`, below what is allowed.
+
+    Returns
+    -------
+    tuple
+        The field's path, its value now, and in words the values that suffice.
+    """
     for path in line.fields:
         section, name = path.split(".")
         value, spec = (
@@ -53,7 +58,8 @@ def remedy(design: Design, line: Deflection, lines: Lines) -> tuple[str, object,
 
 def _nearest(design: Design, line: Deflection, lines: Lines, path: str, far: V, near: V) -> V:
     """The value nearest to `far` (which does not suffice) that still suffices, as `near` does; whole, or of
-    four digits."""
+    four digits.
+    """
     good, bad = near, far
     for _ in range(STEPS):
         middle = (good + bad) // 2 if isinstance(far, int) else (good + bad) / 2

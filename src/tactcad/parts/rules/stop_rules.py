@@ -133,7 +133,8 @@ def stop_plate_stays(layout: Layout) -> Iterator[Finding]:
 
 def _what_helps(layout: Layout, what: str, allowed: float) -> Finding:
     """The field that brings the plate's compliance (mm/N) down to what is allowed: the pitch if it is given
-    and suffices, else a thicker plate, else less force."""
+    and suffices, else a thicker plate, else less force.
+    """
     d, c = layout.design, layout.design.clamp
     if c.hold_down_pitch is not None:
         pitch = _largest_pitch(layout, allowed)

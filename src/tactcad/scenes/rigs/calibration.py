@@ -174,7 +174,8 @@ def _mounted_array(b: Builder, rig: StandLayout, under: str, dx: float, dy: floa
 
 def _series(design: Design) -> str:
     """How much the compliance of stand and mount lowers the apparent stiffness of the stiffest element, and
-    how to separate the two."""
+    how to separate the two.
+    """
     give, cell = series_give(design), present(design.calibration).load_cell_stiffness
     known = [load for load in calibration_loads(design) if not load.refused]
     stiffest = max(known, key=lambda load: load.force / load.deflection, default=None)
