@@ -9,8 +9,8 @@ import pytest
 import samples
 from ladder_fit import main
 
-from tactcad.mechanics import plane, solid
 from tactcad.mechanics.constants import ladder_data
+from tactcad.mechanics.rungs import plane, solid
 from tactcad.mechanics.section import HingeSection
 
 

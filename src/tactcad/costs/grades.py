@@ -39,7 +39,7 @@ from tactcad.mechanics.accuracy import (
     expected_error,
     zones,
 )
-from tactcad.mechanics.register import BY_NAME
+from tactcad.mechanics.register import rungs
 from tactcad.mechanics.section import REFERENCE, Array, HingeSection
 from tactcad.mechanics.validity import reasons
 from tactcad.parts.language.description import Part
@@ -214,7 +214,7 @@ def seconds_each(s: HingeSection) -> dict[Candidate, float]:
     return {
         c: float(power_law(published()["elements"][c.name], *sizes).mean())
         for c in CANDIDATES
-        if not BY_NAME[c.rung].compliance
+        if not rungs()[c.rung].compliance
     }
 
 
