@@ -228,7 +228,7 @@ def mesh_sizes(s: HingeSection) -> tuple[Array, Array]:
 
 def _mesh_size(one: HingeSection) -> tuple[int, int]:
     mesh = plane_mesh(reference_shape(one), order=1)
-    return len(mesh.cells), len(layers(float(one.width) / 2.0, mesh.shape.thickness, 1)) - 1
+    return len(mesh.cells), len(layers(float(one.width) / 2.0, mesh.shape.hinge_thickness, 1)) - 1
 
 
 @cache

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from math import ceil, floor, log10
+from typing import Any
 
 from tactcad.design.sensing import AMPLIFIERS, MULTIPLEXERS, SWITCHES, WIRES, Readout, StrainGauge, Wiring
 from tactcad.design.tree import Design
@@ -125,7 +126,7 @@ def gauge_bears_power(layout: Layout) -> Iterator[Finding]:
     d = layout.design
     r, hot = d.readout, heating(layout)
 
-    def load(**changed: float) -> float:
+    def load(**changed: Any) -> float:
         """Of what the backing bears."""
         found = heating(Layout(replace(d, readout=replace(r, **changed)))) if changed else hot
         return max(found.power_density / d.gauge.power_density, found.rise / d.gauge.rise)
@@ -189,7 +190,7 @@ def bridge_stays_in_range(layout: Layout) -> Iterator[Finding]:
 def _too_small_a_range(r: Readout, said: str, low: float, high: float) -> Finding | None:
     """The first field, set otherwise than it comes, of which another value alone makes the range hold these
     volts."""
-    needed = {
+    needed: dict[str, Any] = {
         "headroom": min(r.supply_positive - high, low - r.supply_negative),
         "adc_range": max(high, -low),
         "supply_negative": low - r.headroom,
