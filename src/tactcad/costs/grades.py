@@ -39,7 +39,7 @@ from tactcad.mechanics.accuracy import (
     expected_error,
     zones,
 )
-from tactcad.mechanics.register import BY_NAME
+from tactcad.mechanics.register import rungs
 from tactcad.mechanics.section import REFERENCE, Array, HingeSection
 from tactcad.mechanics.validity import reasons
 from tactcad.parts.language.description import Part
@@ -214,7 +214,7 @@ def seconds_each(s: HingeSection) -> dict[Candidate, float]:
     return {
         c: float(power_law(published()["elements"][c.name], *sizes).mean())
         for c in CANDIDATES
-        if not BY_NAME[c.rung].compliance
+        if not rungs()[c.rung].compliance
     }
 
 
@@ -228,7 +228,7 @@ def mesh_sizes(s: HingeSection) -> tuple[Array, Array]:
 
 def _mesh_size(one: HingeSection) -> tuple[int, int]:
     mesh = plane_mesh(reference_shape(one), order=1)
-    return len(mesh.cells), len(layers(float(one.width) / 2.0, mesh.shape.thickness, 1)) - 1
+    return len(mesh.cells), len(layers(float(one.width) / 2.0, mesh.shape.hinge_thickness, 1)) - 1
 
 
 @cache

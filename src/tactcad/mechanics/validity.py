@@ -12,7 +12,7 @@ from tactcad.design.text_values import NINE_DIGITS
 
 from . import friction
 from .constants import ladder_data
-from .register import BY_NAME
+from .register import rungs
 from .section import OPTIONAL, REQUIRED, Array, HingeSection
 
 ROUNDING = 1e-12  # a design on a limit is inside, however its ratios are rounded
@@ -190,10 +190,10 @@ def _fitted(rung: str) -> tuple[RangeRule, ...]:
     rules += [
         RangeRule(f"{what} for the fit: {name} < {least:g}", _outside(value, least, np.inf), FIELDS[name])
         for name, (what, value, of) in LEAST.items()
-        if of in BY_NAME[rung].fitted
+        if of in rungs()[rung].fitted
         for least in (sampled["least"][name],)
     ]
-    bounding = PLANE_GROUPS | (WIDTH_GROUPS if "width" in BY_NAME[rung].fitted else {})
+    bounding = PLANE_GROUPS | (WIDTH_GROUPS if "width" in rungs()[rung].fitted else {})
     for name, value in bounding.items():
         low, high = sampled["groups"][name]
         rules.append(
@@ -218,7 +218,7 @@ def _outside(
 
 def rules(rung: str) -> tuple[RangeRule, ...]:
     """The rung's rules in the order in which they are looked at."""
-    return GEOMETRY + _fitted(rung) if BY_NAME[rung].fitted else GEOMETRY
+    return GEOMETRY + _fitted(rung) if rungs()[rung].fitted else GEOMETRY
 
 
 def broken_rules(s: HingeSection, rung: str) -> dict[str, np.ndarray]:
