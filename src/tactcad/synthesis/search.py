@@ -35,7 +35,7 @@ WORTH = 1e-3  # relative; a gain below is not worth holding against the rules ag
 FAR = 1e3  # goal of a candidate that violates limits, and on
 BY = (-5, -2, -1, 1, 2, 5)  # steps by which two numbers are moved at once
 FURTHER = (-30, -12, 12, 30)  # and one alone
-SEVERAL = 1000  # moves of several numbers, by chance
+SEVERAL = 400  # moves of several numbers, by chance
 
 Goal = Callable[[Candidates], Array]
 Refusals = Callable[[Design], dict[str, str]]
@@ -189,6 +189,8 @@ def search(
     every = () if rules is None else (refusals, rules) if rules is not refusals else (rules,)
     accepted = False
     for held in (None, *every):
+        if held is refusals is not rules and keeps(kept[-1][1], refusals):
+            continue  # what refuses the best are the slow checks
         earlier, kept = kept, []
         look(held)
         accepted = bool(kept) and (rules is None or keeps(kept[-1][1], rules))

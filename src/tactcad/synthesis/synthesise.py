@@ -32,6 +32,7 @@ from .shares import Share, half_space_shares, variance_shares
 from .target import Target
 
 ARRAYS = 2000  # made of each distribution
+TRIED = 500  # for the least change of a field: the yield's interval is some 2 % either way
 MARGINS = (1.0, 1.1, 1.2, 1.35, 1.5, 1.75, 2.0)  # between wanted and nominal half-width, tried for the yield
 CURVE = 25  # points of the object's range in the report
 RATIOS = (2.0, 4.0, 6.0, 10.0, 16.0, 30.0)  # K_r/K_m; the paper proposes about 10
@@ -44,6 +45,15 @@ QUICK = 2e-3  # relative; searches beside the answer stop there
 SEARCHING, IN_ALL = 20.0, 105.0
 SHARE = 0.4  # of the seconds asked for, for the search
 HEARD = 0.2  # s, between looks at the clock
+ANSWER = "answer"  # what is done for it
+PARTS = (  # of the report, beside the answer
+    "variance shares",
+    "what limits it",
+    "alternatives",
+    "stiffness ratios",
+    "solid elements",
+    "least change",
+)
 
 Tell = Callable[[int, int, str], None]
 
@@ -227,9 +237,11 @@ def attempt(
     until
         Of `time.perf_counter`, when the best yet is taken.
     near, evolve
-        A candidate of nearly the same target, and whether more is looked at than what lies around it.
+        A candidate of nearly the same target, and whether more is looked at than what lies around it. With
+        one, only what the least change of a field needs is found.
     """
     looked, best, rules = 0, None, refusals if near else all_refusals
+    arrays = min(arrays, TRIED) if near else arrays
     for margin, some in tries(target):
         if best and time.perf_counter() > until:
             break
@@ -242,14 +254,13 @@ def attempt(
         )
         looked += sum(one.evaluations for one in found)
         chosen = min(found, key=lambda f: (not f.accepted, f.goal))
-        made, wanted = _made(target, chosen, arrays)
+        made, wanted = _made(target, chosen, arrays, bool(near))
         met = chosen.accepted and made.share >= target.target.share and chosen.half_width <= wanted
         this = Synthesis(target, chosen, wanted, made, met)
         if best is None or _worth(this) > _worth(best):
             best = this
         if met or (not chosen.accepted and target.target.least != "tolerance"):
             break
-        near = chosen if chosen.accepted else near
     assert best is not None
     return replace(best, evaluations=looked)
 
@@ -278,7 +289,7 @@ def _together(makes: Sequence[Callable[[], Any]]) -> list[Any]:
     """Side by side; one after the other where this process is one of several itself."""
     if len(makes) == 1 or _cores() == 1:
         return [make() for make in makes]
-    done = dict(side_by_side([Task("search", make) for make in makes]))
+    done = dict(side_by_side([Task(ANSWER, make) for make in makes]))
     return [done[n] for n in range(len(makes))]
 
 
@@ -300,9 +311,9 @@ def tries(target: Target) -> list[tuple[float, list[Stand]]]:
     ]
 
 
-def _made(target: Target, found: Found, arrays: int) -> tuple[Yield, float]:
+def _made(target: Target, found: Found, arrays: int, only_met: bool) -> tuple[Yield, float]:
     asked = target.target.half_width
-    if not found.accepted:
+    if not found.accepted or (only_met and asked and 100.0 * found.half_width > asked):
         return Yield(0, 0.0, (0.0, 1.0), "normal", {}, np.zeros(0)), (asked or 0.0) / 100.0
     sensor = MadeSensor(target, found.design)
     if asked is not None:
@@ -374,60 +385,46 @@ def design(
 
 def _told(got: Synthesis, tasks: Sequence[Task], done: dict[int, Any]) -> Synthesis:
     """The answer with what was found beside it, in the order of the tasks whichever came first."""
-    results = [done[n] for n in sorted(done)]
-    parts = list(dict.fromkeys(task.name.partition(": ")[0] for task in tasks))
-    counts = {part: [t.name.partition(": ")[0] for t in tasks].count(part) for part in parts}
-    missing = [tasks[n].name.partition(": ")[0] for n in range(len(tasks)) if n not in done]
-    left = [f"{part} ({missing.count(part)} of {counts[part]})" for part in parts if part in missing]
-
-    def of(kind: type) -> tuple[Any, ...]:
-        return tuple(r for r in results if isinstance(r, kind))
-
+    part = [task.name.partition(": ")[0] for task in tasks]
+    found: dict[str, list] = {name: [] for name in part}
+    for n in sorted(done):
+        found[part[n]] += [done[n]] if done[n] else []
+    left = {name: sum(part[n] == name and n not in done for n in range(len(tasks))) for name in found}
+    told = {name: found.get(name, []) for name in PARTS}
+    chosen = Alternative("chosen", "the design chosen", got.found)
+    solid = told["solid elements"][0] if told["solid elements"] else ()
     return replace(
         got,
-        shares=next((r.shares for r in of(_Shares)), ()),
-        solid=next((r.stiffness for r in of(_Solid)), ()),
-        binding=tuple(sorted(of(Limit), key=lambda limit: -limit.gain)),
-        front=(Alternative("chosen", "the design chosen", got.found), *of(Alternative))
-        if of(Alternative)
-        else (),
-        ratios=of(tuple),
-        changes=of(LeastChange),
-        left_out=tuple(left),
-        unknown=(*got.unknown, *of(str)),
+        shares=told["variance shares"][0] if told["variance shares"] else (),
+        solid=() if isinstance(solid, str) else solid,
+        binding=tuple(sorted(told["what limits it"], key=lambda limit: -limit.gain)),
+        front=(chosen, *told["alternatives"]) if told["alternatives"] else (),
+        ratios=tuple(told["stiffness ratios"]),
+        changes=tuple(told["least change"]),
+        left_out=tuple(f"{name} ({count} of {part.count(name)})" for name, count in left.items() if count),
+        unknown=(*got.unknown, solid) if isinstance(solid, str) else got.unknown,
     )
-
-
-@dataclass(frozen=True)
-class _Shares:
-    shares: tuple[Share, ...]
-
-
-@dataclass(frozen=True)
-class _Solid:
-    stiffness: tuple[float, ...]
 
 
 def _beside(got: Synthesis) -> Iterator[Task]:
     """What the report tells beside the answer, what matters most first."""
-    target, found = got.target, got.found
-    on = {b.field for b in got.bounds}
-    yield Task("variance shares", lambda: _Shares(tuple(variance_shares(got.sensor))))
-    for name, other in relax.eased(target):
-        if name not in (*relax.NOT_NARROWING, *on):
+    on = (*relax.NOT_NARROWING, *(b.field for b in got.bounds))
+    yield Task("variance shares", lambda: tuple(variance_shares(got.sensor)))
+    for name, other in relax.eased(got.target):
+        if name not in on:
             yield Task(f"what limits it: {name}", partial(_limit, got, name, other))
     yield from _front(got)
     for ratio in RATIOS:
-        yield Task(f"stiffness ratios: {ratio:g}", partial(_ratio, target, found, ratio))
+        yield Task(f"stiffness ratios: {ratio:g}", partial(_ratio, got, ratio))
     yield Task("solid elements", partial(_solid, got))
 
 
-def _solid(got: Synthesis) -> _Solid | str:
+def _solid(got: Synthesis) -> tuple[float, ...] | str:
+    """K of every element, or why it is not known."""
     try:
-        rows = array_estimate.estimate(got.sensor.layout, "fem-solid")
+        return tuple(row.stiffness for row in array_estimate.estimate(got.sensor.layout, "fem-solid"))
     except CheckFailure as why:
         return f"solid elements: not known, because {why}"
-    return _Solid(tuple(row.stiffness for row in rows))
 
 
 def _near(target: Target, found: Found, goal: Goal = bounds.narrowest) -> Found:
@@ -481,7 +478,7 @@ def _front(got: Synthesis) -> Iterator[Task]:
         yield entry(f"tolerance-{finest:g}", what, "stock.hinge_tolerances", (finest,))
 
 
-def _ratio(target: Target, found: Found, ratio: float) -> tuple[float, float] | None:
+def _ratio(got: Synthesis, ratio: float) -> tuple[float, float] | None:
     """Half-width at a K_r/K_m, everything else at its best."""
 
     def goal(c: Candidates) -> Array:
@@ -489,7 +486,7 @@ def _ratio(target: Target, found: Found, ratio: float) -> tuple[float, float] | 
         off = np.abs(np.log(K.max(axis=1) / K.min(axis=1) / ratio))
         return np.where(off > SAME_RATIO, FAR * (1.0 + off), c.half_width)
 
-    at = _near(target, found, goal)
+    at = _near(got.target, got.found, goal)
     return (ratio, at.half_width) if at.accepted else None
 
 

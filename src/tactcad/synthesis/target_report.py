@@ -505,58 +505,41 @@ def refuse_unwritable(out: str | Path) -> None:
 
 
 def write(got: Synthesis, out: str | Path) -> None:
-    """design.toml, front/NAME.toml, report.json and report.html: the whole folder in one step, or nothing.
+    """design.toml, report.json and report.html: the whole folder in one step, or nothing.
 
     Raises InputError where `out` is taken or cannot be written to, CheckFailure where there is no room.
     """
     folder = absolute(out)
     refuse_taken(out)
     make_folder(folder.parent)
+    heading = f"{got.target.target.name}: by `tactcad design`.\n{answer(record(got))}"
+    files = {"design.toml": design_text(got.design, heading).encode(), **_report(got)}
     try:
         with staged_folder(folder.parent, folder.name) as own:
-            _make(own / MAKING, {"design.toml": _design_text(got), **_front(got), **_report(got)})
-            (own / MAKING).rename(folder)  # an empty folder gives way, any other refuses
+            making = own / MAKING
+            making.mkdir()
+            for name, data in files.items():
+                (making / name).write_bytes(data)
+                flush_entry(making / name)
+            making.rename(folder)  # an empty folder gives way, any other refuses
             flush_entry(folder.parent)
     except OSError as error:
         raise refusal(str(out), error) from error
 
 
 def complete(got: Synthesis, out: str | Path) -> None:
-    """Put the whole report, and the alternatives in one step, into the folder that `write` made.
+    """front/NAME.toml and the whole report in the folder that `write` made, each file in one step.
 
     Raises as `write`.
     """
-    folder = absolute(out)
-    try:
-        if front := _front(got):
-            with staged_folder(folder.parent, folder.name) as own:
-                _make(own / MAKING, front)
-                (own / MAKING / "front").rename(folder / "front")
-        for name, data in _report(got).items():
-            write_whole(folder / name, data)
-    except OSError as error:
-        raise refusal(str(out), error) from error
-
-
-def _make(making: Path, files: dict[str, bytes]) -> None:
-    for name, data in files.items():
-        (making / name).parent.mkdir(parents=True, exist_ok=True)
-        (making / name).write_bytes(data)
-        flush_entry(making / name)
-
-
-def _design_text(got: Synthesis) -> bytes:
-    heading = f"{got.target.target.name}: by `tactcad design`.\n{answer(record(got))}"
-    return design_text(got.design, heading).encode()
-
-
-def _front(got: Synthesis) -> dict[str, bytes]:
-    files, target = {}, got.target.target.name
+    folder, target = absolute(out), got.target.target.name
     for entry in got.front[1:]:
         name = f"{target[:24].rstrip('-')}-{entry.name.replace('.', '-')}"
         text = design_text(got.as_design(entry.found, name), f"{name}: {entry.what}.")
-        files[f"front/{entry.name}.toml"] = text.encode()
-    return files
+        make_folder(folder / "front")
+        write_whole(folder / "front" / f"{entry.name}.toml", text.encode())
+    for name, data in _report(got).items():
+        write_whole(folder / name, data)
 
 
 def _report(got: Synthesis) -> dict[str, bytes]:
