@@ -110,11 +110,7 @@ def test_the_answer_is_written_before_what_follows_it(tmp_path, capsys, monkeypa
         first = json.loads((out / "report.json").read_text())
         assert first["bounds"] and len(first["left_out"]) == 5 and not first["binding"]
         assert "one step beyond" in capsys.readouterr().out
-        found = [
-            (n, t.make()) for n, t in enumerate(tasks) if t.name.endswith((": grasp.force", ": elements-4"))
-        ]
-        assert len(found) == 2
-        yield from found
+        yield from ((n, t.make()) for n, t in enumerate(tasks) if t.name == "alternatives: elements-4")
 
     monkeypatch.setattr(synthesise, "side_by_side", beside)
     assert main(["design", str(tmp_path / "t.toml"), "--out", str(out), "--in", "0.01"]) == 0

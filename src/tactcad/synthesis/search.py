@@ -184,7 +184,7 @@ def search(
         before = inf
         while not over() and (now := (kept[-1] if kept else least))[0] < before:
             before = now[0]
-            value(np.clip(now[1] + moves(len(low)), low, high).T, held)
+            value(np.unique(np.clip(now[1] + moves(len(low)), low, high), axis=0).T, held)
 
     every = () if rules is None else (refusals, rules) if rules is not refusals else (rules,)
     accepted = False

@@ -513,8 +513,8 @@ def write(got: Synthesis, out: str | Path) -> None:
     refuse_taken(out)
     make_folder(folder.parent)
     heading = f"{got.target.target.name}: by `tactcad design`.\n{answer(record(got))}"
-    files = {"design.toml": design_text(got.design, heading).encode(), **_report(got)}
     try:
+        files = {"design.toml": design_text(got.design, heading).encode(), **_report(got)}
         with staged_folder(folder.parent, folder.name) as own:
             making = own / MAKING
             making.mkdir()
