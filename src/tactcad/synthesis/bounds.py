@@ -109,9 +109,10 @@ def bound(found: Found, field: str) -> Bound | None:
         further = round(value * OF_BASE[field], 4)
         stepped, whose = replace(target, base=with_value(target.base, field, further)), "base design"
     else:
-        stepped = dict(relax.eased(target)).get(field)
-        if stepped is None:
+        eased = dict(relax.eased(target))
+        if field not in eased:
             return None
+        stepped = eased[field]
         value, further = relax.value_of(target, field), relax.value_of(stepped, field)
         whose = "written" if field.partition("[")[0] in target.written else "default"
     got = [
@@ -197,7 +198,7 @@ def base_breaks(target: Target) -> list[str]:
 def deciding(base: Design, side: str, most: float) -> str:
     """Fields of the base that decide how long, wide or high its arrays are, the one of most effect first; and
     the rules that the first would break if it alone made room."""
-    measure, parts = SIZES[side], []
+    measure, parts = SIZES[side], list[str]()
     size = measure(Layout(base))
     for path, effect in sorted(_effects(base, measure), key=lambda pair: -pair[1] * paths(base)[pair[0]]):
         value = paths(base)[path]

@@ -35,6 +35,8 @@ WORTH = 1e-3  # relative; a gain below is not worth holding against the rules ag
 FAR = 1e3  # goal of a candidate that violates limits, and on
 BY = (-5, -2, -1, 1, 2, 5)  # steps by which two numbers are moved at once
 FURTHER = (-30, -12, 12, 30)  # and one alone
+DESCENT = 0.4  # of the time, at least, for what follows evolution
+LOOKED_BACK = 8  # candidates, where time is over and the best is refused
 SEVERAL = 400  # moves of several numbers, by chance
 
 Goal = Callable[[Candidates], Array]
@@ -120,12 +122,12 @@ def search(
     high = np.maximum(low, high)
     refused: dict[str, str] = {}
     tried: dict[tuple[str, bytes], bool] = {}
-    looked = 0
+    looked, in_time = 0, True
     least = (inf, np.rint((low + high) / 2.0))  # goal and numbers of the best, whether it keeps limits or not
     kept: list[tuple[float, Array]] = []  # of the best that keep them, one after the other
 
-    def over(*_: object, **__: object) -> bool:
-        return time.perf_counter() > until
+    def over(left: float = 0.0) -> bool:
+        return time.perf_counter() > until - left
 
     def keeps(row: Array, held: Refusals) -> bool:
         key = held.__name__, row.astype(int).tobytes()
@@ -157,6 +159,13 @@ def search(
         return out
 
     def look(held: Refusals | None) -> None:
+        descent = DESCENT * (until - time.perf_counter())
+
+        def evolved(*_: object, **__: object) -> bool:
+            nonlocal in_time
+            in_time = not over(descent)
+            return not in_time
+
         if evolve or start is None:
             differential_evolution(
                 value,
@@ -166,7 +175,7 @@ def search(
                 vectorized=True,
                 updating="deferred",
                 polish=False,
-                callback=over,
+                callback=evolved,
                 popsize=POPULATION,
                 maxiter=GENERATIONS,
                 tol=within,
@@ -196,12 +205,14 @@ def search(
         accepted = bool(kept) and (rules is None or keeps(kept[-1][1], rules))
         if accepted or over() or not (earlier or kept):
             break
-    if rules and not accepted:
-        kept = next(([one] for one in reversed([*earlier, *kept]) if keeps(one[1], rules)), [])
+    if rules and not accepted:  # some of what was best before, the latest first
+        passed = [*earlier, *kept][::-1]
+        some = passed[:: 1 + len(passed) // LOOKED_BACK]
+        kept = next(([one] for one in some if keeps(one[1], rules)), [])
         accepted = bool(kept)
     reached, row = kept[-1] if accepted else least
     candidate = stand.candidates(row[np.newaxis])
-    return Found(candidate, row, reached, accepted, looked, refused, not over())
+    return Found(candidate, row, reached, accepted, looked, refused, in_time)
 
 
 @lru_cache
