@@ -36,6 +36,7 @@ FAR = 1e3  # goal of a candidate that violates limits, and on
 BY = (-5, -2, -1, 1, 2, 5)  # steps by which two numbers are moved at once
 FURTHER = (-30, -12, 12, 30)  # and one alone
 DESCENT = 0.4  # of the time, at least, for what follows evolution
+REFUSED = 100  # candidates by rules or checks, after which no more are tried
 LOOKED_BACK = 8  # candidates, where time is over and the best is refused
 SEVERAL = 400  # moves of several numbers, by chance
 
@@ -129,6 +130,9 @@ def search(
     def over(left: float = 0.0) -> bool:
         return time.perf_counter() > until - left
 
+    def spent() -> bool:
+        return over() or list(tried.values()).count(False) >= (REFUSED if evolve else REFUSED // 5)
+
     def keeps(row: Array, held: Refusals) -> bool:
         key = held.__name__, row.astype(int).tobytes()
         if key not in tried:
@@ -151,6 +155,8 @@ def search(
                 least = float(out[i]), rows[i]
             if out[i] >= FAR or (kept and out[i] >= kept[-1][0] * (1.0 - WORTH if held else 1.0)):
                 break
+            if held and spent():
+                break
             if held and not keeps(rows[i], held):
                 out[i] = FAR * 0.9
                 continue
@@ -164,7 +170,7 @@ def search(
         def evolved(*_: object, **__: object) -> bool:
             nonlocal in_time
             in_time = not over(descent)
-            return not in_time
+            return not in_time or (held is not None and not kept and spent())
 
         if evolve or start is None:
             differential_evolution(

@@ -433,10 +433,12 @@ def percent(share: float) -> str:
 
 def answer(r: dict[str, Any]) -> str:
     """What came out, in a few sentences."""
-    low, high = r["object_range"]
+    (low, high), base = r["object_range"], r["base"]
     if r["met"] is False:
-        return f"Impossible as asked: the best there is {_why_not(r)}."
-    e, base = r["elements"], r["base"]
+        rules = "; ".join(line for line in base["breaks"] if line.startswith("rule "))
+        told = f" {base['name']} as it is breaks {rules}." if rules else ""
+        return f"Impossible as asked: the best there is {_why_not(r)}.{told}"
+    e = r["elements"]
     if base["breaks"]:
         than = f"{base['name']} as it is does not meet the target: {'; '.join(base['breaks'])}"
     else:
