@@ -54,8 +54,19 @@ def looked_at(directory: str | Path, schema: str, others: str = REFUSE) -> Conte
     """
     out = absolute(directory)
     with in_one_line(out):
-        _refuse_place(out)
-        seen = contents(out, schema)
+        if not out.name:
+            raise InputError(str(out), "cannot be replaced", legal=LEGAL)
+        if out.is_symlink():
+            raise InputError(str(out), "is a link", legal=f"the folder that it leads to, or {LEGAL}")
+        if os.path.lexists(out) and not out.is_dir():
+            raise InputError(str(out), "is a file", legal=LEGAL)
+        if os.path.ismount(out):
+            raise InputError(str(out), "is a mount point, which cannot be replaced", legal=LEGAL)
+        for folder in Path(os.path.realpath(out)).parents:
+            manifest = folder / NAME
+            if manifest.is_file() and b'"schema": "tactcad-' in manifest.read_bytes()[:40]:
+                raise InputError(str(out), f"lies inside {folder}, which tactcad wrote", legal=LEGAL)
+        seen = _contents_of_one(out, schema)
     if seen.foreign and others == REFUSE:
         raise InputError(
             str(directory),
@@ -65,19 +76,29 @@ def looked_at(directory: str | Path, schema: str, others: str = REFUSE) -> Conte
     return seen
 
 
-def _refuse_place(out: Path) -> None:
-    if not out.name:
-        raise InputError(str(out), "cannot be replaced", legal=LEGAL)
-    if out.is_symlink():
-        raise InputError(str(out), "is a link", legal=f"the folder that it leads to, or {LEGAL}")
-    if os.path.lexists(out) and not out.is_dir():
-        raise InputError(str(out), "is a file", legal=LEGAL)
-    if os.path.ismount(out):
-        raise InputError(str(out), "is a mount point, which cannot be replaced", legal=LEGAL)
-    for folder in Path(os.path.realpath(out)).parents:
-        manifest = folder / NAME
-        if manifest.is_file() and b'"schema": "tactcad-' in manifest.read_bytes()[:40]:
-            raise InputError(str(out), f"lies inside {folder}, which tactcad wrote", legal=LEGAL)
+def _contents_of_one(out: Path, schema: str) -> Contents:
+    """What lies in DIR; read again where another run put its folder there meanwhile, or the files of one
+    would be held against the manifest of the other.
+    """
+    while True:
+        before = _which(out)
+        try:
+            seen = contents(out, schema)
+        except OSError:
+            if _which(out) == before:
+                raise
+        else:
+            if _which(out) == before:
+                return seen
+
+
+def _which(out: Path) -> tuple[int, int] | None:
+    """Which folder it is: a number, which a later one may have again, and when it was last renamed."""
+    try:
+        found = os.lstat(out)
+    except FileNotFoundError:
+        return None
+    return found.st_ino, found.st_ctime_ns
 
 
 def named(foreign: Mapping[str, str]) -> str:

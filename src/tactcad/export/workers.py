@@ -48,6 +48,7 @@ def side_by_side(
     tasks: Sequence[Task],
     hear: Callable[[str], None] = lambda _: None,
     say: Callable[[str], None] = lambda _: None,
+    every: float = EVERY,
 ) -> Generator[tuple[int, Any], None, None]:
     """Make everything, as many at once as there are cores; yields number and result of each that is ready.
 
@@ -58,7 +59,7 @@ def side_by_side(
     tasks
         A single one has a process of its own, too: the kernel would block this one, or crash it.
     hear
-        Receives what is under way, at least every EVERY seconds.
+        Receives what is under way, at least every `every` seconds; what it raises ends the work.
     say
         Receives lines that `relayed` hands on, each once.
 
@@ -84,7 +85,7 @@ def side_by_side(
                 pipe.send(n)
                 busy[pipe] = n, time.monotonic()
                 hear(f"{tasks[n].name} (making)")
-            ready = wait([*busy], EVERY)
+            ready = wait([*busy], every)
             for pipe in [] if ready else [min(busy, key=lambda each: busy[each][1])]:
                 n, since = busy[pipe]
                 hear(f"{tasks[n].name} ({heard.get(pipe) or f'for {time.monotonic() - since:.0f} s'})")
@@ -130,7 +131,17 @@ def _started(tasks: Sequence[Task]) -> tuple[Connection, multiprocessing.process
 def _serve(pipe: Connection, tasks: Sequence[Task], parent: int) -> None:
     """In a worker: make what the parent asks for, until it asks no more."""
     global _to_parent
-    _end_with(parent)
+    # Let this process be killed when its parent, of that number, is gone. A forked helper whose parent was
+    # killed would wait for work for ever, and hold what it inherited, the lock of the export's folder
+    # included. Systems without prctl leave it waiting. Ctrl-C and a terminal's end reach the helper too,
+    # but the parent answers them.
+    gc.freeze()
+    ignore_signals()
+    signal.signal(signal.SIGTERM, signal.SIG_DFL)
+    with suppress(AttributeError, OSError):
+        ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
+    if os.getppid() != parent:  # the parent was gone before
+        os._exit(1)
     _to_parent = pipe
     counted = profiling.is_counted()
     while True:
@@ -148,19 +159,3 @@ def _serve(pipe: Connection, tasks: Sequence[Task], parent: int) -> None:
         except Exception as error:
             answer = "failed", error
         pipe.send(answer)
-
-
-def _end_with(parent: int) -> None:
-    """Let this process be killed when its parent, of that number, is gone.
-
-    A forked helper whose parent was killed would wait for work for ever, and hold what it inherited, the lock
-    of the export's folder included. Systems without prctl leave it waiting. Ctrl-C and a terminal's end reach
-    the helper too, but the parent answers them.
-    """
-    gc.freeze()
-    ignore_signals()
-    signal.signal(signal.SIGTERM, signal.SIG_DFL)
-    with suppress(AttributeError, OSError):
-        ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
-    if os.getppid() != parent:  # the parent was gone before
-        os._exit(1)
