@@ -43,25 +43,11 @@ class Felt:
 def read(taxels: Taxels, joints: ArrayLike, level: float = 0.95, coupling: float = 1.0) -> Felt:
     """Forces and K_obj from the elements' joint positions, from one frame or from many.
 
-    The rest position is zero. The interval is by the read-out's noise, by how far K and the pads' heights are
-    known of an array as made, and by the object's coupling of the pads.
-
-    Parameters
-    ----------
-    taxels
-        Of `read_taxels`.
-    joints
-        Positions of all joints in the table's order, rad (of slides mm): [joint], or [frame, joint].
-    level
-        Confidence level of the intervals.
-    coupling
-        From 0 (pads on separate springs) to 1 (a half-space), as of `tactcad stiffness`; the interval holds
-        for all up to it.
-
-    Raises
-    ------
-    InputError
-        Positions that are not finite or not one for each joint, a level or a share out of range.
+    Positions are from rest, in the table's order, rad (of slides mm): [joint], or [frame, joint]. The
+    interval, at that level, is by the read-out's noise, by how far K and the pads' heights are known of an
+    array as made, and by any coupling of the pads from 0 (separate springs) to `coupling` (1: a half-space).
+    Raises InputError for positions that are not finite or not one for each joint, and a level or share out
+    of range.
     """
     require_level(level)
     if not 0 <= coupling <= 1:
