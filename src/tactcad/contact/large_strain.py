@@ -19,14 +19,14 @@ from skfem import Basis, ElementQuad2, MeshQuad
 
 from tactcad.design.messages import InputError
 
+from .accuracy import REACH, pad_radius
 from .elastic_body import Body
 from .press import PadsOnBody, Pressed, pad_stiffness
 from .solid_face import FAR_SIDE, LARGEST_POISSON, lines_over_pad, outward
 
 ACROSS, EDGE = 8, 1.0
 DEEPEST = 30.0  # radii: of thicker bodies this much is meshed
-REACH = 0.5  # of the lesser of radius and thickness: deeper, elements fold at the punch's edge
-THINNEST = 0.25  # of the radius: thinner layers were not tried
+THINNEST = 0.44  # of the radius: thinner layers were not tried
 STEP = 0.02  # of the lesser of radius and thickness, in depth
 SETTLED = 1e-9  # of the depth: Newton's last correction
 MOST_CORRECTIONS = 15
@@ -177,8 +177,7 @@ def press(contact: PadsOnBody, load: float, angle: tuple[float, float]) -> Press
         A body or a load that this rung does not reach.
     """
     pads, body = contact.pads, contact.body
-    area = pads.length * pads.width * (pi / 4 if pads.disc else 1.0)
-    depths, factor = hardening(body, (area / pi) ** 0.5)
+    depths, factor = hardening(body, pad_radius(pads))
     alone = pad_stiffness(body, pads.length, pads.width, pads.disc)
     hard = np.ones(len(pads.x))
     for _ in range(MOST_CORRECTIONS):

@@ -8,8 +8,6 @@ Loads that are even or odd in x and y make up all others.
 
 from __future__ import annotations
 
-from itertools import product
-
 import numpy as np
 from scipy.sparse import coo_matrix, csc_matrix
 from scipy.sparse.linalg import splu
@@ -20,8 +18,9 @@ from tactcad.fem.elasticity import lame, stiffness_matrix
 
 from .elastic_body import Body
 
-HALVES = 3  # elements under half a side of a pad
-GRADED = 3.0  # power toward the edges of the pad
+HALVES = 4  # elements under half a side of a pad: no fewer unknowns than patches anywhere
+# Power toward the edges of the pad; at 3, elements in the middle hold more patches than they tell apart.
+GRADED = 2.5
 GROWTH = 2.0  # of an element's side over the one before, outward from the pad's edges and down from the face
 FAR_SIDE = 5.0  # thicknesses from the last pad to the free side
 THICKEST = 20.0  # pad sides: beyond, the far side would have to lie further off than elements reach cheaply
@@ -137,7 +136,7 @@ class SolidFace:
         apart = np.abs(np.abs(x)[:, None] - x[quarter]) + np.abs(np.abs(y)[:, None] - y[quarter])
         self.mirrored = apart.argmin(1)
         self.moved = {}  # the face by 1 N on each patch of the quarter, [patch, x, y]
-        for odd in product((False, True), repeat=2):
+        for odd in [(False, False), (False, True), (True, False), (True, True)]:
             held = np.zeros((3, basis.N), bool)
             held[0 if body.base == "bonded" else 2 :, place[2] == 0] = True
             held[:, corner] = True
