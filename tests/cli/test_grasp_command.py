@@ -87,7 +87,8 @@ def test_what_cannot_be_pressed_is_refused_in_one_line(capsys, options, words):
 
 
 def test_the_cheapest_rung_that_keeps_an_error_is_taken(capsys):
-    """Separate springs keep next to nothing; the layer does, and where it is pressed deep, large strain. A a rung by name that does not is refused."""
+    """Separate springs keep next to nothing; the layer does, and where it is pressed deep, large strain. A
+    rung by name that does not keep what is asked is refused."""
     for options, rung in (
         (("--object", "E=2000,nu=0.3,thickness=6", "--within", "95%"), "springs"),
         (("--object", "E=20,nu=0.3,thickness=6", "--load", "0.5", "--within", "5%"), "layer"),

@@ -36,8 +36,8 @@ def pad_radius(pads: Pads) -> float:
 
 
 def depth_share(pads: Pads, body: Body, force: np.ndarray) -> float:
-    """How deep the deepest pad's own force presses it into a linear body, over the lesser of its radius and the
-    thickness."""
+    """How deep the deepest pad's own force presses it into a linear body, over the lesser of its radius
+    and the thickness."""
     alone = pad_stiffness(body, pads.length, pads.width, pads.disc)
     return float(force.max() / alone / min(pad_radius(pads), body.thickness))
 
