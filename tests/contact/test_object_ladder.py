@@ -11,10 +11,10 @@ from skfem import Basis, ElementHex2, MeshHex
 from test_layer import hayes
 
 from tactcad.contact import large_strain
-from tactcad.contact.accuracy import errors
 from tactcad.contact.elastic_body import Body, influence
 from tactcad.contact.press import PadsOnBody, pad_stiffness, patches
 from tactcad.contact.solid_face import SolidFace, stiffness
+from tactcad.contact.stated_errors import errors
 from tactcad.fem.elasticity import lame
 
 ONE = patches(2.0, 3.0, False)

@@ -19,10 +19,10 @@ from skfem import Basis, ElementQuad2, MeshQuad
 
 from tactcad.design.messages import InputError
 
-from .accuracy import REACH, pad_radius
 from .elastic_body import Body
 from .press import PadsOnBody, Pressed, pad_stiffness
 from .solid_face import FAR_SIDE, LARGEST_POISSON, lines_over_pad, outward
+from .stated_errors import REACH, pad_radius
 
 ACROSS, EDGE = 8, 1.0
 DEEPEST = 30.0  # radii: of thicker bodies this much is meshed

@@ -8,9 +8,16 @@ from math import inf, radians, tan
 import numpy as np
 
 from tactcad.contact import springs
-from tactcad.contact.accuracy import CHOSEN_FROM, DEFAULT_RUNG, LINEAR_REACH, REACH, depth_share, stated_error
 from tactcad.contact.elastic_body import Body
 from tactcad.contact.press import PATCHES, Pads, PadsOnBody, Pressed, pad_stiffness
+from tactcad.contact.stated_errors import (
+    CHOSEN_FROM,
+    DEFAULT_RUNG,
+    LINEAR_REACH,
+    REACH,
+    depth_share,
+    stated_error,
+)
 from tactcad.design.family import family_of
 from tactcad.design.messages import CheckFailure, InputError
 from tactcad.design.tree import CommonTables
@@ -103,7 +110,7 @@ def press_array(
     angle
         Of the object's face, degrees: positive where it falls away toward +x, +y.
     rung
-        One of `tactcad.contact.accuracy.RUNGS`; None: DEFAULT_RUNG, or the cheapest that keeps `within`.
+        One of `tactcad.contact.stated_errors.RUNGS`; None: DEFAULT_RUNG, or the cheapest that keeps `within`.
     within
         Largest error of the forces that is accepted.
 
