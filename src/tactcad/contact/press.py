@@ -78,9 +78,8 @@ class Pressed:
 
 
 @lru_cache(maxsize=16)
-def patches(length: float, width: float, disc: bool) -> np.ndarray:
+def patches(length: float, width: float, disc: bool, number: int = PATCHES) -> np.ndarray:
     """x, y and sides of one pad's patches about its middle, mm, [4, patch]; a disc's rows have its area."""
-    number = PATCHES
     t = np.linspace(-1, 1, number + 1)
     edges = np.sign(t) * (1 - (1 - np.abs(t)) ** GRADING) / 2
     middle, side = (edges[1:] + edges[:-1]) / 2, np.diff(edges)
@@ -249,9 +248,7 @@ def _by_least_squares(
     return forces(high), high
 
 
-def pad_stiffness(
-    body: Body, length: float, width: float, disc: bool = False, number: int = PATCHES
-) -> float:
+def pad_stiffness(body: Body, length: float, width: float, disc: bool = False) -> float:
     """Force on one rigid pad that does not tilt over its displacement, N/mm: K_obj of a body."""
     C = influence(body, tuple(patches(length, width, disc)))
     return float(np.linalg.solve(C, np.ones(len(C))).sum())
