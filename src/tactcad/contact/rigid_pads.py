@@ -192,5 +192,5 @@ class ManyPresses:
 def _columns(M: np.ndarray, d: np.ndarray) -> np.ndarray:
     """M times the block diagonal of d, [..., 3 pad, 3 pad]."""
     n = d.shape[-3]
-    parts = M.reshape(*M.shape[:-1], n, 3)
-    return np.einsum("...rnk,...nkj->...rnj", parts, d).reshape(M.shape)
+    parts = M.reshape(*M.shape[:-1], n, 3).swapaxes(-3, -2) @ d
+    return parts.swapaxes(-3, -2).reshape(M.shape)

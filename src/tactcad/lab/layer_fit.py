@@ -41,7 +41,11 @@ STEEP = 0.3  # standard deviation of the face's slopes: 17 degrees, far beyond w
 WILD = 10.0  # times their errors by which elements disagree from which on no modulus explains the readings
 LAYERS = (0.25, 0.35, 0.5, 0.7, 1.0, 1.4, 2.0, 3.0, 5.0, 10.0, inf)  # thicknesses over a pad's side that are tried
 STEPS = 40
-SETTLED = 0.01  # of a cost in squared standard errors: the estimate then keeps its first two digits of error
+SETTLED = 0.1  # of a cost in squared standard errors: the estimate is then a third of one from its end
+STAGES = 2  # the noise is found in the first one
+# Of the weight of the pads' heights in a pair's fit. The readings give heights over the approach; taken as known,
+# their size would tell the approach and so K_obj, by as much as one pair does.
+FREE_HEIGHTS = 0.01
 SAME = 1e-6  # relative difference of stiffness below which two elements are no pair
 LOOSE = 1e-4  # of a prior's weight where it is as good as none
 THICKER = 0.02  # relative step by which the layer's part in the sinks is found
@@ -259,54 +263,59 @@ def _fit(
     load_weight = 1 / (LOAD * load.max()) ** 2
     noise = np.maximum(1e-3 * np.ptp(signal, axis=2).max(1), 1e-12)
 
-    def cost_of(q: np.ndarray, state: tuple, noise: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        off, over = pressed - state[0], load[touching] - state[1]
-        zero = before - q[:, part["offset"], None]
+    def cost_of(i: np.ndarray, q: np.ndarray, state: tuple) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Of grasps i; what is left of signals and of loads."""
+        off, over = pressed[i] - state[0], load[touching] - state[1]
+        zero = before[i] - q[:, part["offset"], None]
         squares = (off**2).sum((1, 2)) + (zero**2).sum((1, 2))
-        cost = squares / noise**2 + (over**2).sum(1) * load_weight + np.einsum("gi,ij,gj->g", q, weigh, q)
-        return cost, off, over
+        known = np.einsum("gi,ij,gj->g", q, weigh, q) + (over**2).sum(1) * load_weight
+        return squares / noise[i] ** 2 + known, off, over
 
-    def normal(q: np.ndarray, state: tuple, noise: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Matrix without priors, and downhill direction of the cost."""
-        _, off, over = cost_of(q, state, noise)
-        A = state[4].reshape(G, -1, size) / noise[:, None, None]
+    def normal(i: np.ndarray, q: np.ndarray, state: tuple) -> tuple[np.ndarray, np.ndarray]:
+        """Matrix without priors, and downhill direction of half the cost."""
+        _, off, over = cost_of(i, q, state)
+        sigma = noise[i]
+        A = state[4].reshape(len(i), -1, size) / sigma[:, None, None]
         B = state[5] * load_weight**0.5
         N = A.swapaxes(1, 2) @ A + B.swapaxes(1, 2) @ B
-        down = (A.swapaxes(1, 2) @ (off.reshape(G, -1, 1) / noise[:, None, None]))[..., 0]
+        down = (A.swapaxes(1, 2) @ (off.reshape(len(i), -1, 1) / sigma[:, None, None]))[..., 0]
         down += (B.swapaxes(1, 2) @ (over[..., None] * load_weight**0.5))[..., 0]
-        i = np.arange(part["offset"].start, part["offset"].stop)
-        N[:, i, i] += rests / noise[:, None] ** 2
-        down[:, i] += rests * (unloaded - q[:, part["offset"]]) / noise[:, None] ** 2
+        o = np.arange(part["offset"].start, part["offset"].stop)
+        N[:, o, o] += rests / sigma[:, None] ** 2
+        down[:, o] += rests * (unloaded[i] - q[:, part["offset"]]) / sigma[:, None] ** 2
         return N, down - q @ weigh
 
+    every = np.arange(G)
     q = _start(model, pressed, before, load[touching])
     state = model.signals(q, None, True)
-    for again in range(3):
-        cost = cost_of(q, state, noise)[0]
-        damping = np.full(G, 1e-6)
+    for _ in range(STAGES):
+        cost = cost_of(every, q, state)[0]
+        damping, at_work = np.full(G, 1e-6), every
         for _ in range(STEPS):
-            N, down = normal(q, state, noise)
+            i = at_work
+            now = tuple(a[i] for a in state)
+            N, down = normal(i, q[i], now)
             N = (N + weigh)[:, free[:, None], free]
             diagonal = np.einsum("gii->gi", N)
-            N = N + damping[:, None, None] * diagonal[:, None, :] * np.eye(len(free))
-            step = np.zeros_like(q)
+            N = N + damping[i, None, None] * diagonal[:, None, :] * np.eye(len(free))
+            step = np.zeros((len(i), size))
             step[:, free] = _solve(N, down[:, free, None])[..., 0]
             far = np.maximum(np.abs(step[:, 0]) / 0.7, np.abs(step[:, part["slope"]]).max(1) / 0.05)
-            step /= np.maximum(far, 1.0)[:, None]
-            tried_q = q + step
-            tried = model.signals(tried_q, state[2], True)
-            tried_cost = cost_of(tried_q, tried, noise)[0]
-            better = tried_cost <= cost
-            gain = cost - tried_cost
-            q = np.where(better[:, None], tried_q, q)
-            state = tuple(
-                np.where(better.reshape(-1, *[1] * (a.ndim - 1)), a, b) for a, b in zip(tried, state)
-            )
-            cost = np.where(better, tried_cost, cost)
-            damping = np.where(better, damping / 10, damping * 10)
-            if (np.abs(gain) < SETTLED).all():
+            tried_q = q[i] + step / np.maximum(far, 1.0)[:, None]
+            tried = model.signals(tried_q, now[2], True)
+            gain = cost[i] - cost_of(i, tried_q, tried)[0]
+            better = gain >= 0
+            q[i[better]] = tried_q[better]
+            for old, new in zip(state, tried):
+                old[i[better]] = new[better]
+            cost[i[better]] -= gain[better]
+            # a damped step that gains little says nothing of how far the end is
+            done = better & (gain < SETTLED) & (damping[i] < 1e-3) | (damping[i] > 1e3)
+            damping[i] *= np.where(better, 0.1, 10.0)
+            at_work = i[~done]
+            if not len(at_work):
                 break
-        N, down = normal(q, state, noise)
+        N, down = normal(every, q, state)
         down_loose = (down + q @ weigh - q @ loose)[:, free]
         N_loose = (N + loose)[:, free[:, None], free]
         gain = np.einsum("gi,gi->g", down_loose, _solve(N_loose, down_loose[..., None])[..., 0])
@@ -315,15 +324,12 @@ def _fit(
         spent = len(free) - np.einsum("gij,ji->g", inverse, loose[free[:, None], free])
         dof = np.maximum(count + len(load[touching]) - spent, 1.0)
         noise_now = noise * np.maximum(quiet, 1e-18 * count) ** 0.5 / dof**0.5
-        settled = np.abs(np.log(noise_now / noise)).max() < 0.1
         noise = np.maximum(noise_now, 1e-9 * np.ptp(signal, axis=2).max(1))
-        if settled:
-            break
     K = model.K[rows]
     r = int(np.argmax(K)) if reference is None else int(np.flatnonzero(element == reference)[0])
     last = state[3][:, int(np.argmax(model.load))]
     return _results(
-        at, model, calibration, q, last, *normal(q, state, noise), priors, noise, dof, level, r
+        at, model, calibration, q, last, *normal(every, q, state), priors, noise, dof, level, r
     )
 
 
@@ -439,13 +445,13 @@ def _results(
         full[:, keep[:, None], keep] = _solve(part_of, np.broadcast_to(np.eye(len(keep)), part_of.shape))
         return full
 
-    def errors(row: np.ndarray, variance: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    def errors(row: np.ndarray, variance: np.ndarray, known: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Of a quantity whose covariance with all parameters is `row` [grasp, parameter]: standard error,
         Student's quantile, and how far the load cell's limits shift it."""
         pull = np.einsum("eij,gej->gei", priors.of_element, row[:, priors.calibrated])
         stated = np.einsum("gei,gei->g", pull, row[:, priors.calibrated])
         actual = np.einsum("gei,eij,gej->ge", pull, priors.own, pull)
-        others = np.einsum("gi,ij,gj->g", row, priors.others, row)
+        others = np.einsum("gi,ij,gj->g", row, known, row)
         by_noise = np.maximum(variance - stated - others, 0.0)
         total = by_noise + others + actual.sum(1)
         bottom = by_noise**2 / dof + (actual**2 / c.dof).sum(1)
@@ -472,7 +478,7 @@ def _results(
     found = []
     for combination in (modulus, stiffness):
         row = full @ combination
-        se, t, moved = errors(row, row @ combination)
+        se, t, moved = errors(row, row @ combination, priors.others)
         x = q @ combination + np.log(at.unit)
         found.append(_even_in_ratio(x, none, t * se * widened + moved, K[r], soft))
         by_noise = _even_in_ratio(x, none, t * se, K[r], soft)
@@ -481,15 +487,18 @@ def _results(
         if abs(K[e] / K[r] - 1) > SAME:
             alone = part["own"].start + np.setdiff1d(np.arange(len(K)), [e, r])
             weigh = priors.weigh.copy()
-            weigh[alone, alone] = 1e-4
+            weigh[alone, alone] = LOOSE
+            weigh[part["height"], part["height"]] *= FREE_HEIGHTS
+            known = priors.others.copy()
+            known[part["height"], part["height"]] *= FREE_HEIGHTS
             by_pair = covariance(weigh, np.r_[free, alone])
             row = by_pair @ stiffness
-            se, t, moved = errors(row, row @ stiffness)
-            away = np.einsum("gi,gi->g", row, down)
+            se, t, moved = errors(row, row @ stiffness, known)
+            away = np.einsum("gi,gi->g", row, down + q @ (priors.weigh - weigh))
             pairs[:, e] = _even_in_ratio(q @ stiffness + np.log(at.unit), away, t * se + moved, K[r], K[e])
     angle = np.empty((G, 2, 3))
     for k, i in enumerate(range(part["slope"].start, part["slope"].stop)):
-        se, t, moved = errors(full[:, i], full[:, i, i])
+        se, t, moved = errors(full[:, i], full[:, i, i], priors.others)
         half = t * se * widened + moved
         angle[:, k] = np.degrees(np.arctan(np.stack([q[:, i], q[:, i] - half, q[:, i] + half], -1)))
     return LayerFit(
