@@ -52,7 +52,8 @@ size --stiffness 10 --load-arm 6 --tolerance 0.01 --model beam --body-height 5 -
 calibrate calibration.csv --load-cell 57+-1 --run-scatter 0.01 --drop-outliers --out cal.csv
 calibrate calibration.csv --design macro-array --level 0.9 --within 1% --in 1 --json --profile
 stiffness grasp.csv --calibration cal.csv --reference 8 --level 0.9 --json --profile
-stiffness grasp.csv --calibration cal.csv --design macro-array --coupling 1 --thickness 5 --within 1% --in 1
+stiffness grasp.csv --calibration cal.csv --design macro-array --coupling 1 --within 1% --in 1
+stiffness grasp.csv --calibration cal.csv --thickness 5+-1 --nu 0.49
 schema --target --json --profile
 schema --study
 """

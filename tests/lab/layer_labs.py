@@ -56,7 +56,12 @@ class Bench:
         dx, dy = self.px[:, None] - self.px, self.py[:, None] - self.py
         A, B = np.tile(A, self.n), np.tile(B, self.n)
         g = 12**-0.5  # mean over each patch by 2 x 2 Gauss points
-        C = sum(love(dx + s * g * A[:, None], dy + t * g * B[:, None], A, B) for s in (-1, 1) for t in (-1, 1)) / 4
+        C = (
+            sum(
+                love(dx + s * g * A[:, None], dy + t * g * B[:, None], A, B) for s in (-1, 1) for t in (-1, 1)
+            )
+            / 4
+        )
         if np.isfinite(h):
             C = C + layer_part(nu, h)(np.hypot(dx, dy)) * self.area
         self.C = C * (1 - nu**2) / np.pi  # of a pressure, E = 1
@@ -77,7 +82,9 @@ class Bench:
                 continue
             for _ in range(60):
                 rows = np.flatnonzero(on)
-                one, off = np.linalg.solve(M[np.ix_(rows, rows)], np.stack([np.ones(len(rows)), back[rows]], 1)).T
+                one, off = np.linalg.solve(
+                    M[np.ix_(rows, rows)], np.stack([np.ones(len(rows)), back[rows]], 1)
+                ).T
                 w = self.area[rows]
                 at = (total + off @ w) / (one @ w)
                 p = np.zeros(len(back))
@@ -114,4 +121,14 @@ def calibration(array, K, K_v, rng, runs=RUNS, each=EACH):
     dk, dv = k - k.mean(0), v - v.mean(0)
     correlation = (dk * dv).sum(0) / np.sqrt((dk**2).sum(0) * (dv**2).sum(0))
     full = np.full(len(K), 1.0)
-    return Sensitivity(array.number, k.mean(0), se[0], v.mean(0), se[1], correlation, full * (runs - 1), 57.04 * full, 0 * full)
+    return Sensitivity(
+        array.number,
+        k.mean(0),
+        se[0],
+        v.mean(0),
+        se[1],
+        correlation,
+        full * (runs - 1),
+        57.04 * full,
+        0 * full,
+    )

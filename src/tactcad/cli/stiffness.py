@@ -76,9 +76,7 @@ def run(args: argparse.Namespace) -> int:
 
     allowance(args)
     if args.coupling is not None and (args.thickness or args.nu) is not None:
-        raise InputError(
-            "--coupling", "takes the object as springs", legal="without --thickness and --nu"
-        )
+        raise InputError("--coupling", "takes the object as springs", legal="without --thickness and --nu")
     known = calibration_file.read(args.calibration)
     source = args.design or DEFAULT_DESIGN
     design = load(source)
@@ -111,6 +109,7 @@ def run(args: argparse.Namespace) -> int:
     unbounded = [g.sample for g in results if g.layer and g.layer.modulus and not g.layer.modulus.bounded]
     if unbounded:
         print(
-            f"the readings do not bound the modulus of sample {', '.join(map(str, unbounded))}", file=sys.stderr
+            f"the readings do not bound the modulus of sample {', '.join(map(str, unbounded))}",
+            file=sys.stderr,
         )
     return 1 if unbounded else 0

@@ -1,9 +1,10 @@
 """Many presses of rigid pads on one layer: each pad as three numbers, its force and two moments.
 
 A pad alone obeys one law, tabulated once for a layer: forces follow from how deep and how inclined it stands
-in the face, with contact lost where it lifts. By linearity of the body that law is homogeneous (twice the depth
-and slopes, twice the force) and proportional to the modulus, so it is a table of two ratios. Between pads,
-forces and moments move and incline each other's part of the face by a matrix, exact where whole pads touch.
+in the face, with contact lost where it lifts. By linearity of the body that law is homogeneous (twice the
+depth and slopes, twice the force) and proportional to the modulus, so it is a table of two ratios. Between
+pads, forces and moments move and incline each other's part of the face by a matrix, exact where whole pads
+touch.
 `press` solves every patch instead; tests hold the two against each other.
 """
 
@@ -65,8 +66,11 @@ class PadLaw:
         across = np.einsum("...fij,...j->...fi", coefficients, slope[..., 1, :])
         f = np.einsum("...fi,...i->...f", along, power[..., 0, :])
         d = np.stack(
-            [np.einsum("...fi,...i->...f", along, slope[..., 0, :]),
-             np.einsum("...fi,...i->...f", across, power[..., 0, :])], -1
+            [
+                np.einsum("...fi,...i->...f", along, slope[..., 0, :]),
+                np.einsum("...fi,...i->...f", across, power[..., 0, :]),
+            ],
+            -1,
         )  # of f by the two ratios
         # forces = size f(fall/size); by depth, and by each fall, of which size has 3/2 more
         by_size = f - (d * ratio[..., None, :]).sum(-1)
@@ -97,8 +101,13 @@ def pad_law(poisson: float, thickness: float, base: str, length: float, width: f
     for k, of in enumerate(value):
         spline = RectBivariateSpline(t, t, of)
         data = np.array([[spline(t, t, dx=a, dy=b) * step ** (a + b) for b in (0, 1)] for a in (0, 1)])
-        both = [data[a, b, p : KNOTS - 1 + p, q : KNOTS - 1 + q] for a in (0, 1) for p in (0, 1)
-                for b in (0, 1) for q in (0, 1)]
+        both = [
+            data[a, b, p : KNOTS - 1 + p, q : KNOTS - 1 + q]
+            for a in (0, 1)
+            for p in (0, 1)
+            for b in (0, 1)
+            for q in (0, 1)
+        ]
         corner = np.array(both).reshape(4, 4, KNOTS - 1, KNOTS - 1)
         cells[:, :, k] = np.einsum("ia,abxy,jb->xyij", HERMITE, corner, HERMITE)
     return PadLaw(length, width, cells)

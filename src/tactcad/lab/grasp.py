@@ -89,7 +89,7 @@ class OnLayer:
     """
 
     modulus: Interval | None
-    angle: tuple[tuple[float, float, float], ...]
+    angle: tuple[tuple[float, ...], ...]
     touching: tuple[int, ...]
     springs: Interval
 
@@ -246,12 +246,14 @@ def on_layers(
     one = len(layers) == 1
 
     def over(ends: list[np.ndarray]) -> Interval:
-        estimate = np.exp(np.mean([np.log(e[0]) for e in ends])) if np.isfinite([e[0] for e in ends]).all() else inf
-        return Interval(float(estimate), float(min(e[1] for e in ends)), float(max(e[2] for e in ends)))
+        middle = [e[0] for e in ends]
+        estimate = 0.0 if min(middle) <= 0 else float(np.exp(np.log(middle).mean()))  # infinite where one is
+        return Interval(estimate, float(min(e[1] for e in ends)), float(max(e[2] for e in ends)))
 
     place = {int(n): i for i, n in enumerate(number)}
     pairs = tuple(
-        pair if np.isnan(fits[0].pairs[0, place[pair.measuring], 0])
+        pair
+        if np.isnan(fits[0].pairs[0, place[pair.measuring], 0])
         else replace(pair, object=over([f.pairs[0, place[pair.measuring]] for f in fits]))
         for pair in grasp.pairs
     )
@@ -523,7 +525,8 @@ def to_json(samples: list[Grasp], level: float) -> str:
         if layer := record.pop("layer"):
             record |= {"touching": layer["touching"], "springs": layer["springs"]}
             record["angle"] = {
-                name: [axis[i] for axis in layer["angle"]] for i, name in enumerate(("estimate", "low", "high"))
+                name: [axis[i] for axis in layer["angle"]]
+                for i, name in enumerate(("estimate", "low", "high"))
             }
             if g.layer and g.layer.modulus:
                 record["modulus_MPa"] = layer["modulus"] | {"verdict": g.layer.modulus.verdict}

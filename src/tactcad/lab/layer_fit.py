@@ -17,34 +17,38 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import lru_cache
-from math import inf, isinf
+from math import inf
 
 import numpy as np
 from scipy.special import fdtrc
 
 from tactcad.contact.elastic_body import Body
-from tactcad.contact.press import pad_stiffness
+from tactcad.contact.press import Pads, pad_stiffness
 from tactcad.contact.rigid_pads import ManyPresses
-from tactcad.design.messages import InputError
-from tactcad.lab.combine import DISAGREE, PRIOR_DOF, Interval
+from tactcad.lab.combine import DISAGREE, PRIOR_DOF
 from tactcad.lab.regression import KNOWN, t_quantile
 
 from .calibration_file import Sensitivity
 
 UNIFORM = 3**-0.5  # standard deviation over half-width of what lies anywhere within limits
 MODEL = 0.005  # of each element's force by the layer rung: 0.4 % of punches, 0.3 % by the pads' law
-# Standard deviation of ln K of a pad that presses and is not read: equal elements of Table 1 differ by a factor
-# of up to two.
+# Standard deviation of ln K of a pad that presses and is not read: equal elements of Table 1 differ by a
+# factor of up to two.
 UNREAD = 0.35
-LOAD = 0.1  # of the largest load, standard deviation of every sum of forces: only keeps the approach in bounds
+# Of the largest load, standard deviation of every sum of forces: only keeps the approach in bounds.
+LOAD = 0.1
 STEEP = 0.3  # standard deviation of the face's slopes: 17 degrees, far beyond what is set up
 WILD = 10.0  # times their errors by which elements disagree from which on no modulus explains the readings
-LAYERS = (0.25, 0.35, 0.5, 0.7, 1.0, 1.4, 2.0, 3.0, 5.0, 10.0, inf)  # thicknesses over a pad's side that are tried
+# Thicknesses over a pad's side that are tried where none is known.
+LAYERS = (0.25, 0.35, 0.5, 0.7, 1.0, 1.4, 2.0, 3.0, 5.0, 10.0, inf)
 STEPS = 40
 SETTLED = 0.1  # of a cost in squared standard errors: the estimate is then a third of one from its end
-STAGES = 2  # the noise is found in the first one
-# Of the weight of the pads' heights in a pair's fit. The readings give heights over the approach; taken as known,
-# their size would tell the approach and so K_obj, by as much as one pair does.
+STAGES = 3  # each finds the noise anew
+# Of the largest change of a signal: error of a reading by the law of pads that lift, against single patches
+# (0.05 % of whole pads, 0.3 % where most have lifted).
+SHAPE = 1e-3
+# Of the weight of the pads' heights in a pair's fit. The readings give heights over the approach; taken as
+# known, their size would tell the approach and so K_obj, by as much as one pair does.
 FREE_HEIGHTS = 0.01
 SAME = 1e-6  # relative difference of stiffness below which two elements are no pair
 LOOSE = 1e-4  # of a prior's weight where it is as good as none
@@ -73,7 +77,7 @@ class Layer:
 
 
 def layer(
-    number: np.ndarray, pads: object, height: float, poisson: float, thickness: float, half_width: float = 0.0
+    number: np.ndarray, pads: Pads, height: float, poisson: float, thickness: float, half_width: float = 0.0
 ) -> Layer:
     """Set up; `pads` is the family's `Pads`, `height` the tolerance of their heights (plus and minus, mm)."""
     K = 1 / pads.compliance[:, 0, 0]
@@ -87,9 +91,7 @@ def layer(
         body = Body(1.0, poisson, thickness * (1 + THICKER))
         thicker = _contact(*fixed, body)
         steeper = float(np.log(pad_stiffness(body, pads.length, pads.width) / unit) / np.log1p(THICKER))
-    return Layer(
-        number, K, pads.stop, height * UNIFORM, contact, thicker, thickness, spread, unit, steeper
-    )
+    return Layer(number, K, pads.stop, height * UNIFORM, contact, thicker, thickness, spread, unit, steeper)
 
 
 @lru_cache(maxsize=64)
@@ -104,8 +106,8 @@ class LayerFit:
     """Grasps on one layer; arrays with one entry a grasp first.
 
     modulus     MPa; low, high: its interval (0 and inf where it is not bounded)
-    object_     K_obj of a single level pad, N/mm, [estimate, low, high]; object_by_noise without what is known
-                within limits
+    object_     K_obj of a single level pad, N/mm, [estimate, low, high]; object_by_noise without the limits
+                of the load cell
     pairs       K_obj by each element other than the reference alone, [grasp, element, 3]
     angle       of the face along x and y, degrees, [grasp, 2, 3]
     force       on each pad at the largest load, N, [grasp, pad]
@@ -135,14 +137,24 @@ class _Model:
         self.K[rows] = calibration.stiffness
         self.K_v = calibration.signal_per_deflection
         n, m, t = len(at.number), len(rows), len(load)
-        sizes = {"E": 1, "slope": 2, "offset": m, "approach": t, "height": n, "K": n, "K_v": m, "thickness": 1, "own": m}
+        sizes = {
+            "E": 1,
+            "slope": 2,
+            "offset": m,
+            "approach": t,
+            "height": n,
+            "K": n,
+            "K_v": m,
+            "thickness": 1,
+            "own": m,
+        }
         ends = np.cumsum([0, *sizes.values()])
         self.part = {name: slice(a, b) for name, a, b in zip(sizes, ends, ends[1:])}
         self.size = int(ends[-1])
 
     def signals(self, q: np.ndarray, start: np.ndarray | None, columns: bool) -> tuple:
-        """Of parameters q [grasp, parameter]: signal [grasp, element, load], total force [grasp, load], depths,
-        forces [grasp, load, pad], and with `columns` the derivatives of the first two."""
+        """Of parameters q [grasp, parameter]: signal [grasp, element, load], total force [grasp, load],
+        depths, forces [grasp, load, pad], and with `columns` the derivatives of the first two."""
         at, part, rows = self.at, self.part, self.rows
         G, T, n, m = len(q), len(self.load), len(at.number), len(rows)
         spread = lambda v: np.repeat(v[:, None], T, 1)  # noqa: E731
@@ -150,7 +162,9 @@ class _Model:
         K = spread(self.K * np.exp(q[:, part["K"]]))
         K_v = self.K_v * np.exp(q[:, part["K_v"]])
         contact = at.contact
-        b = contact.approached(q[:, part["approach"]], spread(q[:, part["slope"]]), spread(q[:, part["height"]]))
+        b = contact.approached(
+            q[:, part["approach"]], spread(q[:, part["slope"]]), spread(q[:, part["height"]])
+        )
         M = contact.system(E, K)
         r, g, d, J = contact.rest(M, b, b if start is None else start)
         sink = E[..., None] * np.einsum("gtni,ni->gtn", g, contact.move) / K
@@ -170,9 +184,10 @@ class _Model:
         right[..., 3 + 2 * n :] = -np.einsum("gtrnk,gtnk->gtrn", blocks, g)[..., rows].reshape(G, T, n, 3, m)
         if at.thicker is not None:
             other = at.thicker.rest(at.thicker.system(E, K), b, r)[1]
-            by_thickness = E[..., None] * (other - g)[..., 0], E[..., None] * np.einsum(
-                "gtni,ni->gtn", other - g, contact.move
-            ) / K
+            by_thickness = (
+                E[..., None] * (other - g)[..., 0],
+                E[..., None] * np.einsum("gtni,ni->gtn", other - g, contact.move) / K,
+            )
         dr = np.linalg.solve(J, right.reshape(G, T, 3 * n, -1)).reshape(right.shape)
         dg = np.einsum("gtnij,gtnjq->gtniq", d, dr)
         ds = np.einsum("gtniq,ni->gtnq", dg, contact.move) * (E[..., None] / K)[..., None]
@@ -199,7 +214,9 @@ class _Model:
         A[:, e, :, part["K_v"].start + e] = (signal - q[:, part["offset"], None]).swapaxes(0, 1)
         if at.thicker is not None:
             step = np.log1p(THICKER)
-            A[..., part["thickness"].start] = K_v[..., None] * by_thickness[1][..., rows].swapaxes(1, 2) / step
+            A[..., part["thickness"].start] = (
+                K_v[..., None] * by_thickness[1][..., rows].swapaxes(1, 2) / step
+            )
             B[..., part["thickness"].start] = by_thickness[0].sum(-1) / step
         return signal, force.sum(-1), r, force, A, B
 
@@ -261,7 +278,8 @@ def _fit(
     unloaded = before.mean(2) if rests else np.zeros((G, m))
     count = pressed.shape[1] * pressed.shape[2] + m * rests
     load_weight = 1 / (LOAD * load.max()) ** 2
-    noise = np.maximum(1e-3 * np.ptp(signal, axis=2).max(1), 1e-12)
+    least = np.maximum(SHAPE * np.ptp(signal, axis=2).max(1), 1e-12)
+    noise = least
 
     def cost_of(i: np.ndarray, q: np.ndarray, state: tuple) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Of grasps i; what is left of signals and of loads."""
@@ -324,19 +342,23 @@ def _fit(
         spent = len(free) - np.einsum("gij,ji->g", inverse, loose[free[:, None], free])
         dof = np.maximum(count + len(load[touching]) - spent, 1.0)
         noise_now = noise * np.maximum(quiet, 1e-18 * count) ** 0.5 / dof**0.5
-        noise = np.maximum(noise_now, 1e-9 * np.ptp(signal, axis=2).max(1))
+        noise, before_ = np.maximum(noise_now, least), noise
+        if (noise < 1.5 * before_).all():
+            break
     K = model.K[rows]
     r = int(np.argmax(K)) if reference is None else int(np.flatnonzero(element == reference)[0])
     last = state[3][:, int(np.argmax(model.load))]
     return _results(
-        at, model, calibration, q, last, *normal(every, q, state), priors, noise, dof, level, r
+        at, model, calibration, q, last, *normal(every, q, state), priors, noise_now, dof, level, r
     )
 
 
 def _solve(N: np.ndarray, right: np.ndarray) -> np.ndarray:
     """N of parameters in very different units."""
     unit = np.einsum("...ii->...i", N) ** -0.5
-    return unit[..., None] * np.linalg.solve(N * unit[..., None] * unit[..., None, :], unit[..., None] * right)
+    return unit[..., None] * np.linalg.solve(
+        N * unit[..., None] * unit[..., None, :], unit[..., None] * right
+    )
 
 
 @dataclass(frozen=True)
@@ -445,7 +467,9 @@ def _results(
         full[:, keep[:, None], keep] = _solve(part_of, np.broadcast_to(np.eye(len(keep)), part_of.shape))
         return full
 
-    def errors(row: np.ndarray, variance: np.ndarray, known: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    def errors(
+        row: np.ndarray, variance: np.ndarray, known: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Of a quantity whose covariance with all parameters is `row` [grasp, parameter]: standard error,
         Student's quantile, and how far the load cell's limits shift it."""
         pull = np.einsum("eij,gej->gei", priors.of_element, row[:, priors.calibrated])
@@ -501,12 +525,12 @@ def _results(
         se, t, moved = errors(full[:, i], full[:, i, i], priors.others)
         half = t * se * widened + moved
         angle[:, k] = np.degrees(np.arctan(np.stack([q[:, i], q[:, i] - half, q[:, i] + half], -1)))
-    return LayerFit(
-        found[0] / at.unit, found[1], by_noise, pairs, angle, force, noise, dof, p, widened
-    )
+    return LayerFit(found[0] / at.unit, found[1], by_noise, pairs, angle, force, noise, dof, p, widened)
 
 
-def _even_in_ratio(ln_x: np.ndarray, away: np.ndarray, half: np.ndarray, K_r: float, K_m: float) -> np.ndarray:
+def _even_in_ratio(
+    ln_x: np.ndarray, away: np.ndarray, half: np.ndarray, K_r: float, K_m: float
+) -> np.ndarray:
     """K_obj and its interval, [grasp, 3], from ln K_obj, a step away from it and a half-width, all taken to
     ln R of two elements, where errors are even."""
     K_r, K_m, x = max(K_r, K_m), min(K_r, K_m), np.exp(ln_x)

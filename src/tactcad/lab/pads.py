@@ -131,12 +131,18 @@ def layers(design: Design, thickness: str | None, poisson: float | None) -> list
         value, given, limits = thickness.replace("\N{PLUS-MINUS SIGN}", "+-").partition("+-")
         try:
             h = as_number(value)
-            half = as_number(limits.removesuffix("%")) * (h / 100 if limits.endswith("%") else 1) if given else 0.0
+            half = (
+                as_number(limits.removesuffix("%")) * (h / 100 if limits.endswith("%") else 1)
+                if given
+                else 0.0
+            )
         except ValueError:
             legal = "mm with its limits, as in 6+-0.3 or 6+-5%, or inf"
             raise InputError("--thickness", "not a thickness", value=thickness, legal=legal) from None
         if not THINNEST * side <= h or not 0 <= half < h or isinf(h) and given:
-            legal = f"at least {THINNEST * side:.3g} mm (a quarter of a pad's side), limits below it; inf without"
+            legal = (
+                f"at least {THINNEST * side:.3g} mm (a quarter of a pad's side), limits below it; inf without"
+            )
             raise InputError("--thickness", "out of range", value=thickness, legal=legal)
         pairs = [(h, half)]
     nu = SOFT if poisson is None else poisson

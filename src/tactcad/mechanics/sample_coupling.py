@@ -150,8 +150,8 @@ def coupling(
 def pad_stiffness(modulus: float, length: float, width: float, thickness: float, poisson: float) -> float:
     """Force on one pad over its mean displacement on an elastic layer, N/mm: K_obj of a modulus.
 
-    The pressure is even; a rigid pad of 2 x 3 mm is 8.8 % stiffer on a half-space, 10.3 % on a layer of 10 mm,
-    11.4 % on 6 mm and 13.1 % on 3 mm (contact.press, nu 0.49).
+    The pressure is even; a rigid pad of 2 x 3 mm is 8.8 % stiffer on a half-space, 10.3 % on a layer of
+    10 mm, 11.4 % on 6 mm and 13.1 % on 3 mm (finer patches than contact.press, nu 0.49).
 
     Parameters
     ----------

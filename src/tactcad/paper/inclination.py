@@ -1,8 +1,8 @@
 """Section 10: was each sample inclined? Table 2's ratios by rigid pads on a layer whose face has two angles.
 
 Every sample is the layer of the design's [sample] with Table 2's K_obj; all pads press, read or not, at the
-paper's least, middle and largest load; R is the ratio of deflections summed over them. ln R is fitted with K_r and both angles of each
-sample free.
+paper's least, middle and largest load; R is the ratio of deflections summed over them. ln R is fitted with
+K_r and both angles of each sample free.
 """
 
 from __future__ import annotations
@@ -20,9 +20,10 @@ from tactcad.paper.array_model import ArrayModel
 from tactcad.paper.grasp_figures import elements_in_parallel
 from tactcad.paper.published import Published
 from tactcad.paper.reference_stiffness import Table2Study
-from tactcad.report.report import ReportSection, ReportTable, interval, listed, percent, sig
+from tactcad.report import plots as d
+from tactcad.report.report import Picture, ReportSection, ReportTable, interval, listed, percent, sig
 
-from .prose import section, tabulated
+from .prose import drawn, section, tabulated
 
 GRID = np.radians(np.linspace(-1.2, 1.2, 5))  # first tries of each angle
 STEP = 1e-4  # of slopes, mm of heights and ln of stiffnesses, for derivatives
@@ -178,8 +179,14 @@ def _fit(
         step = np.linalg.solve(N + damping * np.diag(np.diag(N) + 1e-12), -J.T @ left.ravel())
         tried, i = at, 0
         for kind, k, count in shapes:
-            tried = _moved(tried, kind, k, np.clip(step[i : i + count], -0.5, 0.5) if kind in "Kx" else
-                           np.clip(step[i : i + count], -0.01, 0.01))
+            tried = _moved(
+                tried,
+                kind,
+                k,
+                np.clip(step[i : i + count], -0.5, 0.5)
+                if kind in "Kx"
+                else np.clip(step[i : i + count], -0.01, 0.01),
+            )
             i += count
         now = off(tried)
         if (now**2).sum() < (left**2).sum():
@@ -213,7 +220,7 @@ def _moved(at: tuple, kind: str, k: int, by: float | np.ndarray) -> tuple:
 
 def page(v: Inclination) -> ReportSection:
     sentences = findings(v)
-    return section("inclination", sentences, (_table(v),), (), v, (sentences[0],))
+    return section("inclination", sentences, (_table(v),), (_plot(v),), v, (sentences[0],))
 
 
 def findings(v: Inclination) -> tuple[str, ...]:
@@ -226,8 +233,8 @@ def findings(v: Inclination) -> tuple[str, ...]:
     alike = [t for t, s in zip(OTHERS, v.by_thickness) if s < unlike]
     off = v.own_object.object_ / v.object_printed
     return (
-        f"Two angles of each sample's face take {percent(taken)} of the variance of ln R that separate springs "
-        f"leave (sum of squares {sig(v.springs)} to {sig(b.rss)}; level layers leave {sig(a.rss)}): F = "
+        f"Two angles of each sample's face take {percent(taken)} of the variance of ln R that separate "
+        f"springs leave (sum of squares {sig(v.springs)} to {sig(b.rss)}; level layers leave {sig(a.rss)}): F = "
         f"{sig(v.f)} with {b.parameters - a.parameters} and {n - b.parameters} degrees of freedom, p "
         f"{v.p:.1g}. "
         + (
@@ -238,13 +245,14 @@ def findings(v: Inclination) -> tuple[str, ...]:
         f"The faces are inclined by {interval(steep.min(), steep.max())} degrees, most on the "
         f"{v.object_printed[worst]:g} N/mm sample; K_r = {sig(b.reference)} N/mm then, and ln R scatters by "
         f"{percent(float((b.left**2).mean() ** 0.5))}.",
-        f"What the data do not tell apart: inclined samples leave {sig(b.rss)} at {v.thickness:g} mm, {other}; "
-        + (f"{listed(f'{t:g} mm' for t in alike)} would do as well. " if alike else "these fit worse. ")
-        + f"Pads of other heights, the same for all samples, with level faces leave {sig(v.heights.rss)} with "
-        f"{v.heights.parameters} parameters. Heights and a common angle act alike: 0.1 degrees over 16 mm are "
-        "28 um.",
-        f"With K_obj free as well, inclined samples give {interval(off.min(), off.max())} times the printed K_obj "
-        f"and leave {sig(v.own_object.rss)}.",
+        f"What the data do not tell apart: inclined samples leave {sig(b.rss)} at {v.thickness:g} mm, "
+        f"{other}; "
+        + (f"{listed(f'{t:g} mm' for t in alike)} would do. " if alike else "these fit worse. ")
+        + f"Pads of other heights, the same for all samples, with level faces leave {sig(v.heights.rss)} "
+        f"with {v.heights.parameters} parameters. Heights and a common angle act alike: 0.1 degrees over "
+        "16 mm are 28 um.",
+        f"With K_obj free as well, inclined samples give {interval(off.min(), off.max())} times the printed "
+        f"K_obj and leave {sig(v.own_object.rss)}.",
     )
 
 
@@ -270,3 +278,22 @@ def _table(v: Inclination) -> ReportTable:
         ("K_obj free as well", "N/mm", fitted),
         thickness=f"{v.thickness:g}",
     )
+
+
+def _plot(v: Inclination) -> Picture:
+    angle, half = np.degrees(np.arctan(v.inclined.slope)), np.degrees(v.inclined.slope_half)
+    with d.panels(size=(11.2, 4.3)) as (figure, ax):
+        for k, what in enumerate(("along the arms", "along the rows")):
+            ax.errorbar(
+                v.object_printed * (0.99 + 0.02 * k),
+                angle[:, k],
+                yerr=half[:, k],
+                fmt=d.MARKERS[k],
+                color=d.SERIES[k],
+                capsize=3,
+                label=what,
+            )
+        ax.axhline(0.0, color=d.BLACK, lw=1)
+        ax.set(xlabel="K_obj of the sample, N/mm", ylabel="inclination of its face, degrees")
+        ax.legend(loc="lower right")
+        return drawn(figure, "inclination")

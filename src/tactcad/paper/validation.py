@@ -65,7 +65,9 @@ def validate(data: Published, array: ArrayModel) -> ValidationReport:
     )
     by_key = {s.key: s for s in sections}
     summary = tuple(
-        h for key in ("table2", "inclination", "reference", "stiffness", "table1", "inversion") for h in by_key[key].headline
+        h
+        for key in ("table2", "inclination", "reference", "stiffness", "table1", "inversion")
+        for h in by_key[key].headline
     )
     return ValidationReport(
         "Held against the paper: a spring-based tactile array",
