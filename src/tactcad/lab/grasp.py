@@ -33,7 +33,7 @@ from tactcad.lab.regression import require_level, t_quantile
 from tactcad.report.plain import plain
 
 from .calibration_file import Sensitivity
-from .layer_fit import WILD, Layer, fit
+from .layer_fit import WILD, LayeredArray, fit
 
 SCHEMA = "tactcad-stiffness-1"
 STRAY = 1e-4  # probability, over all elements, below which an element is reported not to follow the others
@@ -206,7 +206,7 @@ def evaluate(
 
 
 def on_layers(
-    grasp: Grasp, readings: GraspReadings, calibration: Sensitivity, layers: list[Layer], level: float
+    grasp: Grasp, readings: GraspReadings, calibration: Sensitivity, layers: list[LayeredArray], level: float
 ) -> Grasp:
     """The same readings on layers: K_obj of a single level pad, of all elements and of every pair.
 

@@ -57,7 +57,7 @@ BATCH = 250  # grasps at once: 0.3 GB
 
 
 @dataclass(frozen=True)
-class Layer:
+class LayeredArray:
     """An array on one layer of 1 MPa, set up for any number of fits; arrays, [pad].
 
     thickness and its half-width, mm; drawn: stiffness by the design, N/mm; height: standard deviation, mm;
@@ -78,7 +78,7 @@ class Layer:
 
 def layer(
     number: np.ndarray, pads: Pads, height: float, poisson: float, thickness: float, half_width: float = 0.0
-) -> Layer:
+) -> LayeredArray:
     """Set up; `pads` is the family's `Pads`, `height` the tolerance of their heights (plus and minus, mm)."""
     K = 1 / pads.compliance[:, 0, 0]
     move = pads.compliance[:, :, 0] * K[:, None]
@@ -91,7 +91,9 @@ def layer(
         body = Body(1.0, poisson, thickness * (1 + THICKER))
         thicker = _contact(*fixed, body)
         steeper = float(np.log(pad_stiffness(body, pads.length, pads.width) / unit) / np.log1p(THICKER))
-    return Layer(number, K, pads.stop, height * UNIFORM, contact, thicker, thickness, spread, unit, steeper)
+    return LayeredArray(
+        number, K, pads.stop, height * UNIFORM, contact, thicker, thickness, spread, unit, steeper
+    )
 
 
 @lru_cache(maxsize=64)
@@ -131,7 +133,9 @@ class LayerFit:
 class _Model:
     """Signals and forces of many grasps by the parameters, and their derivatives."""
 
-    def __init__(self, at: Layer, rows: np.ndarray, calibration: Sensitivity, load: np.ndarray) -> None:
+    def __init__(
+        self, at: LayeredArray, rows: np.ndarray, calibration: Sensitivity, load: np.ndarray
+    ) -> None:
         self.at, self.rows, self.load = at, rows, load
         self.K = at.drawn.copy()
         self.K[rows] = calibration.stiffness
@@ -222,7 +226,7 @@ class _Model:
 
 
 def fit(
-    at: Layer,
+    at: LayeredArray,
     element: np.ndarray,
     load: np.ndarray,
     signal: np.ndarray,
@@ -257,7 +261,7 @@ def fit(
 
 
 def _fit(
-    at: Layer,
+    at: LayeredArray,
     element: np.ndarray,
     load: np.ndarray,
     signal: np.ndarray,
@@ -445,7 +449,7 @@ def _start(model: _Model, pressed: np.ndarray, before: np.ndarray, load: np.ndar
 
 
 def _results(
-    at: Layer,
+    at: LayeredArray,
     model: _Model,
     c: Sensitivity,
     q: np.ndarray,

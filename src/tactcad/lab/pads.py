@@ -12,7 +12,7 @@ from tactcad.design.family import family_of
 from tactcad.design.messages import CheckFailure, InputError
 from tactcad.design.text_values import as_number
 from tactcad.design.tree import Design
-from tactcad.lab.layer_fit import LAYERS, Layer, layer
+from tactcad.lab.layer_fit import LAYERS, LayeredArray, layer
 from tactcad.lab.readings import GraspReadings
 from tactcad.mechanics import gauge_signal, ladder, readout
 from tactcad.mechanics.sample_coupling import pad_stiffness, shares_between
@@ -111,7 +111,7 @@ def refuse_strangers(source: str, readings: GraspReadings) -> None:
             )
 
 
-def layers(design: Design, thickness: str | None, poisson: float | None) -> list[Layer]:
+def layers(design: Design, thickness: str | None, poisson: float | None) -> list[LayeredArray]:
     """The array on the layer that is named, "6" or "6+-0.3" mm (inf: a half-space), else on layers from the
     thinnest that rigid pads take to the half-space.
 

@@ -234,7 +234,7 @@ def findings(v: Inclination) -> tuple[str, ...]:
     off = v.own_object.object_ / v.object_printed
     return (
         f"Two angles of each sample's face take {percent(taken)} of the variance of ln R that separate "
-        f"springs leave (sum of squares {sig(v.springs)} to {sig(b.rss)}; level layers leave {sig(a.rss)}): F = "
+        f"springs leave (sum of squares {sig(v.springs)} to {sig(b.rss)}; level layers {sig(a.rss)}): F = "
         f"{sig(v.f)} with {b.parameters - a.parameters} and {n - b.parameters} degrees of freedom, p "
         f"{v.p:.1g}. "
         + (
