@@ -53,7 +53,8 @@ size --stiffness 10 --load-arm 6 --within 1% --in 1
 calibrate calibration.csv --load-cell 57+-1 --run-scatter 0.01 --drop-outliers --out cal.csv
 calibrate calibration.csv --design macro-array --level 0.9 --within 1% --in 1 --json --profile
 stiffness grasp.csv --calibration cal.csv --reference 8 --level 0.9 --json --profile
-stiffness grasp.csv --calibration cal.csv --design macro-array --coupling 1 --thickness 5 --within 1% --in 1
+stiffness grasp.csv --calibration cal.csv --design macro-array --coupling 1 --within 1% --in 1
+stiffness grasp.csv --calibration cal.csv --thickness 5+-1 --nu 0.49
 grasp macro-array --object E=0.5,nu=0.49,thickness=6 --load 1 --angle 0.5,1 --rung layer --out p.svg
 grasp --object E=0.5,nu=0.49,thickness=6 --within 1% --json --profile
 schema --target --json --profile

@@ -79,9 +79,8 @@ class Pressed:
 
 
 @lru_cache(maxsize=16)
-def patches(length: float, width: float, disc: bool) -> np.ndarray:
+def patches(length: float, width: float, disc: bool, number: int = PATCHES) -> np.ndarray:
     """x, y and sides of one pad's patches about its middle, mm, [4, patch]; a disc's rows have its area."""
-    number = PATCHES
     t = np.linspace(-1, 1, number + 1)
     edges = np.sign(t) * (1 - (1 - np.abs(t)) ** GRADING) / 2
     middle, side = (edges[1:] + edges[:-1]) / 2, np.diff(edges)
@@ -275,9 +274,7 @@ def _block_by_elements(pads: Pads, body: Body, one: np.ndarray) -> Callable[[flo
     return SolidFace(body, one, (pads.length, pads.width), reach).block
 
 
-def pad_stiffness(
-    body: Body, length: float, width: float, disc: bool = False, number: int = PATCHES
-) -> float:
+def pad_stiffness(body: Body, length: float, width: float, disc: bool = False) -> float:
     """Force on one rigid pad that does not tilt over its displacement, N/mm: K_obj of a body."""
     C = influence(body, tuple(patches(length, width, disc)))
     return float(np.linalg.solve(C, np.ones(len(C))).sum())
