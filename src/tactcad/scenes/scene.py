@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
+from itertools import product
 from math import floor
 from typing import Literal
 
@@ -168,6 +169,20 @@ class Scene:
     def parts(self) -> tuple[Part, ...]:
         """Every part placed, once, in the order of first placement."""
         return tuple({p.part.part_no: p.part for p in self.placements}.values())
+
+    @property
+    def size(self) -> Vector:
+        """Length, width and height (mm) of the box around all parts, by their descriptions' stock."""
+        corners = [
+            [
+                sum(row[k] * (low, high)[pick[k]][k] for k in range(3)) + p.origin[i]
+                for i, row in enumerate(p.rotation)
+            ]
+            for p in self.placements
+            for low, high in [p.part.body.box]
+            for pick in product((0, 1), repeat=3)
+        ]
+        return vector(round(max(along) - min(along), 6) for along in zip(*corners))
 
     def count(self, part: Part) -> int:
         return sum(p.part.part_no == part.part_no for p in self.placements)
