@@ -128,14 +128,15 @@ def _profiled(run: Callable[[argparse.Namespace], int], args: argparse.Namespace
             print(json.dumps(record, indent=1) if as_json else text(record), file=sys.stderr)
 
 
-def parser_of(command: str) -> Parser:
-    """The parser of one of COMMANDS, as its --help and the reference pages show it."""
+def parser_of(command: str, raises: bool = False) -> Parser:
+    """The parser of one of COMMANDS, as its --help and the reference pages show it; `raises` as of Parser."""
     module = importlib.import_module(f"tactcad.cli.{command}")
     parser = Parser(
         prog=f"tactcad {command}",
         description=COMMANDS[command],
         epilog=f"examples:\n{module.EXAMPLES}",
         formatter_class=argparse.RawDescriptionHelpFormatter,
+        raises=raises,
     )
     module.configure(parser)
     parser.add_argument(

@@ -19,8 +19,9 @@ class Parser(argparse.ArgumentParser):
     word.
     """
 
-    def __init__(self, *args: Any, **kwargs: Any) -> None:
+    def __init__(self, *args: Any, raises: bool = False, **kwargs: Any) -> None:
         super().__init__(*args, **kwargs)
+        self.raises = raises  # InputError in place of ending the program
         self.register("type", float, as_number)
         self.register("type", int, as_whole)
         self._negative_number_matcher = re.compile(r"-\.?\d")  # argparse's takes -1% and -1e-3 for options
@@ -48,10 +49,15 @@ class Parser(argparse.ArgumentParser):
             self._refuse(_named(action), "unknown", value=value, legal=legal)
 
     def _refuse(self, where: str, what: str, *, value: object = ..., legal: str) -> NoReturn:
-        self.error(str(InputError(where, what, value=value, legal=legal)))
+        refusal = InputError(where, what, value=value, legal=legal)
+        if self.raises:
+            raise refusal
+        self.error(str(refusal))
 
     def error(self, message: str) -> NoReturn:
         """One line, exit status 2."""
+        if self.raises:
+            raise InputError(self.prog, message)
         self.exit(2, f"tactcad: {message}\n")
 
 

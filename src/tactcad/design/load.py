@@ -15,7 +15,7 @@ from .files import read_text
 from .materials import completed
 from .messages import InputError, nearest, one_of
 from .text_values import as_number, parse_toml
-from .tree import CommonTables, Design, Element, Hinge, SheetMaterial, Stop
+from .tree import NO_TABLES, CommonTables, Design, Element, Hinge, SheetMaterial, Stop
 
 # A design is a page of text; a larger file is a mistake or an attack, and is refused without parsing.
 MOST_BYTES = 1_000_000
@@ -88,7 +88,7 @@ def from_table(table: dict[str, Any]) -> Design:
     values = {}
     for section in dataclasses.fields(family.spec):
         name = section.name
-        if name == "origin":
+        if name in NO_TABLES:
             continue
         if name not in table and section.default is dataclasses.MISSING:
             raise InputError(name, "missing table", legal=f"a table [{name}]")
@@ -199,7 +199,7 @@ def paths(design: CommonTables) -> dict[str, Any]:
             flat[prefix] = value
 
     for f in dataclasses.fields(design):
-        if f.name != "origin":
+        if f.name not in NO_TABLES:
             add(f.name, getattr(design, f.name))
     return flat
 

@@ -93,10 +93,11 @@ def make_scene(design: CommonTables, name: str, pose: Pose | None = None) -> Sce
     InputError
         Where the pose is impossible.
     """
-    from .scene import REST
+    from .scene import REST, with_added
 
     with making("scene", name):
-        return rig_of(design, name).make(design, pose or REST)
+        scene = rig_of(design, name).make(design, pose or REST)
+        return with_added(scene, (added for added in design.added if added.scene == name))
 
 
 def overall_size(design: CommonTables) -> Vector:
