@@ -32,7 +32,7 @@ check: environment ## style, types, and every check of every design: all failure
 	$(BIN)/ruff check || status=1; \
 	$(BIN)/ruff format --check src tests benchmarks packaging || status=1; \
 	$(BIN)/mypy || status=1; \
-	$(BIN)/tactcad check $(DESIGNS) --report exports/check || status=1; \
+	$(BIN)/tactcad check $(DESIGNS) --out exports/check || status=1; \
 	exit $$status
 
 golden: environment ## take up every design's geometry in exports/golden/, where no check fails; prints what changed

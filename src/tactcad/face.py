@@ -383,11 +383,11 @@ class OpenScene:
         InputError
             Where `part` is no part, a designator is unknown, or the part's number is another part's.
         """
-        from tactcad.parts.language.description import Part
+        from tactcad.parts.language.description import Part, vector
         from tactcad.scenes.scene import AddedPart, Placement, with_added
 
         made, design = self.made, self.of.design
-        if len(at := tuple(map(float, at))) != 3:
+        if len(at) != 3:
             raise InputError("at", "not a place", value=at, legal="x, y, z in mm")
         known = {p.designator for p in made.placements}
         touched = (touches,) if isinstance(touches, str) else tuple(touches)
@@ -397,7 +397,7 @@ class OpenScene:
         if not isinstance(part, Part):
             part = _from_solid(part, design.name, name, material)
         designator = next(d for n in range(1, len(known) + 2) if (d := f"OWN{n}") not in known)
-        new = AddedPart(self.name, Placement(designator, part, at), step, touched)
+        new = AddedPart(self.name, Placement(designator, part, vector(map(float, at))), step, touched)
         try:
             with_added(made, [new])
         except ValueError as error:

@@ -11,7 +11,7 @@ from tactcad.design.allowance import Allowance, Picked, pick, read_within
 from tactcad.design.messages import InputError
 from tactcad.mechanics.ladder import DEFAULT_RUNG, FINITE_ELEMENTS, FITTED, RUNGS
 
-from .parser import add_allowance, allowance, refuse_named
+from .parser import UNLISTED, add_allowance, allowance, refuse_named
 
 if TYPE_CHECKING:
     from tactcad.design.tree import Design, Tolerance
@@ -63,7 +63,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         help=f"one of {', '.join(RUNGS)} (default {DEFAULT_RUNG}); never falls back to another",
     )
     add_allowance(parser, "error of K, against solid elements refined to their limit,", "rung")
-    parser.add_argument("--accuracy", metavar="P", help="the same as --within P")
+    parser.add_argument("--accuracy", help=UNLISTED)  # --within by its older name
     parser.add_argument(
         "--force", type=float, metavar="N", help="force on each pad (default: the design's rated force)"
     )
@@ -71,7 +71,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--batch", metavar="IN.csv", help="a table of designs, one a line (columns: docs/howto.md)"
     )
-    parser.add_argument("--out", metavar="OUT.csv", help="where --batch writes its table")
+    parser.add_argument("-o", "--out", metavar="OUT.csv", help="where --batch writes its table")
     parser.add_argument(
         "--inspection",
         metavar="FILE",

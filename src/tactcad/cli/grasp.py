@@ -59,7 +59,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--within", metavar="P", help="accuracy of the forces that is asked for, such as 1%%, of a level body"
     )
-    parser.add_argument("--out", metavar="FILE.svg", help="draw the pressure under the pads")
+    parser.add_argument("-o", "--out", metavar="FILE.svg", help="draw the pressure under the pads")
     add_json(parser)
 
 

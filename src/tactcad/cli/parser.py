@@ -40,8 +40,10 @@ class Parser(argparse.ArgumentParser):
 
     def _refuse_empty(self, action: argparse.Action, value: Any) -> None:
         """Refuse an empty text: it is a mistake in the calling script, never a wish for the default."""
+        if action.nargs == argparse.REMAINDER:  # words that a shell is completing
+            return
         if "" in (value if isinstance(value, list) else [value]):
-            self._refuse(_named(action), "empty", value="", legal=(action.help or "").replace("%%", "%"))
+            self._refuse(_named(action), "empty", value="", legal=_help(action))
 
     def _check_value(self, action: argparse.Action, value: Any) -> None:
         if action.choices is not None and value not in action.choices:
@@ -110,8 +112,15 @@ def add_others(
     )
 
 
+UNLISTED = argparse.SUPPRESS  # help of an option that works and that --help does not name
+
+
+def _help(action: argparse.Action) -> str:
+    return "" if action.help in (None, UNLISTED) else str(action.help).replace("%%", "%")
+
+
 def _named(action: argparse.Action) -> str:
-    return "/".join(action.option_strings) or str(action.metavar or action.dest)
+    return action.option_strings[-1] if action.option_strings else str(action.metavar or action.dest)
 
 
 def add_allowance(parser: argparse.ArgumentParser, of: str, chosen: str) -> None:
@@ -134,10 +143,8 @@ def add_allowance(parser: argparse.ArgumentParser, of: str, chosen: str) -> None
 
 def add_needless_allowance(parser: argparse.ArgumentParser) -> None:
     """The two options on a command that answers at once, with nothing to choose: read, and without effect."""
-    for option, dest, metavar in (("--within", "within", "P"), ("--in", "seconds", "SECONDS")):
-        parser.add_argument(
-            option, dest=dest, metavar=metavar, help="as of other commands; this one has nothing to choose"
-        )
+    for option, dest in (("--within", "within"), ("--in", "seconds")):
+        parser.add_argument(option, dest=dest, help=UNLISTED)
 
 
 def allowance(args: argparse.Namespace) -> Allowance:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from tactcad.design.family import family_of
 from tactcad.design.messages import InputError, one_of
-from tactcad.design.tree import CommonTables, Design
+from tactcad.design.tree import Design
 from tactcad.parts.language.description import Vector
 from tactcad.parts.language.finding import Finding
 from tactcad.parts.rules.rule import misfit
@@ -76,7 +76,7 @@ def chosen_scenes(design: Design, wanted: list[str] | None) -> tuple[str, ...]:
     return tuple(name for name in names if not wanted or name in wanted)
 
 
-def make_scene(design: CommonTables, name: str, pose: Pose | None = None) -> Scene:
+def make_scene(design: Design, name: str, pose: Pose | None = None) -> Scene:
     """One scene of a design.
 
     Parameters
@@ -100,7 +100,7 @@ def make_scene(design: CommonTables, name: str, pose: Pose | None = None) -> Sce
         return with_added(scene, (added for added in design.added if added.scene == name))
 
 
-def overall_size(design: CommonTables) -> Vector:
+def overall_size(design: Design) -> Vector:
     """Length, width and height (mm) of the array as built: the box around all parts of its scene `array`."""
     return make_scene(design, ARRAY).size
 
