@@ -38,7 +38,7 @@ WORK = """
 new new.toml --from A.toml
 build A.toml --count 20 --seed 1 --json
 build A.toml --within 10% --in 60
-diff A.toml B.toml --json --html out.html --markdown out.md --out other.html --fail-on checks
+diff A.toml B.toml --json --html out.html --markdown out.md --out other.html --full --fail-on checks
 diff HEAD . A.toml --their-code
 estimate A.toml --model plane --force 0.1 --json
 estimate A.toml --accuracy 1% --in 60

@@ -38,6 +38,11 @@ def configure(parser: argparse.ArgumentParser) -> None:
     )
     add_shop(parser)
     add_strict(parser)
+    parser.add_argument(
+        "--all",
+        action="store_true",
+        help="of a design that is refused: every rule that it breaks, a line each",
+    )
     parser.add_argument("-o", "--out", metavar="DIR", help="write check.json and junit.xml there")
     parser.add_argument("--report", dest="out", help=UNLISTED)
     add_allowance(parser, "relative error of a part's meshed volume", "mesh")
@@ -51,6 +56,9 @@ def run(args: argparse.Namespace) -> int:
 
     from .streams import coloured
 
+    if args.all and (refused := _every_rule(args.design)):
+        print("\n".join(refused), file=sys.stderr)
+        return 2
     asked = allowance(args)
     shop = Path(args.shop) if args.shop else DEFAULT
     if args.out:
@@ -74,6 +82,14 @@ def run(args: argparse.Namespace) -> int:
         if report.failures:
             print(f"tactcad: {report.design}: {len(report.failures)} failures", file=sys.stderr)
     return 1 if any(report.failures for report in reports) else 0
+
+
+def _every_rule(sources: list[str]) -> list[str]:
+    """A line for each broken rule of each design."""
+    from tactcad.design.load import read
+    from tactcad.parts.rules import broken_rules, refusal
+
+    return [f"tactcad: {source}: {refusal(b)}" for source in sources for b in broken_rules(read(source))]
 
 
 def _picked(args: argparse.Namespace, asked: Allowance) -> tuple[Meshing, Picked]:
@@ -147,9 +163,12 @@ def _write(folder: Path, files: dict[str, bytes]) -> None:
 
 
 def _print(report: Report) -> None:
+    from tactcad.scenes import stated_size
+
     from .streams import coloured
 
-    print(f"{report.design} revision {report.revision}")
+    size = f", {stated_size(report.size)} overall" if report.size else ""
+    print(f"{report.design} revision {report.revision}{size}")
     seconds = report.seconds
     for check, runs in report.runs.items():
         print(f"  {check:14} {runs:5} runs {seconds[check]:8.2f} s")

@@ -39,6 +39,7 @@ What only one of them tells is left out, and said. The exit status is 0 whether 
 1 where --fail-on is met."""
 
 
+MOST_CHANGES = 40  # lines of differences without --full; chosen: about a screen
 KINDS = {".html": "html", ".md": "markdown", ".FCStd": "freecad"}  # by a file's ending its option
 
 
@@ -67,6 +68,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         help="build each revision's design by that revision's own code, which runs as you",
     )
     add_json(parser)
+    parser.add_argument("--full", action="store_true", help="print every difference, however small")
     parser.add_argument(
         "-o",
         "--out",
@@ -118,7 +120,7 @@ def run(args: argparse.Namespace) -> int:
     if args.json:
         print(json.dumps(_record(old, new, changes, meant), indent=1))
     else:
-        _print(old, new, changes, meant)
+        _print(old, new, changes, meant, args.full)
     for kind in met:
         print(f"tactcad: --fail-on {kind} is met", file=sys.stderr)
     return 1 if met else 0
@@ -200,14 +202,23 @@ def _record(old: Side, new: Side, changes: list[Change], meant: Meaning) -> dict
     }
 
 
-def _print(old: Side, new: Side, changes: list[Change], meant: Meaning) -> None:
+def _seen(change: Change) -> bool:
+    """Whether both values differ as they are printed."""
+    old, new = change.shown()
+    return old != new or change.moved is not None
+
+
+def _print(old: Side, new: Side, changes: list[Change], meant: Meaning, full: bool) -> None:
     from tactcad.export.sides import not_compared
     from tactcad.review.summary import lines
 
     for line in lines(meant):
         print(line)
-    for change in changes:
+    told = changes if full else sorted(filter(_seen, changes), key=lambda c: c.path[0] in ("parts", "scenes"))
+    for change in told if full else told[:MOST_CHANGES]:
         print(change)
+    if left := len(changes) - (len(told) if full else min(len(told), MOST_CHANGES)):
+        print(f"and {left} more differences of parts, places and bills, or too small to print: --full")
     for text in (*not_compared(old, new), *meant.untold):
         print(f"not compared: {text}")
     if not changes:
