@@ -2,7 +2,7 @@
 
     python tests/night.py exports/night                        all of it, some hours
     python tests/night.py exports/night --kinds design --designs 50
-    python tests/night.py exports/night --publish              counts to docs/checks.md, too
+    python tests/night.py exports/night --publish              counts to docs/tried.md, too
 
 Stopped, it goes on where it was when it is started again. When it has ended, or the source is another, the
 next run is another night: designs of another seed, which TACTCAD_SEED names. Prints what failed, and counts;
@@ -33,7 +33,7 @@ from tactcad.export.inputs import digest  # noqa: E402
 from tactcad.sweep.on_dask import all_done, cluster, cores  # noqa: E402
 
 KINDS = ("design", "whole", "mutant", "kill")
-DOCUMENT = ROOT / "docs" / "checks.md"
+DOCUMENT = ROOT / "docs" / "tried.md"
 BEGIN, END = "<!-- table night -->\n", "<!-- end -->\n"
 
 
@@ -127,7 +127,7 @@ def main() -> int:
     parser.add_argument("--kinds", nargs="+", choices=KINDS, default=KINDS)
     parser.add_argument("--designs", type=int, default=1000)
     parser.add_argument("--workers", type=int, default=cores())
-    parser.add_argument("--publish", action="store_true", help="write the counts to docs/checks.md")
+    parser.add_argument("--publish", action="store_true", help="write the counts to docs/tried.md")
     args = parser.parse_args()
     folder = args.folder.resolve()
     folder.mkdir(parents=True, exist_ok=True)

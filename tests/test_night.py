@@ -74,7 +74,7 @@ def test_after_a_night_comes_another(tried, tmp_path, monkeypatch):
 
 
 def test_it_publishes_between_its_marks_only(tried, tmp_path, monkeypatch):
-    page = tmp_path / "checks.md"
+    page = tmp_path / "tried.md"
     page.write_text(f"before\n{night.BEGIN}old\n{night.END}after\n<!-- end -->\n")
     monkeypatch.setattr(night, "DOCUMENT", page)
     with pytest.raises(KeyboardInterrupt):

@@ -145,22 +145,19 @@ def read_json(path: str | Path, most_bytes: int, kind: str) -> Any:
     except ValueError as error:  # NaN, or an integer of thousands of digits
         raise InputError(str(path), f"not JSON: {error}", legal=kind) from None
     if not text.isascii() or "\\u" in text:
-        _refuse_hidden(value, str(path), kind)
+        # Raise InputError where a key or text holds half a pair, a control, or what turns the direction of
+        # text.
+        shown = str(path)
+        left = [value]
+        while left:
+            item = left.pop()
+            if isinstance(item, dict):
+                left += [*item, *item.values()]
+            elif isinstance(item, list):
+                left += item
+            elif isinstance(item, str) and (fault := hidden(item)):
+                raise InputError(shown, f"a text holds {fault}", value=item, legal=kind)
     return value
-
-
-def _refuse_hidden(value: Any, shown: str, kind: str) -> None:
-    """Raise InputError where a key or text holds half a pair, a control, or what turns the direction of
-    text."""
-    left = [value]
-    while left:
-        item = left.pop()
-        if isinstance(item, dict):
-            left += [*item, *item.values()]
-        elif isinstance(item, list):
-            left += item
-        elif isinstance(item, str) and (fault := hidden(item)):
-            raise InputError(shown, f"a text holds {fault}", value=item, legal=kind)
 
 
 def _within_floats(text: str) -> int:
@@ -208,7 +205,9 @@ def _mode(path: str | Path, place: Path) -> int:
     """Permissions of the file that is to be at `place`. Raises InputError where there can be none."""
     refuse_link(path)
     if not os.path.lexists(place):
-        return 0o666 & ~_umask()
+        mask = os.umask(0)
+        os.umask(mask)
+        return 0o666 & ~mask
     if not place.is_file():
         raise InputError(
             str(path), "not a file; nothing was changed", legal="a new name, or a file to replace"
@@ -343,9 +342,3 @@ def refusal(where: str, error: OSError) -> InputError | CheckFailure:
     if error.errno in NO_ROOM:
         return CheckFailure(f"{where}: cannot be written: {reason}; nothing was changed")
     return InputError(where, f"cannot be written: {reason}; nothing was changed", legal="a writable place")
-
-
-def _umask() -> int:
-    mask = os.umask(0)
-    os.umask(mask)
-    return mask

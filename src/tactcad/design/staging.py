@@ -44,7 +44,14 @@ def staged_folder(parent: Path, stem: str, settle: Settle = lambda _: None) -> I
     def removed(folder: Path) -> None:
         with suppress(OSError):  # another user's, or a killed run's helper still writes: the next run's
             settle(folder)
-            _remove(folder)
+            # Remove the folder, its mark last, so that a half-removed one is still recognised as ours.
+            for path in folder.iterdir():
+                if path.is_dir() and not path.is_symlink():
+                    shutil.rmtree(path)
+                elif path.name != MARK:
+                    path.unlink()
+            (folder / MARK).unlink()
+            folder.rmdir()
 
     for left in _of_our_form(parent, stem, ""):
         if left.is_dir() and not left.is_symlink():
@@ -132,14 +139,3 @@ def _take(handle: int) -> bool | None:
     except OSError:
         return None
     return True
-
-
-def _remove(folder: Path) -> None:
-    """Remove the folder, its mark last, so that a half-removed one is still recognised as ours."""
-    for path in folder.iterdir():
-        if path.is_dir() and not path.is_symlink():
-            shutil.rmtree(path)
-        elif path.name != MARK:
-            path.unlink()
-    (folder / MARK).unlink()
-    folder.rmdir()

@@ -11,6 +11,7 @@ import re
 from collections.abc import Sequence
 from html import escape
 from math import ceil
+from pathlib import Path
 
 from tactcad.design.family import family_of
 from tactcad.design.tree import Design
@@ -38,18 +39,6 @@ from .engine.ink import (
 from .engine.sheet_files import svg_bytes
 
 MAP = "sensing-face"  # label of the picture that shows which element stands where
-_STYLE = """
-body { font: 16px/1.5 system-ui, sans-serif; color: #10161d; max-width: 62rem; margin: 2rem auto; \
-padding: 0 1rem; }
-h1 { font-size: 1.6rem; margin-bottom: 0; } h2 { font-size: 1.2rem; margin: 2.5rem 0 .3rem; }
-img { max-width: 100%; max-height: 34rem; display: block; margin: 1rem auto; }
-table { border-collapse: collapse; width: 100%; font-size: .9rem; }
-th, td { text-align: left; padding: .25rem .6rem .25rem 0; border-bottom: 1px solid #d5dae0; \
-vertical-align: top; }
-figure { margin: 0; } figcaption { text-align: center; color: #556; font-size: .9rem; }
-td.n { text-align: right; } .note { color: #556; font-size: .9rem; } .new { color: #0b62c4; }
-@media print { section { break-inside: avoid; } }
-"""
 FACE_EYE: Vector = (0.0, 0.0, -1.0)
 FACE_UP: Vector = (0.0, -1.0, 0.0)
 MAP_SIZE = (130.0, 110.0)  # of the map's outlines, mm of paper
@@ -127,6 +116,7 @@ def sensing_face_map(scene: Scene) -> bytes | None:
 
 def page(design: Design, scene: Scene) -> bytes:
     """The guide as one HTML page; its pictures lie beside it."""
+    style = Path(__file__).with_suffix(".css").read_text("utf-8")
     d = design.design
     title = f"{d.title}: {scene.name}"
     needed = "".join(f"<li>{escape(line)}</li>" for line in tools(design, scene))
@@ -149,7 +139,7 @@ def page(design: Design, scene: Scene) -> bytes:
     return (
         '<!doctype html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
         '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
-        f"<title>{escape(title)}</title>\n<style>{_STYLE}</style>\n</head>\n<body>\n"
+        f"<title>{escape(title)}</title>\n<style>{style}</style>\n</head>\n<body>\n"
         + "\n".join(body)
         + "\n</body>\n</html>\n"
     ).encode()

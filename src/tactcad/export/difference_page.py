@@ -6,6 +6,7 @@ import base64
 import re
 from collections.abc import Iterable, Sequence
 from html import escape
+from pathlib import Path
 
 from tactcad.contour import Arc, Contour, Point
 
@@ -15,28 +16,6 @@ from .sides import Side, not_compared
 
 # Okabe and Ito: told apart by colour-blind readers; the old one is dashed as well
 OLD, NEW = "#D55E00", "#0072B2"
-STYLE = f"""
-:root{{color-scheme:light}}
-body{{font:16px/1.5 "DejaVu Sans","Helvetica Neue",Arial,sans-serif;color:#1b1f24;background:#fff;margin:0}}
-main{{max-width:1180px;margin:0 auto;padding:28px}}
-h1{{font-size:26px;margin:0 0 8px}}
-h2{{font-size:20px;margin:40px 0 6px;padding-top:12px;border-top:2px solid {NEW}}}
-h3{{font-size:16px;margin:22px 0 4px}}
-p.note{{color:#4a525b;font-size:14px;margin:4px 0}}
-table{{border-collapse:collapse;font-size:14px;font-variant-numeric:tabular-nums;\
-width:100%;table-layout:fixed}}
-th,td{{padding:4px 10px;border-bottom:1px solid #d9dee3;text-align:left;vertical-align:top;\
-overflow-wrap:anywhere}}
-th{{border-bottom:2px solid #6a737d}}
-col.kind{{width:90px}} col.remark{{width:150px}} col.path{{width:32%}}
-td.old{{color:#8a3d00}} td.new{{color:#00527f}}
-.added .kind{{color:#00527f;font-weight:600}} .removed .kind{{color:#8a3d00;font-weight:600}}
-table.meaning th.cause{{width:30%}} tr.said td{{color:#4a525b;font-size:13px;padding-left:28px}}
-.pair{{display:flex;gap:18px;align-items:flex-start;flex-wrap:wrap}}
-.pair figure{{flex:1 1 420px;margin:8px 0;min-width:0;max-width:720px}}
-figure svg,figure img{{width:100%;height:auto;display:block;border:1px solid #d9dee3;background:#fff}}
-figcaption{{font-size:14px;color:#4a525b}}
-"""
 SECTIONS = {
     "design": "Design",
     "revision": "Design",
@@ -51,6 +30,7 @@ BEYOND = 6.0  # the enlarged view shows this many times the distance on each sid
 
 def page(old: Side, new: Side, changes: Sequence[Change], first: Iterable[str] = ()) -> bytes:
     """The page's bytes; it loads nothing from anywhere. `first` is HTML that stands above the changes."""
+    style = Path(__file__).with_suffix(".css").read_text("utf-8")
     body = [
         f"<h1>{escape(new.design)}: what changed</h1>",
         f"<p>From <b>{escape(_name(old))}</b> to <b>{escape(_name(new))}</b>: {_counted(changes)}.</p>",
@@ -63,7 +43,7 @@ def page(old: Side, new: Side, changes: Sequence[Change], first: Iterable[str] =
     text = (
         '<!doctype html>\n<html lang="en"><head><meta charset="utf-8">'
         f"<title>{escape(new.design)}: {escape(old.revision)} to {escape(new.revision)}</title>"
-        f"<style>{STYLE}</style></head><body><main>\n" + "\n".join(body) + "\n</main></body></html>\n"
+        f"<style>{style}</style></head><body><main>\n" + "\n".join(body) + "\n</main></body></html>\n"
     )
     return text.encode(errors="backslashreplace")  # names of files are bytes, whatever they mean
 

@@ -90,7 +90,10 @@ def dxf_bytes(part: Part) -> bytes:
         cut = _section(part)
         for contour in (*cut.openings, cut.outer):
             _add(drawing, contour)
-        _set_extents(drawing, cut.outer.box)
+        box = cut.outer.box
+        lower, upper = (box[0], box[1], 0.0), (box[2], box[3], 0.0)
+        drawing.modelspace().reset_extents(lower, upper)
+        drawing.header["$EXTMIN"], drawing.header["$EXTMAX"] = lower, upper
         text = io.StringIO(newline="\n")
         drawing.write(text)
     finally:
@@ -126,12 +129,6 @@ def _add(drawing: Drawing, contour: Contour) -> None:
 def _clean(point: Point) -> Point:
     """Without negative zeros, which would write one point in two ways."""
     return (point[0] + 0.0, point[1] + 0.0)
-
-
-def _set_extents(drawing: Drawing, box: tuple[float, float, float, float]) -> None:
-    lower, upper = (box[0], box[1], 0.0), (box[2], box[3], 0.0)
-    drawing.modelspace().reset_extents(lower, upper)
-    drawing.header["$EXTMIN"], drawing.header["$EXTMAX"] = lower, upper
 
 
 def read_dxf(file: str | Path | bytes) -> CutFile:
@@ -204,7 +201,11 @@ def _chains(segments: list[Segment]) -> tuple[list[Contour], float]:
         if len(chain) == 1 and isinstance(chain[0], Arc) and not _follows(chain[0].end, s):
             chain[0] = chain[0].reversed()  # an arc in a file has no direction; the next entity gives it
         if chain:
-            turned = _turned_to_follow(chain[-1].end, s)
+            # The segment in the direction in which it starts at `end`; only arcs may be turned.
+            end = chain[-1].end
+            if not _follows(end, s):
+                raise ValueError(f"the chain is open: {end} is followed by {s.start}")
+            turned = s if dist(end, s.start) <= CLOSED_MM else s.reversed()
             largest = max(largest, dist(chain[-1].end, turned.start))
             s = turned
         chain.append(s)
@@ -219,13 +220,6 @@ def _chains(segments: list[Segment]) -> tuple[list[Contour], float]:
 
 def _follows(end: Point, s: Segment) -> bool:
     return dist(end, s.start) <= CLOSED_MM or (isinstance(s, Arc) and dist(end, s.end) <= CLOSED_MM)
-
-
-def _turned_to_follow(end: Point, s: Segment) -> Segment:
-    """The segment in the direction in which it starts at `end`; only arcs may be turned."""
-    if not _follows(end, s):
-        raise ValueError(f"the chain is open: {end} is followed by {s.start}")
-    return s if dist(end, s.start) <= CLOSED_MM else s.reversed()
 
 
 def _snapped(chain: list[Segment]) -> Contour:

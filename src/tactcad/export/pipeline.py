@@ -225,7 +225,10 @@ def made_files(
     if missing:
         from .products import solid
 
-        _load_makers()
+        # Load the kernel, and what works with it, once for all processes, and end its threads.
+        for module in ("solids.build", "solids.step", "drawing.parts.solid_views", "drawing.engine.picture"):
+            import_module(f"tactcad.{module}")
+        import_module("tactcad.solids.occt").end_threads()
         solids = [Task(f"solid of {part.part_no}", partial(solid, part, shapes)) for part in plan.parts]
         missing.sort(key=lambda job: -job.size)
         tasks = [*solids, *(Task(job.files[0].path, job.make, job.turn) for job in missing)]
@@ -240,13 +243,6 @@ def made_files(
                     done += 1
                     yield file, content, True
     step(total, total, "done")
-
-
-def _load_makers() -> None:
-    """Load the kernel, and what works with it, once for all processes, and end its threads."""
-    for module in ("solids.build", "solids.step", "drawing.parts.solid_views", "drawing.engine.picture"):
-        import_module(f"tactcad.{module}")
-    import_module("tactcad.solids.occt").end_threads()
 
 
 def _record(folder: Path, product: Output, design: Design) -> FileRecord:

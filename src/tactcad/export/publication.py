@@ -54,7 +54,18 @@ def looked_at(directory: str | Path, schema: str, others: str = REFUSE) -> Conte
     """
     out = absolute(directory)
     with in_one_line(out):
-        _refuse_place(out)
+        if not out.name:
+            raise InputError(str(out), "cannot be replaced", legal=LEGAL)
+        if out.is_symlink():
+            raise InputError(str(out), "is a link", legal=f"the folder that it leads to, or {LEGAL}")
+        if os.path.lexists(out) and not out.is_dir():
+            raise InputError(str(out), "is a file", legal=LEGAL)
+        if os.path.ismount(out):
+            raise InputError(str(out), "is a mount point, which cannot be replaced", legal=LEGAL)
+        for folder in Path(os.path.realpath(out)).parents:
+            manifest = folder / NAME
+            if manifest.is_file() and b'"schema": "tactcad-' in manifest.read_bytes()[:40]:
+                raise InputError(str(out), f"lies inside {folder}, which tactcad wrote", legal=LEGAL)
         seen = contents(out, schema)
     if seen.foreign and others == REFUSE:
         raise InputError(
@@ -63,21 +74,6 @@ def looked_at(directory: str | Path, schema: str, others: str = REFUSE) -> Conte
             legal="--keep, which moves the folder beside, --discard, which removes it, or another folder",
         )
     return seen
-
-
-def _refuse_place(out: Path) -> None:
-    if not out.name:
-        raise InputError(str(out), "cannot be replaced", legal=LEGAL)
-    if out.is_symlink():
-        raise InputError(str(out), "is a link", legal=f"the folder that it leads to, or {LEGAL}")
-    if os.path.lexists(out) and not out.is_dir():
-        raise InputError(str(out), "is a file", legal=LEGAL)
-    if os.path.ismount(out):
-        raise InputError(str(out), "is a mount point, which cannot be replaced", legal=LEGAL)
-    for folder in Path(os.path.realpath(out)).parents:
-        manifest = folder / NAME
-        if manifest.is_file() and b'"schema": "tactcad-' in manifest.read_bytes()[:40]:
-            raise InputError(str(out), f"lies inside {folder}, which tactcad wrote", legal=LEGAL)
 
 
 def named(foreign: Mapping[str, str]) -> str:

@@ -118,7 +118,16 @@ def _export(source: str, folder: Path) -> Side:
         else None
     )
     try:
-        record = {"parts": _exported_parts(folder, manifest), "scenes": _exported_bills(folder, manifest)}
+        scenes = {}
+        for file in manifest.files:
+            if file.kind == "bom" and file.path.endswith(".json"):
+                bill = read_json(folder / file.path, MOST_BYTES, "a bill of materials")
+                if not all(
+                    isinstance(name, str) for name in (bill["scene"], *(r["part_no"] for r in bill["rows"]))
+                ):
+                    raise ValueError(f"{file.path}: a scene or part number is no text")
+                scenes[bill["scene"]] = {"bom": {row["part_no"]: bill_line(row) for row in bill["rows"]}}
+        record = {"parts": _exported_parts(folder, manifest), "scenes": scenes}
         table = values and nested(values)
         pictures = {f.path: (folder / f.path).read_bytes() for f in manifest.files if f.kind == "picture"}
     except (OSError, ValueError, LookupError, TypeError, AttributeError) as error:
@@ -156,19 +165,6 @@ def _plain(value: Any) -> Any:
     return [_plain(v) for v in value] if isinstance(value, tuple) else value
 
 
-def _exported_bills(folder: Path, manifest: Manifest) -> Record:
-    scenes = {}
-    for file in manifest.files:
-        if file.kind == "bom" and file.path.endswith(".json"):
-            bill = read_json(folder / file.path, MOST_BYTES, "a bill of materials")
-            if not all(
-                isinstance(name, str) for name in (bill["scene"], *(r["part_no"] for r in bill["rows"]))
-            ):
-                raise ValueError(f"{file.path}: a scene or part number is no text")
-            scenes[bill["scene"]] = {"bom": {row["part_no"]: bill_line(row) for row in bill["rows"]}}
-    return scenes
-
-
 def compare_sides(old: Side, new: Side) -> list[Change]:
     """What changed, as far as both sides record it: names, the design's values, then the geometry."""
     records = []
@@ -188,7 +184,13 @@ def comparable(old: Side, new: Side) -> tuple[Record, Record]:
     if old.own_code or new.own_code:  # another code may record more, or less
         for tables in zip(_rows(before), _rows(after)):
             _drop_uncommon(*tables)
-    _drop_unknown(before, after)
+    # A part whose shape comes from a file is measured by the kernel only: not known without an export.
+    for number in set(before["parts"]) & set(after["parts"]):
+        parts = [before["parts"][number], after["parts"][number]]
+        for name in FROM_SHAPE:
+            if any(part.get(name) is None for part in parts):
+                for part in parts:
+                    part.pop(name, None)
     return before, after
 
 
@@ -238,13 +240,3 @@ def _drop_uncommon(old: dict[Any, Record], new: dict[Any, Record]) -> None:
         for row in table.values():
             for name in row.keys() - (known[0] & known[1]):
                 del row[name]
-
-
-def _drop_unknown(old: Record, new: Record) -> None:
-    """A part whose shape comes from a file is measured by the kernel only: not known without an export."""
-    for number in set(old["parts"]) & set(new["parts"]):
-        parts = [old["parts"][number], new["parts"][number]]
-        for name in FROM_SHAPE:
-            if any(part.get(name) is None for part in parts):
-                for part in parts:
-                    part.pop(name, None)

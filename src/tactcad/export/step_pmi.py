@@ -29,7 +29,7 @@ from OCP.XCAFDoc import (
 
 from tactcad.design.messages import CheckFailure
 from tactcad.parts.language.description import Part
-from tactcad.parts.language.limits import Characteristic, Geometric
+from tactcad.parts.language.limits import Characteristic
 from tactcad.parts.language.surface import Piece, measured, pieces
 from tactcad.solids.occt import FaceFinder, TDF_LabelSequence
 from tactcad.solids.step import from_bytes
@@ -102,7 +102,11 @@ def part_step_pmi(part: Part, shape: bytes, header: Header) -> bytes:
     faces = FaceFinder(solid)
     meant = {c.name: _dimension(part, c, faces) for c in part.characteristics}
     for g in part.geometric:
-        meant[g.name] = _tolerance(part, g, faces)
+        features = _faces(part, g.name, [p for f in g.features for p in pieces(part, f)], faces)
+        standing = {d.letter: d.feature for d in part.datums}
+        datums = (_faces(part, f"datum {x}", pieces(part, standing[x]), faces) for x in g.datums)
+        text = ("round" if g.round else "", *g.datums)
+        meant[g.name] = Annotation(SYMBOLS[g.symbol], text, (g.zone,), (features, *datums))
     _annotate(document, label, part, meant, faces)
     data = written(document, header, AP242)
     read = read_document(data)
@@ -131,14 +135,6 @@ def _dimension(part: Part, c: Characteristic, faces: FaceFinder) -> Annotation:
         note.append(f"to the middle between {' and '.join(c.between[1:])}")
     sides = tuple(_faces(part, c.name, some, faces) for some in (on.first, on.second) if some)
     return Annotation(KINDS[on.kind], (", ".join(note),), values, sides)
-
-
-def _tolerance(part: Part, g: Geometric, faces: FaceFinder) -> Annotation:
-    features = _faces(part, g.name, [p for f in g.features for p in pieces(part, f)], faces)
-    standing = {d.letter: d.feature for d in part.datums}
-    datums = (_faces(part, f"datum {x}", pieces(part, standing[x]), faces) for x in g.datums)
-    text = ("round" if g.round else "", *g.datums)
-    return Annotation(SYMBOLS[g.symbol], text, (g.zone,), (features, *datums))
 
 
 def _faces(part: Part, name: str, some: Iterable[Piece], faces: FaceFinder) -> Shapes:

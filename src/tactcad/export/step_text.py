@@ -42,9 +42,13 @@ class Header:
 
 def canonical(text: str, header: Header, schema: str = AP214) -> str:
     """The kernel's STEP text with the given header, its entities renumbered in canonical order."""
-    bodies = {int(n): _unbroken(body) for n, body in _ENTITY.findall(text[text.index("DATA;") :])}
+    bodies = {
+        int(n): re.sub(r"\s*\n\s*", "", body) for n, body in _ENTITY.findall(text[text.index("DATA;") :])
+    }
     bodies = {n: _plain(body) for n, body in bodies.items() if not _RUNOUT.match(body)}
-    references = {n: _references(body) for n, body in bodies.items()}
+    references = {
+        n: [int(m.group(1)) for m in _REFERENCE.finditer(body) if m.group(1)] for n, body in bodies.items()
+    }
     used = {r for refs in references.values() for r in refs}
     roots = [n for n in bodies if n not in used and not bodies[n].startswith(_ANGLE)]
     styles = {n for n in roots if bodies[n].startswith(_STYLES)}
@@ -71,14 +75,6 @@ def _plain(body: str) -> str:
     body = _INSTANCE.sub(r"NEXT_ASSEMBLY_USAGE_OCCURRENCE('\1','\1'", body)
     body = _MEASURE.sub(r"MEASURE_WITH_UNIT(LENGTH_MEASURE(\1),", body)
     return _PLACEMENT.sub("PRODUCT_DEFINITION_SHAPE('','',", body)
-
-
-def _unbroken(body: str) -> str:
-    return re.sub(r"\s*\n\s*", "", body)
-
-
-def _references(body: str) -> list[int]:
-    return [int(m.group(1)) for m in _REFERENCE.finditer(body) if m.group(1)]
 
 
 def _renumbered(body: str, numbers: dict[int, int]) -> str:

@@ -130,7 +130,17 @@ def _started(tasks: Sequence[Task]) -> tuple[Connection, multiprocessing.process
 def _serve(pipe: Connection, tasks: Sequence[Task], parent: int) -> None:
     """In a worker: make what the parent asks for, until it asks no more."""
     global _to_parent
-    _end_with(parent)
+    # Let this process be killed when its parent, of that number, is gone. A forked helper whose parent was
+    # killed would wait for work for ever, and hold what it inherited, the lock of the export's folder
+    # included. Systems without prctl leave it waiting. Ctrl-C and a terminal's end reach the helper too,
+    # but the parent answers them.
+    gc.freeze()
+    ignore_signals()
+    signal.signal(signal.SIGTERM, signal.SIG_DFL)
+    with suppress(AttributeError, OSError):
+        ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
+    if os.getppid() != parent:  # the parent was gone before
+        os._exit(1)
     _to_parent = pipe
     counted = profiling.is_counted()
     while True:
@@ -148,19 +158,3 @@ def _serve(pipe: Connection, tasks: Sequence[Task], parent: int) -> None:
         except Exception as error:
             answer = "failed", error
         pipe.send(answer)
-
-
-def _end_with(parent: int) -> None:
-    """Let this process be killed when its parent, of that number, is gone.
-
-    A forked helper whose parent was killed would wait for work for ever, and hold what it inherited, the lock
-    of the export's folder included. Systems without prctl leave it waiting. Ctrl-C and a terminal's end reach
-    the helper too, but the parent answers them.
-    """
-    gc.freeze()
-    ignore_signals()
-    signal.signal(signal.SIGTERM, signal.SIG_DFL)
-    with suppress(AttributeError, OSError):
-        ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
-    if os.getppid() != parent:  # the parent was gone before
-        os._exit(1)

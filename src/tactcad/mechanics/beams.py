@@ -57,26 +57,22 @@ def shear(length: Array, height: Array, G: Array, b: Array) -> Array:
 def arm(s: HingeSection) -> Array:
     """The arm from slot to load line as a cantilever with shear, mm/N."""
     reach = s.load_arm - s.hinge_length / 2.0
-    return arm_bending(s) + shear(reach, s.arm_height, s.shear_modulus, s.width)
-
-
-def arm_bending(s: HingeSection) -> Array:
-    """4 s^3/(E b h^3), s = L - l/2, mm/N."""
+    # 4 s^3/(E b h^3), s = L - l/2, mm/N.
     slender = (s.load_arm - s.hinge_length / 2.0) / s.arm_height
-    return 4.0 * slender * slender * slender / (s.youngs_modulus * s.width)
+    return (4.0 * slender * slender * slender / (s.youngs_modulus * s.width)) + shear(
+        reach, s.arm_height, s.shear_modulus, s.width
+    )
 
 
 def body(s: HingeSection) -> Array:
     """The body from clamp to slot under the load's moment and shear, mm/N."""
-    return body_bending(s) + shear(s.body_length, s.body_height, s.shear_modulus, s.width)
-
-
-def body_bending(s: HingeSection) -> Array:
-    """4 [(p + Lb)^3 - p^3]/(E b Hb^3), p = L + l/2, written out so that a short body keeps digits; mm/N."""
+    # 4 [(p + Lb)^3 - p^3]/(E b Hb^3), p = L + l/2, written out so that a short body keeps digits; mm/N.
     Hb, Lb = s.body_height, s.body_length
     p = s.load_arm + s.hinge_length / 2.0
     cubes = Lb * (3.0 * p * (p + Lb) + Lb * Lb)
-    return 4.0 * cubes / (s.youngs_modulus * s.width * Hb * Hb * Hb)
+    return (4.0 * cubes / (s.youngs_modulus * s.width * Hb * Hb * Hb)) + shear(
+        s.body_length, s.body_height, s.shear_modulus, s.width
+    )
 
 
 def fillet_integrals(depth: Array) -> tuple[Array, Array, Array, Array]:

@@ -147,15 +147,11 @@ def reading(s: HingeSection, grid_length: Array | float, shift: Array | float) -
     along = np.concatenate([[-1.0, 1.0], points])  # the grid's ends, and what its integral takes
     flat = (1,) * max(len(s.shape), grid.ndim, middle.ndim)
     x = middle + grid / 2 * along.reshape(-1, *flat)
-    P = _profile_integral(s, x)
+    # P(x), mm: what a centred grid of length 2|x| takes on one side, with the sign of x.
+    P = x * strain.grid_factor(s, 2 * np.abs(x))
     low, high = (1 - x[:2] / L) * P[:2]
     mean = (high - low) / grid + np.tensordot(weights, P[2:], axes=1) / (2 * L)
     return mean / strain.grid_factor(s, grid)
-
-
-def _profile_integral(s: HingeSection, x: Array) -> Array:
-    """P(x), mm: what a centred grid of length 2|x| takes on one side, with the sign of x."""
-    return x * strain.grid_factor(s, 2 * np.abs(x))
 
 
 def error(s: HingeSection, grid_length: Array | float, shift: Array | float) -> Array:

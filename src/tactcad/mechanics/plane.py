@@ -95,7 +95,19 @@ def parts(s: HingeSection, k: Constants | None = None) -> Parts:
     k = k or by_sides("root", s.two_sided)
     per = s.youngs_modulus * s.width
     slope = (s.straight_length / s.hinge_thickness) ** 3 / per
-    return Parts(_hinge(s, k) / per, slope, _arm(s, k) / per, _body(s, k) / per, _shear(s, k) / per)
+    t, h, Hb, Lb = s.hinge_thickness, s.arm_height, s.body_height, s.body_length
+    slender, p = (s.load_arm - s.hinge_length / 2.0) / h, s.load_arm + s.hinge_length / 2.0
+    rho, q = s.fillet_radius / t, sum(_height_felt(s, k)) / Lb
+    beams = s.straight_length / t + slender + Lb / Hb + s.poisson * (p + Lb) / Hb
+    roots = k["v0"] + k["v1"] * rho + k["v2"] * np.sqrt(rho) * s.hinge_length / t
+    spread = _by_form(EDGE_FORCE, s.two_sided) * np.log(t * q * (t / h))
+    return Parts(
+        _hinge(s, k) / per,
+        slope,
+        _arm(s, k) / per,
+        _body(s, k) / per,
+        (beams / (SHEAR_FACTOR / 2.0) + roots - spread + 12.0 * k["e"] * (slender - p * q)) / per,
+    )
 
 
 def compliance(s: HingeSection, k: Constants | None = None) -> Array:
@@ -135,16 +147,6 @@ def _body(s: HingeSection, k: Constants) -> Array:
         - k["c"] * grip * grip * clamped
     )
     return 4.0 * stout * stout * (3.0 * p + Lb) / s.body_height + 12.0 * (p / Lb) ** 2 * J
-
-
-def _shear(s: HingeSection, k: Constants) -> Array:
-    t, h, Hb, Lb = s.hinge_thickness, s.arm_height, s.body_height, s.body_length
-    slender, p = (s.load_arm - s.hinge_length / 2.0) / h, s.load_arm + s.hinge_length / 2.0
-    rho, q = s.fillet_radius / t, sum(_height_felt(s, k)) / Lb
-    beams = s.straight_length / t + slender + Lb / Hb + s.poisson * (p + Lb) / Hb
-    roots = k["v0"] + k["v1"] * rho + k["v2"] * np.sqrt(rho) * s.hinge_length / t
-    spread = _by_form(EDGE_FORCE, s.two_sided) * np.log(t * q * (t / h))
-    return beams / (SHEAR_FACTOR / 2.0) + roots - spread + 12.0 * k["e"] * (slender - p * q)
 
 
 def _cubic(s: HingeSection, k: Constants) -> Array:

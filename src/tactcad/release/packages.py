@@ -130,11 +130,6 @@ def _material(part: Part) -> dict[str, object]:
     }
 
 
-def _size(part: Part) -> dict[str, object]:
-    low, high = part_box(part)
-    return {f"{axis}_mm": f"{round(b - a, 3):g}" for axis, a, b in zip("xyz", low, high)}
-
-
 def _made(line: OrderLine) -> Part:
     assert line.part is not None  # what is made has a solid
     return line.part
@@ -156,10 +151,11 @@ def _wire_row(line: OrderLine, taken: Mapping[str, str], shop: Shop) -> Row:
 
 def _machined_row(line: OrderLine, taken: Mapping[str, str], shop: Shop) -> Row:
     part = _made(line)
+    low, high = part_box(part)
     return (
         {"process": part.process}
         | _material(part)
-        | _size(part)
+        | {f"{axis}_mm": f"{round(b - a, 3):g}" for axis, a, b in zip("xyz", low, high)}
         | {"mass_g": f"{part.mass:.4g}", "finish": part.finish}
     )
 
@@ -181,16 +177,9 @@ def _sheet_row(line: OrderLine, taken: Mapping[str, str], shop: Shop) -> Row:
 
 def _bought_row(line: OrderLine, taken: Mapping[str, str], shop: Shop) -> Row:
     row = line.row
-    return {
-        "designation": row.standard_designation,
-        "material": row.material,
-        "manufacturer": row.manufacturer,
-        "mpn": row.mpn,
-        "supplier": row.supplier,
-        "alternates": row.alternates,
-        "consumable": "true" if row.consumable else "false",
-        "source_verified": "true" if row.source_verified else "false",
-    }
+    texts = ("material", "manufacturer", "mpn", "supplier", "alternates")
+    told = {"designation": row.standard_designation} | {name: getattr(row, name) for name in texts}
+    return told | {n: str(getattr(row, n)).lower() for n in ("consumable", "source_verified")}
 
 
 WIRE = Package("wire-cutting", "wire cutting", ("wire-cut",), ("dxf", "pdf"), _wire_row)

@@ -134,12 +134,13 @@ def parts_table(contents: ReleaseContents, parts: Sequence[Part]) -> list[str]:
     heads = ("part", "qty", "spares", "material", "size, mm", "finish")
     groups: dict[str, list[tuple[str, ...]]] = {}
     for part in parts:
+        low, high = part_box(part)
         row = (
             part.part_no,
             f"{contents.quantity(part):g}",
             str(part.spares or ""),
             str(part.material),
-            size_text(part),
+            " x ".join(f"{round(b - a, 3):g}" for a, b in zip(low, high)),
             part.finish,
         )
         groups.setdefault(PROCESSES[part.process], []).append(row)
@@ -149,11 +150,6 @@ def parts_table(contents: ReleaseContents, parts: Sequence[Part]) -> list[str]:
 def _short(contents: ReleaseContents, numbers: Sequence[str]) -> str:
     """Part numbers in a sentence, without the design's name, which most of them begin with."""
     return ", ".join(number.removeprefix(f"{contents.design.name}-") for number in numbers)
-
-
-def size_text(part: Part) -> str:
-    low, high = part_box(part)
-    return " x ".join(f"{round(b - a, 3):g}" for a, b in zip(low, high))
 
 
 def keys(contents: ReleaseContents, parts: Sequence[Part]) -> list[str]:

@@ -67,7 +67,7 @@ def change_record(
             key = (solids.mesh_of(piece.shape), piece.kind, piece.part_no)
             if key not in parts:
                 parts[key] = _part(piece, len(parts), solids.volumes[key[0]])
-            placed[name].append(_placed(label, piece, parts[key]["part_no"]))
+            placed[name].append(piece.row(label, parts[key]["part_no"]))
     packed = pack(solids.meshes.items())
     for (mesh, _, _), part in parts.items():
         part |= {"mesh": packed.table[mesh], "box": packed.boxes[mesh]}
@@ -133,18 +133,6 @@ def _part(piece: ScenePiece, number: int, volume: float) -> dict[str, Any]:
         "kind": piece.kind,
         "volume_mm3": volume,
         "remark": piece.remark,
-    }
-
-
-def _placed(label: str, piece: ScenePiece, part_no: str) -> dict[str, Any]:
-    return {
-        "designator": label,
-        "part_no": part_no,
-        "origin": piece.origin,
-        "rotation": piece.rotation,
-        "way": (0.0, 0.0, 0.0),
-        "step": 0,
-        "under": (piece.kind,),
     }
 
 

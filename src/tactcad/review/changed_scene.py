@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
@@ -52,6 +52,18 @@ class ScenePiece:
     origin: Vector
     rotation: Rotation
     remark: str = ""
+
+    def row(self, label: str, part_no: str) -> dict[str, Any]:
+        """Its place, as records of scenes have it: it takes no part in steps."""
+        return {
+            "designator": label,
+            "part_no": part_no,
+            "origin": self.origin,
+            "rotation": self.rotation,
+            "way": (0.0, 0.0, 0.0),
+            "step": 0,
+            "under": (self.kind,),
+        }
 
 
 def changed_scenes(

@@ -15,7 +15,6 @@ from tactcad.design.load import from_table
 from tactcad.design.messages import CheckFailure, InputError
 from tactcad.design.tree import Design
 from tactcad.export.difference import Change
-from tactcad.export.geometry import Record
 from tactcad.export.sides import Side, comparable
 from tactcad.parts.rules import refuse_broken
 
@@ -96,8 +95,9 @@ def meaning(old: Side, new: Side) -> Meaning:
     untold = tuple(d for d in designs if isinstance(d, str))
     if old.table is None or new.table is None or untold:
         return _recorded(old, new, untold)
+    # A record that the present code made of the whole design.
     before, after = (
-        Reviewed(d, told=_made_here(side))
+        Reviewed(d, told=side.record if side.kind in ("design", "revision") and not side.own_code else None)
         for d, side in zip(designs, (old, new))
         if d is not None and not isinstance(d, str)
     )
@@ -131,11 +131,6 @@ def _loaded(side: Side) -> Design | str | None:
         return _kept(side.table)
     except InputError as error:
         return f"the present code refuses the design of {side.source}: {error}"
-
-
-def _made_here(side: Side) -> Record | None:
-    """A record that the present code made of the whole design."""
-    return side.record if side.kind in ("design", "revision") and not side.own_code else None
 
 
 def _kept(table: Table) -> Design:

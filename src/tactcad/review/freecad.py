@@ -272,7 +272,7 @@ def changes_record(
             if key not in parts:
                 parts[key] = _part(piece, len(parts))
                 texts.append(key[0])
-            placed[name].append(_placed(piece, parts[key]["part_no"]))
+            placed[name].append(piece.row(piece.designator, parts[key]["part_no"]))
     a, b = (design.design for design in designs)
     record = {
         "label": f"{a.name} {a.revision} to {b.name} {b.revision}",
@@ -301,17 +301,6 @@ def _part(piece: ScenePiece, number: int) -> dict[str, Any]:
         "colour": colour,
         "transparency": transparency,
         "properties": [("PartNumber", piece.part_no), ("Material", remark)],
-    }
-
-
-def _placed(piece: ScenePiece, part: str) -> dict[str, Any]:
-    return {
-        "designator": piece.designator,
-        "part_no": part,
-        "origin": piece.origin,
-        "rotation": piece.rotation,
-        "way": (0.0, 0.0, 0.0),
-        "under": (piece.kind,),
     }
 
 

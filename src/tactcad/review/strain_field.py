@@ -49,11 +49,14 @@ def strain_field(layout: Layout, place: ElementPlace) -> StrainField:
         shape, alloy.youngs_modulus, alloy.poisson, layout.design.sheet.thickness, density=DENSITY, whole=True
     )
     u = np.asarray(solution.displacement).reshape(2, -1)
+    # Each element's order x order facets by their corners, round about.
+    e = solution.space.elements
+    corners = e[:, :-1, :-1], e[:, 1:, :-1], e[:, 1:, 1:], e[:, :-1, 1:]
     return StrainField(
         solution.space.nodes.T.astype(np.float32),
         u.T.astype(np.float32),
         strain_along(solution).astype(np.float32),
-        _facets(solution.space.elements).astype(np.uint32),
+        np.stack(corners, axis=-1).reshape(-1, 4).astype(np.uint32),
     )
 
 
@@ -77,10 +80,3 @@ def strain_along(solution: PlaneSolution) -> NDArray[np.float64]:
     np.add.at(total, e, strain)
     np.add.at(count, e, 1.0)
     return total / count
-
-
-def _facets(elements: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Each element's order x order facets by their corners, round about."""
-    e = elements
-    corners = e[:, :-1, :-1], e[:, 1:, :-1], e[:, 1:, 1:], e[:, :-1, 1:]
-    return np.stack(corners, axis=-1).reshape(-1, 4)

@@ -6,7 +6,6 @@ import os
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 from tactcad.design.load import find, from_table
 from tactcad.design.messages import InputError
@@ -53,7 +52,11 @@ def _exported(source: str, folder: Path) -> Subject:
     values = {k.removeprefix("design."): v for k, v in before.values.items() if k.startswith("design.")}
     try:
         design = from_table(nested(values))
-        differ = reasons(_only(before, values), inputs_of(design, ROOMS, _libraries(before)))
+        # The libraries that an export depended on.
+        differ = reasons(
+            Inputs(values, before.sources, before.libraries),
+            inputs_of(design, ROOMS, [name for name in before.libraries if name != "python"]),
+        )
     except (InputError, LookupError, TypeError, AttributeError) as error:
         raise InputError(source, f"made by another version of tactcad: {error}", legal=again) from None
     if differ:
@@ -62,15 +65,6 @@ def _exported(source: str, folder: Path) -> Subject:
     drawn = [f for f in manifest.files if f.kind == "drawing" and f.part_no and f.path.endswith(".svg")]
     sheets = {f.part_no: (folder / f.path).read_text("utf-8") for f in drawn}
     return Subject(design, folder, tuple(scenes), sheets)
-
-
-def _libraries(before: Inputs) -> list[str]:
-    """The libraries that an export depended on."""
-    return [name for name in before.libraries if name != "python"]
-
-
-def _only(before: Inputs, values: dict[str, Any]) -> Inputs:
-    return Inputs(values, before.sources, before.libraries)
 
 
 def shapes_of(design: Design, say: Callable[[str], None]) -> Shapes:

@@ -87,59 +87,36 @@ def bom_rows(scene: Scene, revision: str, files: Mapping[str, tuple[str, str]]) 
 def _part_row(item: int, part: Part, scene: Scene, revision: str, file: str, sha256: str) -> BomRow:
     order = part.purchase or Purchase("")
     placed = [p.designator for p in scene.placements if p.part.part_no == part.part_no]
-    return BomRow(
+    return _filled(
+        order,
+        part,
         item=item,
-        part_no=part.part_no,
         rev=revision,
         qty=len(placed),
         unit="pcs",
         description=part.name,
         make_buy="buy" if part.bought else "make",
         material=str(part.material),
-        process=part.process,
-        finish=part.finish,
         standard_designation=order.designation,
-        manufacturer=order.manufacturer,
-        mpn=order.mpn,
-        supplier=order.supplier,
-        alternates=order.alternates,
-        spares=part.spares,
         consumable=False,
         file=file,
         sha256=sha256,
         mass_g=round(part.mass, 6),
-        source_verified=order.source_verified,
         designators=" ".join(placed),
         has_solid=True,
     )
 
 
 def _supply_row(item: int, supply: Supply) -> BomRow:
-    return BomRow(
-        item=item,
-        part_no=supply.part_no,
-        rev="",
-        qty=supply.qty,
-        unit=supply.unit,
-        description=supply.description,
-        make_buy="buy",
-        material="",
-        process=supply.process,
-        finish="",
-        standard_designation=supply.designation,
-        manufacturer=supply.manufacturer,
-        mpn=supply.mpn,
-        supplier="",
-        alternates=supply.alternates,
-        spares=supply.spares,
-        consumable=supply.consumable,
-        file="",
-        sha256="",
-        mass_g=None,
-        source_verified=supply.verified,
-        designators="",
-        has_solid=False,
-    )
+    own = {"standard_designation": supply.designation, "source_verified": supply.verified}
+    return _filled(supply, **own, item=item, make_buy="buy", mass_g=None, has_solid=False)
+
+
+def _filled(*records: object, **told: object) -> BomRow:
+    """What the records say under the columns' names, then what is `told`; empty where neither does."""
+    said = {name: value for r in records for name, value in vars(r).items() if name in COLUMNS}
+    values: Any = dict.fromkeys(COLUMNS, "") | said | told
+    return BomRow(**values)
 
 
 def csv_bytes(rows: Sequence[BomRow]) -> bytes:

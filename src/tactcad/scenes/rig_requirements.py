@@ -102,16 +102,11 @@ TONGUE_ = "bonding nest: tongue width"
 def bonding_requirements(layout: Layout, known: dict[str, DimensionLimits]) -> list[Requirement]:
     """Requirements on a design with [bonding]; adds the variables they depend on to `known`."""
     own: dict[str, DimensionLimits] = {}
-    wanted = _requirements(layout, own)
-    known |= {name: replace(v, apart=True) for name, v in own.items()}
-    return wanted
-
-
-def _requirements(layout: Layout, known: dict[str, DimensionLimits]) -> list[Requirement]:
     rigs = bonding_rigs(layout.design)
-    wanted = [_on_hinge(layout, rigs, known)]
+    wanted = [_on_hinge(layout, rigs, own)]
     for rig in rigs:
-        wanted += [_on_backing(rig, known), _between_pins(rig, known), *_clamp_slides(rig, known)]
+        wanted += [_on_backing(rig, own), _between_pins(rig, own), *_clamp_slides(rig, own)]
+    known |= {name: replace(v, apart=True) for name, v in own.items()}
     return wanted
 
 

@@ -6,9 +6,9 @@ from dataclasses import replace
 
 from tactcad.design.fields import present
 from tactcad.parts import rigs
+from tactcad.parts.array.supplies import supplies
 from tactcad.parts.bought import screws, standard_parts
 from tactcad.parts.bought.standard_parts import STAGES, bearing
-from tactcad.parts.bought.supply import MECHANICAL, Supply
 from tactcad.parts.language.metric import METRIC
 from tactcad.parts.rigs.cart import LOOSE_WHEEL, CartLayout
 from tactcad.parts.rigs.force_gauge import GAUGE_SCREW_X, GAUGE_SCREW_Z, GAUGE_THREADS
@@ -148,25 +148,7 @@ def place_cart(
     b.step(
         "Sample", (0, 0, 82), "Lay the sample on the middle of the lid, clean and dry, and open the vacuum."
     )
-    b.supplies += [
-        Supply(
-            "HOSE-4",
-            "silicone hose 4 x 1 mm, soft",
-            1,
-            "m",
-            "silicone hose, bore 4 mm, wall 1 mm, 50 Shore A",
-            process=MECHANICAL,
-        ),
-        Supply(
-            "VACUUM-PUMP",
-            f"vacuum source, {rig.holder.vacuum:g} kPa below air, with gauge and valve",
-            1,
-            "pcs",
-            f"vacuum pump or ejector, at least {rig.holder.vacuum:g} kPa below air",
-            consumable=False,
-            process=MECHANICAL,
-        ),
-    ]
+    b.supplies += supplies("vacuum", {}, vacuum=rig.holder.vacuum)
     b.group(None)
     return object_
 

@@ -15,7 +15,6 @@ from tactcad.parts.language.description import (
     Hole,
     ModelFile,
     Part,
-    Pocket,
     Revolution,
     drill_point_height,
 )
@@ -97,11 +96,7 @@ def wire(contour: Contour, plane: Plane = Plane.XY) -> Wire:
 
 def _extruded(body: Extrusion) -> Solid:
     face = Face(wire(body.outer), [wire(opening) for opening in body.openings])
-    return Solid.extrude(_facing_up(face), Vector(0, 0, body.thickness))
-
-
-def _facing_up(face: Face) -> Face:
-    return face if face.normal_at().Z > 0 else -face
+    return Solid.extrude(face if face.normal_at().Z > 0 else -face, Vector(0, 0, body.thickness))
 
 
 def _revolved(body: Revolution) -> Solid:
@@ -113,7 +108,12 @@ def _tools(feature: Feature) -> list[Solid]:
     """Solids to cut away. They reach OUTSIDE the face they start from, and a through hole beyond its end."""
     if isinstance(feature, Hole):
         return _hole_tools(feature)
-    return [_pocket_tool(feature)]
+    axis = Vector(*feature.axis)
+    start = Plane(Vector(*feature.at) - axis * OUTSIDE, x_dir=Vector(*feature.x_axis), z_dir=axis)
+    face = Face(wire(feature.contour, start), [wire(island, start) for island in feature.island])
+    if face.normal_at().dot(axis) < 0:
+        face = -face
+    return [Solid.extrude(face, axis * (OUTSIDE + feature.depth))]
 
 
 def _hole_tools(hole: Hole) -> list[Solid]:
@@ -129,12 +129,3 @@ def _hole_tools(hole: Hole) -> list[Solid]:
         diameter, depth = hole.counterbore
         tools.append(Solid.make_cylinder(diameter / 2, OUTSIDE + depth, start))
     return tools
-
-
-def _pocket_tool(pocket: Pocket) -> Solid:
-    axis = Vector(*pocket.axis)
-    start = Plane(Vector(*pocket.at) - axis * OUTSIDE, x_dir=Vector(*pocket.x_axis), z_dir=axis)
-    face = Face(wire(pocket.contour, start), [wire(island, start) for island in pocket.island])
-    if face.normal_at().dot(axis) < 0:
-        face = -face
-    return Solid.extrude(face, axis * (OUTSIDE + pocket.depth))

@@ -32,19 +32,15 @@ def assembly(scene: Scene) -> cq.Assembly:
     solids = {part.part_no: cq.Shape.cast(build(part).wrapped) for part in scene.parts}
     whole = cq.Assembly(name=scene.name)
     for p in scene.placements:
+        r, g, b = (int(p.part.colour[i : i + 2], 16) / 255 for i in (1, 3, 5))
         whole.add(
             solids[p.part.part_no],
             name=p.designator,
             loc=cq.Location(location(p.origin, p.rotation)),
-            color=_colour(p.part.colour),
+            color=cq.Color(r, g, b, 1.0),
             metadata={"part_no": p.part.part_no},
         )
     return whole
-
-
-def _colour(colour: str) -> cq.Color:
-    r, g, b = (int(colour[i : i + 2], 16) / 255 for i in (1, 3, 5))
-    return cq.Color(r, g, b, 1.0)
 
 
 def bought_from_step(

@@ -5,27 +5,18 @@ from __future__ import annotations
 from collections.abc import Sequence
 from html import escape
 from math import isfinite
+from pathlib import Path
 
 from .stack import StackLine
 from .virtual_build import LEAST_YIELD, Builds
 
 WIDTH, HEIGHT, EDGE = 300.0, 30.0, 10.0  # of a requirement's bar, px
 SHOWN = 3  # contributors named beside it
-STYLE = """
-body{font:14px/1.4 system-ui,sans-serif;margin:2em auto;max-width:92em;color:#1c2733}
-table{border-collapse:collapse;width:100%}
-th,td{text-align:left;padding:.35em .6em;border-bottom:1px solid #d8dee4;vertical-align:middle}
-td.n{text-align:right;white-space:nowrap;font-variant-numeric:tabular-nums}
-.share{display:flex;height:10px;background:#eef1f4;border-radius:2px;overflow:hidden;margin-bottom:3px}
-.share i{background:#c2d5e6}.share i:nth-child(1){background:#31618f}.share i:nth-child(2){background:#7da3c7}
-td:first-child{min-width:18em}td:last-child{min-width:24em}
-small{color:#4a5866}
-tr.missed td:first-child{border-left:4px solid #b3372b}
-"""
 
 
 def stack_page(title: str, builds: Builds, lines: Sequence[StackLine]) -> bytes:
     """The page (HTML, UTF-8) of a design's stack and of the arrays built virtually."""
+    style = Path(__file__).with_suffix(".css").read_text("utf-8")
     yields = ", ".join(f"{100 * share:.4g} % ({name})" for name, share in builds.kept.items())
     missed = "; ".join(
         f"{name}: " + ", ".join(f"{requirement} ({n})" for requirement, n in failed.items())
@@ -34,7 +25,7 @@ def stack_page(title: str, builds: Builds, lines: Sequence[StackLine]) -> bytes:
     )
     rows = "\n".join(_row(line) for line in lines)
     return f"""<!doctype html>
-<html lang="en"><head><meta charset="utf-8"><title>{escape(title)}: stack</title><style>{STYLE}</style></head>
+<html lang="en"><head><meta charset="utf-8"><title>{escape(title)}: stack</title><style>{style}</style></head>
 <body>
 <h1>{escape(title)}: how limits add up</h1>
 <p>Of {builds.count} arrays built virtually (seed {builds.seed}) all requirements are met by {escape(yields)}.

@@ -8,7 +8,7 @@ from itertools import combinations
 from math import dist, inf
 
 from tactcad.checks.shop import Machining
-from tactcad.contour import Arc, Contour, Segment
+from tactcad.contour import Arc, Contour
 from tactcad.contour.inside import clearance, side
 from tactcad.contour.nearest import distance
 from tactcad.contour.necks import direction
@@ -40,10 +40,9 @@ def check_machining(part: Part, limit: Machining) -> list[Finding]:
     return [finding for rule in rules for finding in rule(part, limit)]
 
 
-def _thin(
-    check: str, part: Part, at: Vector, wall: float, limit: Machining, message: str
-) -> Iterator[Finding]:
+def _thin(check: str, part: Part, at: Vector, wall: float, limit: Machining, what: str) -> Iterator[Finding]:
     """A wall is flagged where it is thinner than advised, and fails where no workshop would make it."""
+    message = f"{what}, advised {limit.wall:g}, at least {limit.wall_least:g}"
     for finding in at_least(check, part.part_no, wall, limit.wall, message, at):
         yield finding if wall < limit.wall_least - SAME else replace(finding, severity="flag")
 
@@ -77,7 +76,10 @@ def _tight(
     contour = contour if contour.ccw else contour.reversed()
     segments = list(contour)
     for s, after in zip(segments, segments[1:] + segments[:1]):
-        turn = _turn(s, after)
+        # Sine of the turn from the end of a to the start of b; positive to the left.
+        ux, uy = direction(s, s.end)
+        vx, vy = direction(after, after.start)
+        turn = ux * vy - uy * vx
         if (turn if inside else -turn) > 1e-6:
             what = (
                 f"{name}: sharp inside corner, {depth:g} deep: a cutter leaves a radius of "
@@ -87,13 +89,6 @@ def _tight(
         if isinstance(s, Arc) and s.ccw == inside:
             what = f"{name}: inside radius {s.radius:.3g} mm, {depth:g} deep, wants {least:.3g} mm or more"
             yield from at_least("mill-corner", part.part_no, s.radius, least, what, (*s.at(0.5), 0.0))
-
-
-def _turn(a: Segment, b: Segment) -> float:
-    """Sine of the turn from the end of a to the start of b; positive to the left."""
-    ux, uy = direction(a, a.end)
-    vx, vy = direction(b, b.start)
-    return ux * vy - uy * vx
 
 
 def _narrow_pockets(part: Part, limit: Machining) -> Iterator[Finding]:
@@ -146,11 +141,9 @@ def _under_head(part: Part, h: Hole, left: float, limit: Machining) -> Iterator[
         what = f"hole {h.name}: counterbore as deep as the hole"
         yield from at_least("counterbore", part.part_no, left, limit.wall, what, h.at)
     elif h.through:
-        what = (
-            f"hole {h.name}: {left:.3g} mm left under the head, advised {limit.wall:g}, at least "
-            f"{limit.wall_least:g}"
+        yield from _thin(
+            "counterbore", part, h.at, left, limit, f"hole {h.name}: {left:.3g} mm left under the head"
         )
-        yield from _thin("counterbore", part, h.at, left, limit, what)
 
 
 def _threads(part: Part, limit: Machining) -> Iterator[Finding]:
@@ -183,11 +176,7 @@ def _hole_walls(part: Part, limit: Machining) -> Iterator[Finding]:
         if h is k:
             continue
         wall = _between(a, b, c, d) - r - q
-        what = (
-            f"{wall:.3g} mm between {h.name} and {k.name}, advised {limit.wall:g}, at least "
-            f"{limit.wall_least:g}"
-        )
-        yield from _thin("hole-web", part, a, wall, limit, what)
+        yield from _thin("hole-web", part, a, wall, limit, f"{wall:.3g} mm between {h.name} and {k.name}")
     if not isinstance(part.body, Extrusion):
         return
     t = part.body.thickness
@@ -197,11 +186,9 @@ def _hole_walls(part: Part, limit: Machining) -> Iterator[Finding]:
             wall = (clearance(part.body.outer, a[:2]) if inside else -inf) - r
         else:
             wall = min(a[2], t - a[2], b[2], t - b[2]) - r
-        what = (
-            f"{wall:.3g} mm between {h.name} and the part's side, advised {limit.wall:g}, at least "
-            f"{limit.wall_least:g}"
+        yield from _thin(
+            "hole-wall", part, a, wall, limit, f"{wall:.3g} mm between {h.name} and the part's side"
         )
-        yield from _thin("hole-wall", part, a, wall, limit, what)
 
 
 def _cylinders(h: Hole) -> Iterator[tuple[Hole, Vector, Vector, float]]:

@@ -25,7 +25,7 @@ from tactcad.design.tree import Design
 from tactcad.parts.array.element import element_number, outline
 from tactcad.parts.array.layout import ElementPlace, Layout
 from tactcad.parts.array.stop_gap import Overload, endurance, overloads, stop_gap
-from tactcad.parts.language.finding import Finding
+from tactcad.parts.language.finding import Finding, Severity
 from tactcad.parts.rules.pressed_rules import hinge_centre, turns
 
 # Relative excess that is still rounding, for a hinge exactly at its limit.
@@ -40,83 +40,43 @@ def check_strength(design: Design) -> list[Finding]:
 
 def _about(layout: Layout, state: Overload) -> list[Finding]:
     design, place = layout.design, state.place
-    who, number = place.designator, element_number(design, place)
-    at_hinge = (place.hinge_x, place.hinge.t / 2)
+    number, at_hinge = element_number(design, place), (place.hinge_x, place.hinge.t / 2)
+    findings: list[Finding] = []
+
+    def _finding(check: str, severity: Severity, value: float, limit: float, message: str) -> None:
+        findings.append(Finding(check, severity, place.designator, at_hinge, value, limit, message, number))
+
     if state.refused:
-        return [
-            Finding(
-                "strength",
-                "flag",
-                who,
-                at_hinge,
-                0,
-                0,
-                f"the estimator cannot tell its strength: {state.refused}",
-                number,
-            )
-        ]
+        _finding("strength", "flag", 0, 0, f"the estimator cannot tell its strength: {state.refused}")
+        return findings
     closed = (
         f"when {design.rating.overload_force:g} N have closed the stop at {state.gap:g} mm, "
         "tolerance included"
     )
     stress = design.material.yield_strength / design.rating.deflection_factor
-    findings = []
     if state.deflection > state.rated_deflection * (1 + ROUNDING):
-        findings.append(
-            Finding(
-                "overload",
-                "fail",
-                who,
-                at_hinge,
-                state.deflection,
-                state.rated_deflection,
-                f"the hinge gives way by {state.deflection:.4g} mm {closed}; it is rated for "
-                f"{state.rated_deflection:.4g}",
-                number,
-            )
+        message = (
+            f"the hinge gives way by {state.deflection:.4g} mm {closed}; it is rated for "
+            f"{state.rated_deflection:.4g}"
         )
+        _finding("overload", "fail", state.deflection, state.rated_deflection, message)
     if state.stress > stress * (1 + ROUNDING):
-        findings.append(
-            Finding(
-                "overload",
-                "fail",
-                who,
-                at_hinge,
-                state.stress,
-                stress,
-                f"the fillet bears {state.stress:.4g} MPa {closed}; at its rated deflection it bears "
-                f"{stress:.4g}",
-                number,
-            )
+        message = (
+            f"the fillet bears {state.stress:.4g} MPa {closed}; at its rated deflection it bears {stress:.4g}"
         )
+        _finding("overload", "fail", state.stress, stress, message)
     if state.closing_force < state.rated_force * (1 - ROUNDING):
-        findings.append(
-            Finding(
-                "stop-below-rated",
-                "flag",
-                who,
-                at_hinge,
-                state.closing_force,
-                state.rated_force,
-                f"the stop closes at {state.closing_force:.3g} N at most, its gap {state.gap:g} mm with its "
-                f"tolerance: the hinge never bends as at the {state.rated_force:.3g} N that it is rated for",
-                number,
-            )
+        message = (
+            f"the stop closes at {state.closing_force:.3g} N at most, its gap {state.gap:g} mm with its "
+            f"tolerance: the hinge never bends as at the {state.rated_force:.3g} N that it is rated for"
         )
+        _finding("stop-below-rated", "flag", state.closing_force, state.rated_force, message)
     if state.rated_force < design.rating.force:
-        findings.append(
-            Finding(
-                "rated-force",
-                "flag",
-                who,
-                at_hinge,
-                state.rated_force,
-                design.rating.force,
-                f"rated at {state.rated_force:.3g} N, not at the {design.rating.force:g} N asked for: there "
-                f"the fillet would have less than its safety of {design.rating.yield_factor:g} against yield",
-                number,
-            )
+        message = (
+            f"rated at {state.rated_force:.3g} N, not at the {design.rating.force:g} N asked for: there "
+            f"the fillet would have less than its safety of {design.rating.yield_factor:g} against yield"
         )
+        _finding("rated-force", "flag", state.rated_force, design.rating.force, message)
     return findings
 
 

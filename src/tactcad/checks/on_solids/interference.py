@@ -190,47 +190,25 @@ def _holds(outer: np.ndarray, inner: np.ndarray) -> bool:
 
 def _verdict(first: Placement, second: Placement, m: Meeting, meant: Contact | None) -> list[Finding]:
     kind = meant.kind if meant else ""
-    pair = f"{first.designator} ({first.part.part_no}) and {second.designator} ({second.part.part_no})"
+
+    def _finding(check: str, value: float, message: str, limit: float = 0.0) -> list[Finding]:
+        pair = f"{first.designator} ({first.part.part_no}) and {second.designator} ({second.part.part_no})"
+        seen_from = (first, second)[m.anchor]
+        place = np.array(seen_from.rotation) @ np.array(m.place) + np.array(seen_from.origin)
+        at = tuple(map(float, place))
+        return [Finding(check, "fail", first.designator, at, value, limit, f"{pair} {message}")]
+
     if kind == "thread":
         most = thread_overlap(first, second)
         if m.overlap > most * (1 + VOLUME_AGREES) + OVERLAP_MM3:
-            message = (
-                f"{pair} overlap by {m.overlap:.4g} mm3, the thread between them explains {most:.4g} mm3"
-            )
-            return [_finding("thread", first, second, m, m.overlap, message, most)]
+            message = f"overlap by {m.overlap:.4g} mm3, the thread between them explains {most:.4g} mm3"
+            return _finding("thread", m.overlap, message, most)
     elif m.overlap > OVERLAP_MM3:
         declared = f", although only {kind} contact is declared" if kind else ""
-        return [
-            _finding(
-                "overlap", first, second, m, m.overlap, f"{pair} overlap by {m.overlap:.4g} mm3{declared}"
-            )
-        ]
+        return _finding("overlap", m.overlap, f"overlap by {m.overlap:.4g} mm3{declared}")
     elif m.distance < TOUCH_MM and not kind:
-        return [
-            _finding(
-                "undeclared-touch",
-                first,
-                second,
-                m,
-                m.distance,
-                f"{pair} touch, which the scene does not declare",
-            )
-        ]
+        return _finding("undeclared-touch", m.distance, "touch, which the scene does not declare")
     return []
-
-
-def _finding(
-    check: str,
-    first: Placement,
-    second: Placement,
-    m: Meeting,
-    value: float,
-    message: str,
-    limit: float = 0.0,
-) -> Finding:
-    seen_from = (first, second)[m.anchor]
-    place = np.array(seen_from.rotation) @ np.array(m.place) + np.array(seen_from.origin)
-    return Finding(check, "fail", first.designator, tuple(map(float, place)), value, limit, message)
 
 
 def placed_box(p: Placement, box: list[list[float]]) -> np.ndarray:

@@ -115,22 +115,18 @@ def drawing(shapes: Sequence[TopoDS_Shape], view: Viewpoint) -> Drawing:
             result.Update(algorithm)
             return _lines(result)
 
-        sharp, smooth = draw_in_windows(_boxes(shapes, view), on_triangles)
+        # Least and largest corner of meshed shapes in the picture, (n, 2, 2) in mm.
+        right, eye = np.array(view.right), np.array(view.eye) / np.linalg.norm(view.eye)
+        plane = np.stack([right, np.cross(eye, right)], axis=1)
+        boxes = np.empty((len(shapes), 2, 2))
+        for n, shape in enumerate(shapes):
+            box = Bnd_Box()
+            BRepBndLib.Add_s(shape, box)
+            low, high = ((c.X(), c.Y(), c.Z()) for c in (box.CornerMin(), box.CornerMax()))
+            corners = np.array(list(box_corners((low, high)))) @ plane
+            boxes[n] = corners.min(axis=0), corners.max(axis=0)
+        sharp, smooth = draw_in_windows(boxes, on_triangles)
     return Drawing(tuple(sorted(sharp)), tuple(sorted(smooth)))
-
-
-def _boxes(shapes: Sequence[TopoDS_Shape], view: Viewpoint) -> np.ndarray:
-    """Least and largest corner of meshed shapes in the picture, (n, 2, 2) in mm."""
-    right, eye = np.array(view.right), np.array(view.eye) / np.linalg.norm(view.eye)
-    plane = np.stack([right, np.cross(eye, right)], axis=1)
-    boxes = np.empty((len(shapes), 2, 2))
-    for n, shape in enumerate(shapes):
-        box = Bnd_Box()
-        BRepBndLib.Add_s(shape, box)
-        low, high = ((c.X(), c.Y(), c.Z()) for c in (box.CornerMin(), box.CornerMax()))
-        corners = np.array(list(box_corners((low, high)))) @ plane
-        boxes[n] = corners.min(axis=0), corners.max(axis=0)
-    return boxes
 
 
 def projector(eye: Vector, right: Vector) -> HLRAlgo_Projector:

@@ -41,7 +41,8 @@ def section_of(part: Part, holes: Sequence[Round], front: View, below: Vector | 
     None where no feature is sunk, or every plane through an axis would cut another hole off its axis or run
     along a wall. `below` is the eye of a view onto a y face, whose place on the sheet is taken.
     """
-    sunk = [f for f in part.features if is_sunk(f)]
+    # Whether a feature ends or changes inside the part.
+    sunk = [f for f in part.features if (isinstance(f, Pocket) or not f.through or bool(f.counterbore))]
     for k in (0, 1):
         at = _best(part, sunk, holes, k, (front.right, front.up)[k][k])
         if at is None:
@@ -94,11 +95,6 @@ def _best(part: Part, sunk: Sequence[Feature], holes: Sequence[Round], k: int, w
         and not any(abs(wall - v) < ON_AXIS for wall in walls)
     ]
     return max(clean, key=worth, default=None)
-
-
-def is_sunk(f: Feature) -> bool:
-    """Whether a feature ends or changes inside the part."""
-    return isinstance(f, Pocket) or not f.through or bool(f.counterbore)
 
 
 def _middle(f: Feature, k: int) -> float | None:

@@ -96,6 +96,7 @@ def _limits(
     floor = ("slot_floor", "flat_face" if cut.sides == "one" else "hinge_face")
     walls = ("slot_arm_wall", "slot_body_wall")
     fillets = ("slot_arm_fillet", "slot_body_fillet")
+    # mm, to the dowel hole next to the clamp edge.
     stated: tuple[Characteristic, ...] = (
         within("hinge thickness", e.t, t.hinge_thickness, True, floor),
         within(PAD_HEIGHT, d.holes.height + over, t.pad_height, True, ("pad_face", "dowel_hole")),
@@ -106,7 +107,12 @@ def _limits(
         within("pad length", cut.pad_length, round(PAD_SHARE * t.load_arm, 9), between=("tip", "pad_side")),
         within("arm height", e.h, t.arm_height, between=("flat_face", "arm_back")),
         within("fillet radius", e.r, t.fillet_radius, between=fillets),
-        within("tip from dowel hole", _tip_to_dowel(layout), t.tip, between=("tip", "dowel_hole")),
+        within(
+            "tip from dowel hole",
+            round(min(layout.dowel_x) - layout.pad_inner, 9),
+            t.tip,
+            between=("tip", "dowel_hole"),
+        ),
         within("sheet thickness", d.sheet.thickness, t.sheet_thickness, between=FACES),
         dowel_hole_limits(d),
     )
@@ -137,11 +143,6 @@ def dowel_hole_limits(design: Design) -> Characteristic:
     h = design.holes
     low, high = h.dowel_hole, round(h.dowel_hole + h.dowel_hole_upper, 9)
     return Characteristic(DOWEL_HOLE, low, high, low, between=("dowel_hole",))
-
-
-def _tip_to_dowel(layout: Layout) -> float:
-    """mm, to the dowel hole next to the clamp edge."""
-    return round(min(layout.dowel_x) - layout.pad_inner, 9)
 
 
 def element_number(design: Design, place: ElementPlace) -> str:
@@ -231,15 +232,11 @@ def mounting_holes(layout: Layout) -> tuple[Contour, ...]:
 
     design = layout.design
     z = design.holes.height
-    dowel = dowel_hole_diameter(design)
+    # Slide-fit dowel hole as cut and modelled, mm: the middle of its limits.
+    dowel = round(design.holes.dowel_hole + design.holes.dowel_hole_upper / 2, 6)
     screws = [circle((x, z), METRIC[design.clamp.screw].clearance, "screw_hole") for x in layout.screw_x]
     dowels = [circle((x, z), dowel, "dowel_hole") for x in layout.dowel_x]
     return tuple(sorted(screws + dowels, key=lambda c: c.box[0]))
-
-
-def dowel_hole_diameter(design: Design) -> float:
-    """Slide-fit dowel hole as cut and modelled, mm: the middle of its limits."""
-    return round(design.holes.dowel_hole + design.holes.dowel_hole_upper / 2, 6)
 
 
 def sheet_material(design: Design) -> Material:

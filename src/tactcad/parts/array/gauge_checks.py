@@ -10,7 +10,7 @@ import numpy as np
 
 from tactcad.design.fields import present
 from tactcad.mechanics import gauge_signal, readout, strain
-from tactcad.mechanics.section import Array, HingeSection
+from tactcad.mechanics.section import Array
 
 from .hinge_section import design_gauge, design_readout, hinge_section
 from .layout import Layout
@@ -60,7 +60,8 @@ def gauge_checks(layout: Layout) -> GaugeChecks:
     hurt = max(HURT, d.gauge.resistance_tolerance)
     s = hinge_section(layout, layout.elements)
     gauge, electronics = design_gauge(d), design_readout(d)
-    per_newton = _per_newton(s, gauge)
+    # Foil strain per newton, 1/N: beam theory's on the composite section, which has no rung's range.
+    per_newton = strain.nominal(s, 1.0) * gauge_signal.composite(s, gauge).reading
     signal = factor * per_newton * d.rating.force
     # as 4 V/(U G) of what the output may span less the signal: the bridge's slope at zero
     room = 4 * min(electronics.highest, -electronics.lowest) / (electronics.excitation * electronics.gain)
@@ -91,8 +92,3 @@ def volts(layout: Layout, change: float) -> float:
     """Amplifier's output for a relative change of one gauge, V."""
     own = layout.design.readout
     return float(own.excitation * own.gain * readout.bridge_output(change))
-
-
-def _per_newton(s: HingeSection, gauge: gauge_signal.Gauge) -> Array:
-    """Foil strain per newton, 1/N: beam theory's on the composite section, which has no rung's range."""
-    return strain.nominal(s, 1.0) * gauge_signal.composite(s, gauge).reading

@@ -78,61 +78,34 @@ def array_lines(design: Design) -> Iterator[Deflection]:
     origin = "rating.overload_force"
     alloy = carrier_beam(layout, 1.0)
     z0, z1 = layout.end_plate_z
-    plate = Beam(
-        2 * layout.carrier_screw_x,
-        design.clamp.end_plate_thickness,
-        z1 - z0,
-        alloy.youngs_modulus,
-        alloy.poisson,
-    )
-    yield Deflection(
-        "array",
-        "end plate",
-        "between the carrier's screws, load in the middle",
-        force,
-        f"{origin}, all on one end",
-        1e3 * force * plate.supported(),
-        *pads_plane(design),
-        ("clamp.end_plate_thickness", "tolerance.pad_height", origin),
-        "flag",  # nothing is measured during an overload, and the stop's gap is independent of the end plates
-    )
-    stack = seating.stack_beam(layout)
-    yield Deflection(
-        "array",
-        "stack of elements",
-        "between the end plates, load spread; clamped as one",
-        force,
-        f"{origin}, on all pads",
-        1e3 * force * stack.supported_evenly(),
-        *pads_plane(design),
-        ("element.rear_height", "tolerance.pad_height", origin),
-        "flag",
-    )
+    span, thickness = 2 * layout.carrier_screw_x, design.clamp.end_plate_thickness
+    plate = Beam(span, thickness, z1 - z0, alloy.youngs_modulus, alloy.poisson).supported()
+    stack = seating.stack_beam(layout).supported_evenly()
+    height = "tolerance.pad_height"
+    # nothing is measured during an overload, and the stop's gap is independent of the end plates: flagged
+    model, where = "between the carrier's screws, load in the middle", f"{origin}, all on one end"
+    plane, fields = pads_plane(design), ("clamp.end_plate_thickness", height, origin)
+    yield Deflection("array", "end plate", model, force, where, 1e3 * force * plate, *plane, fields, "flag")
+    model, where = "between the end plates, load spread; clamped as one", f"{origin}, on all pads"
+    part, fields = "stack of elements", ("element.rear_height", height, origin)
+    yield Deflection("array", part, model, force, where, 1e3 * force * stack, *plane, fields, "flag")
     screw = seating.force(layout)
     load = 2 * screw * len(layout.hold_down_y)
     turned = f"{screw:.0f} N of each set screw at {seating.torque(layout):g} N m"
-    yield Deflection(
-        "array",
-        "stack of elements",
+    bow = 1e3 * seating.BOW * design.tolerance.pad_height
+    why = "half of tolerance.pad_height: the pads' error an eighth larger"
+    model, gives = (
         "between the end plates, pressed under each set screw",
-        load,
-        turned,
         1e3 * screw * seating.stack_bow(layout),
-        1e3 * seating.BOW * design.tolerance.pad_height,
-        "half of tolerance.pad_height: the pads' error an eighth larger",
-        ("tolerance.pad_height",),
     )
-    yield Deflection(
-        "array",
-        "carrier",
+    yield Deflection("array", "stack of elements", model, load, turned, gives, bow, why, (height,))
+    model, gives = (
         "between the end plates, pressed at each set screw",
-        load,
-        turned,
         1e3 * screw * seating.carrier_bow(layout),
-        1e3 * seating.FLAT,
-        "as flat as the plate that it is screwed on",
-        ("clamp.carrier_thickness",),
     )
+    flat, why = 1e3 * seating.FLAT, "as flat as the plate that it is screwed on"
+    thicker = ("clamp.carrier_thickness",)
+    yield Deflection("array", "carrier", model, load, turned, gives, flat, why, thicker)
 
 
 def _stop_lines(layout: Layout) -> Iterator[Deflection]:
@@ -143,7 +116,13 @@ def _stop_lines(layout: Layout) -> Iterator[Deflection]:
     force_field = "rating.overload_force"
     plate, carrier = ("clamp.stop_plate_thickness", force_field), ("clamp.carrier_thickness", force_field)
     cases: tuple[tuple[str, str, Callable[[Layout, float], float], tuple[str, ...], Severity], ...] = (
-        ("stop plate", "strip between rows of set screws, plate between pairs", _plate, plate, "fail"),
+        (
+            "stop plate",
+            "strip between rows of set screws, plate between pairs",
+            lambda layout, y: layout.stop_give,
+            plate,
+            "fail",
+        ),
         ("carrier", "held by its threads in the middle", carrier_opens, carrier, "fail"),
         ("carrier", "the array held by its end plates alone", lambda layout, y: held, carrier, "flag"),
     )
@@ -155,19 +134,6 @@ def _stop_lines(layout: Layout) -> Iterator[Deflection]:
             allowed = 1e3 * SHARE * gap
             states.append((give(layout, p.y) * force * 1e3 / allowed, force, allowed))
         share, force, allowed = max(states)
-        yield Deflection(
-            "array",
-            part,
-            model,
-            force,
-            f"{force_field} on one arm, at its tip",
-            share * allowed,
-            allowed,
-            "a tenth of the stop's gap",
-            fields,
-            severity,
-        )
-
-
-def _plate(layout: Layout, y: float) -> float:
-    return layout.stop_give
+        where, why = f"{force_field} on one arm, at its tip", "a tenth of the stop's gap"
+        gives = share * allowed
+        yield Deflection("array", part, model, force, where, gives, allowed, why, fields, severity)

@@ -9,7 +9,7 @@ from tactcad.design.tree import Design
 
 GAUGE, COMPLETION, TERMINAL = "STRAIN-GAUGE", "BRIDGE-RESISTOR", "TERMINAL"
 GAIN_RESISTOR = "GAIN-RESISTOR"
-BOARD, CARD_CABLE, STANDOFFS = "CIRCUIT-BOARD", "CABLE-CARD", "STANDOFFS"
+BOARD = "CIRCUIT-BOARD"
 # At every supply pin of every circuit, and at the bridges' supply of every board; chosen: usual practice.
 DECOUPLING, RESERVOIR = "CAPACITOR-100N", "CAPACITOR-10U"
 TO_LEADS, TO_CARD = "HEADER-LEADS", "HEADER-CARD"

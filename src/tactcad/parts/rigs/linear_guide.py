@@ -16,7 +16,7 @@ from ..bought.standard_parts import dowel_diameter
 from ..language.description import Extrusion, Feature, Hole, Part, Purchase
 from ..language.fits import deviations
 from ..language.limits import FACES, Geometric
-from ..language.metric import sunk, tapped_blind
+from ..language.metric import corners, sunk, tapped_blind
 from ..language.part_materials import CARBON_STEEL
 from ..language.plate import plate
 from .cart import CartLayout, cart_layout
@@ -187,19 +187,9 @@ def carriage() -> Part:
             (-10, RAIL_HEIGHT),
         ]
     )
+    thread = Hole("mount", (0.0, 0.0, 0.0), (0, -1, 0), 2.5, 3.0, False, thread="M3", thread_depth=3.0)
     threads = tuple(
-        Hole(
-            "mount",
-            (sx * 7.5, RAIL_HEIGHT, CARRIAGE_LENGTH / 2 + sy * 5.0),
-            (0, -1, 0),
-            2.5,
-            3.0,
-            False,
-            thread="M3",
-            thread_depth=3.0,
-        )
-        for sx in (-1, 1)
-        for sy in (-1, 1)
+        replace(thread, at=(x, RAIL_HEIGHT, CARRIAGE_LENGTH / 2 + y)) for x, y in corners(7.5, 5.0)
     )
     return Part(
         part_no="CARRIAGE-9-UNSEALED",
@@ -270,16 +260,8 @@ def riser(rig: GuideLayout) -> Part:
     half = max(length / 2, RISER_PITCH + 8.0)
     low = max(half, length / 2 + UNDER_RAIL)  # material below the pin: its diameter from the middle, and 2 mm
     features: list[Feature] = [
-        sunk(
-            "post",
-            "M4",
-            (sx * STAGE_HOLE, sy * RISER_PITCH, 0.0),
-            (0, 0, 1),
-            depth,
-            min(RISER_UNDER_HEAD, depth),
-        )
-        for sx in (-1, 1)
-        for sy in (-1, 1)
+        sunk("post", "M4", (x, y, 0.0), (0, 0, 1), depth, min(RISER_UNDER_HEAD, depth))
+        for x, y in corners(STAGE_HOLE, RISER_PITCH)
     ]
     pin = Hole(
         "end_stop",

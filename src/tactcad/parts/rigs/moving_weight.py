@@ -9,7 +9,7 @@ from math import ceil
 from tactcad.contour import Contour, circle, rectangle
 
 from ..language.description import Extrusion, Feature, Part, Purchase
-from ..language.metric import METRIC, sunk, tapped_blind, tapped_depth
+from ..language.metric import METRIC, corners, sunk, tapped_blind, tapped_depth
 from ..language.part_materials import CARBON_STEEL, PLAIN_STEEL, plate_material
 from ..language.plate import plate
 from .frame import BAR_FRONT, BAR_WIDTH, BEHIND_BAR, FOOT, PIN, PLATFORM, carrier_pattern, under_carrier_screw
@@ -30,9 +30,8 @@ def bar(rig: GuideLayout) -> Part:
     """
     t, z, top = rig.bar, rig.carriage_on_bar, rig.bar_height
     features: list[Feature] = [
-        sunk("carriage", "M3", (sx * 7.5, z + sy * 5.0, 0.0), (0, 0, 1), t, BAR_UNDER_HEAD)
-        for sx in (-1, 1)
-        for sy in (-1, 1)
+        sunk("carriage", "M3", (px, z + py, 0.0), (0, 0, 1), t, BAR_UNDER_HEAD)
+        for px, py in corners(7.5, 5.0)
     ]
     for sx in (-1, 1):
         features.append(tapped_blind("foot", "M4", (sx * BAR_SCREW_X, 0.0, t / 2), (0, 1, 0)))

@@ -8,7 +8,6 @@ from math import ceil, floor, log10
 from operator import attrgetter
 from typing import TypeVar
 
-from tactcad.design.fields import Number, Whole
 from tactcad.design.tree import Design
 
 from ..array.layout import Layout
@@ -37,7 +36,11 @@ def remedy(design: Design, line: Deflection, lines: Lines) -> tuple[str, object,
         The field's path, its value now, and in words the values that suffice.
     """
     for path in line.fields:
-        value, spec = attrgetter(path)(design), _spec(design, path)
+        section, name = path.split(".")
+        value, spec = (
+            attrgetter(path)(design),
+            getattr(design, section).__dataclass_fields__[name].metadata["spec"],
+        )
         for end, words in ((spec.high, "at least"), (spec.low, "at most")):
             if _helps(design, line, lines, path, end):
                 return (
@@ -75,8 +78,3 @@ def _helps(design: Design, line: Deflection, lines: Lines, path: str, value: flo
     changed = replace(design, **{section: replace(getattr(design, section), **{name: value})})
     same = (d for d in lines(changed) if (d.part, d.model) == (line.part, line.model))
     return not next(same).too_much
-
-
-def _spec(design: Design, path: str) -> Number | Whole:
-    section, name = path.split(".")
-    return getattr(design, section).__dataclass_fields__[name].metadata["spec"]

@@ -74,7 +74,15 @@ def _placed(layout: Layout, instead: Mapping[int, Part], stops: bool) -> Builder
     b.supplies += (*array_supplies(layout), *electronic_supplies(layout))
     on_ledge = _stack(b, layout, instead)
     _clamping(b, layout)
-    _carrier_screws(b, layout)
+    # Carrier screws into the end
+    fixing = present(carrier_screw(layout))
+    screw = screws.cap_screw(layout.design.clamp.screw, fixing.length)
+    z = layout.carrier_bottom + fixing.under_head
+    for sx, sy in ((1, -1), (-1, -1), (1, 1), (-1, 1)):
+        at = (sx * layout.carrier_screw_x, sy * layout.end_plate_y, z)
+        name = b.place("SC", screw, at, DOWN, CARRIER)
+        b.meet(name, "CA1")
+        b.meet(name, "EP1" if sy < 0 else "EP2", "thread")
     if stops:
         _stop_plate(b, layout, on_ledge)
     return b
@@ -151,18 +159,6 @@ def _tie_rod(b: Builder, layout: Layout, x: float, length: float) -> None:
         nut = b.place("NU", screws.nut(clamp.screw), (x, y, z), outwards, COPLANAR)
         b.meet(plate, nut)
         b.meet(rod, nut, "thread")
-
-
-def _carrier_screws(b: Builder, layout: Layout) -> None:
-    """Carrier screws into the end"""
-    fixing = present(carrier_screw(layout))
-    screw = screws.cap_screw(layout.design.clamp.screw, fixing.length)
-    z = layout.carrier_bottom + fixing.under_head
-    for sx, sy in ((1, -1), (-1, -1), (1, 1), (-1, 1)):
-        at = (sx * layout.carrier_screw_x, sy * layout.end_plate_y, z)
-        name = b.place("SC", screw, at, DOWN, CARRIER)
-        b.meet(name, "CA1")
-        b.meet(name, "EP1" if sy < 0 else "EP2", "thread")
 
 
 def _stop_plate(b: Builder, layout: Layout, on_ledge: list[str]) -> None:
@@ -384,9 +380,10 @@ def _laying_stop_plate(layout: Layout) -> str:
 
 
 def _hold_down(layout: Layout) -> str:
-    from tactcad.parts.array.stop_gap import seat
+    # Arm length and stop gap of every kind of element, mm.
+    from tactcad.parts.array.stop_gap import seat, stop_gap
 
-    gaps = sorted(_gaps(layout), key=lambda pair: pair[0])
+    gaps = sorted({(p.arm, stop_gap(layout, p)) for p in layout.elements}, key=lambda pair: pair[0])
     tolerance = layout.design.stop.tolerance
     wider = floor(1e3 * (tolerance + seat(layout)) + 1e-6) / 1e3  # a micrometre is what the indicator shows
     return (
@@ -396,13 +393,6 @@ def _hold_down(layout: Layout) -> str:
         f"(to {tolerance:g} mm less, or {wider:g} mm more, one plate lying on all "
         "ledges) on the lever indicator at the tip."
     )
-
-
-def _gaps(layout: Layout) -> set[tuple[float, float]]:
-    """Arm length and stop gap of every kind of element, mm."""
-    from tactcad.parts.array.stop_gap import stop_gap
-
-    return {(p.arm, stop_gap(layout, p)) for p in layout.elements}
 
 
 RIG = Rig(

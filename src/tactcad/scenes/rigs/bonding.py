@@ -12,7 +12,7 @@ from tactcad.parts import rigs
 from tactcad.parts.array.element import element
 from tactcad.parts.array.layout import ElementPlace
 from tactcad.parts.array.leads import AHEAD_OF_LEADS, leads
-from tactcad.parts.array.supplies import bonding_supplies
+from tactcad.parts.array.supplies import supplies
 from tactcad.parts.bought.standard_parts import dowel
 from tactcad.parts.rigs.bonding_fixture import BASE, BondingLayout, bonding_rigs
 from tactcad.parts.rigs.frame import STANDARD_GRAVITY
@@ -32,14 +32,18 @@ LIFTED = 40.0  # exploded view: what comes from above
 def bonding(design: Design, pose: Pose = REST) -> Scene:
     """Scene `bonding`: every kind of hinge in its fixture, the first element of that kind; it has no pose
     but rest."""
-    # loads numpy, which nothing needs that only asks which scenes there are
-
     stations = bonding_rigs(design)
     b = Builder()
-    b.supplies += bonding_supplies()
+    b.supplies += supplies("bonding", {})
     middles = [n * (rig.width + BETWEEN) for n, rig in enumerate(stations)]
     for rig, y in zip(stations, middles):
-        _nest(b, rig, y)
+        foot = -(rig.rest + BASE)
+        nest = b.place("BN", rigs.bonding_nest(rig), (0, y + rig.width / 2, foot), AGAINST_Y)
+        pin = dowel(rig.design.clamp.dowel, rig.pin_length)
+        for x in rig.pin_x:
+            for side in (-1, 1):
+                at = (x, y + side * rig.pin_y, -rig.rest - rig.pin_depth)
+                b.meet(b.place("DW", pin, at, UPRIGHT), nest, "press")
     b.step("Fixture", (0, 0, 0), fixture(stations), tools=FIXTURE_TOOLS)
     b.step("Surface", (0, 0, 0), surface(stations[0]), tools=SURFACE_TOOLS)
     for n, (rig, y) in enumerate(zip(stations, middles), start=1):
@@ -48,7 +52,7 @@ def bonding(design: Design, pose: Pose = REST) -> Scene:
     b.step("Gauge", (0, 0, 0), gauge(stations), tools=GAUGE_TOOLS)
     pads = [_pad(b, rig, y) for rig, y in zip(stations, middles)]
     for rig, y, pad in zip(stations, middles, pads):
-        _bar(b, rig, y, pad)
+        b.meet(pad, b.place("CB", rigs.bonding_clamp(rig), (0, y + rig.width / 2, rig.nose), AGAINST_Y))
     b.step("Clamp and cure", (0, 0, 2 * LIFTED), clamp(stations), fan=len(stations))
     first = stations[0]
     b.step("Trim and terminals", (0, 0, 0), terminals(first), tools=TRIM_TOOLS)
@@ -58,16 +62,6 @@ def bonding(design: Design, pose: Pose = REST) -> Scene:
     b.step("Check zero and sign", (0, 0, 0), zero(first), tools=SIGN_TOOLS)
     b.step("Check creep after 24 h", (0, 0, 0), creep(first))
     return b.scene("bonding", cover=[p.designator for p in b.placements if p.designator[:2] in ("CB", "RP")])
-
-
-def _nest(b: Builder, rig: BondingLayout, y: float) -> None:
-    foot = -(rig.rest + BASE)
-    nest = b.place("BN", rigs.bonding_nest(rig), (0, y + rig.width / 2, foot), AGAINST_Y)
-    pin = dowel(rig.design.clamp.dowel, rig.pin_length)
-    for x in rig.pin_x:
-        for side in (-1, 1):
-            at = (x, y + side * rig.pin_y, -rig.rest - rig.pin_depth)
-            b.meet(b.place("DW", pin, at, UPRIGHT), nest, "press")
 
 
 def _element(b: Builder, rig: BondingLayout, y: float, station: int) -> None:
@@ -85,10 +79,6 @@ def _pad(b: Builder, rig: BondingLayout, y: float) -> str:
     pad = b.place("RP", rigs.bonding_pad(rig), (0, y, rig.gauge_face), UPRIGHT)
     b.meet(pad, _first(rig).designator)
     return pad
-
-
-def _bar(b: Builder, rig: BondingLayout, y: float, pad: str) -> None:
-    b.meet(pad, b.place("CB", rigs.bonding_clamp(rig), (0, y + rig.width / 2, rig.nose), AGAINST_Y))
 
 
 LOUPE = "stereo microscope or loupe, 20x"
