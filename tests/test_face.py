@@ -38,7 +38,7 @@ def test_the_names_are_few_and_each_is_shown_once():
     for name in tc.__all__:
         assert callable(getattr(tc, name)), name
         assert re.search(rf"(?:tc\.|`)({name})\b", PAGE) or name in ("LoadedDesign", "OpenScene"), name
-    with pytest.raises(AttributeError, match="it has Answer"):
+    with pytest.raises(AttributeError, match="it has CheckFailure"):
         _ = tc.nonsense
 
 

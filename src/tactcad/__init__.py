@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from .contour import circle, rectangle
     from .design.messages import CheckFailure, InputError
-    from .face import Answer, LoadedDesign, OpenScene, calibrate, design, designs, load, new, stiffness
+    from .face import LoadedDesign, OpenScene, Reply, calibrate, design, designs, load, new, stiffness
     from .parts.language.description import Extrusion, Hole, Material, Part
 
 __version__ = "0.1.0"
@@ -25,13 +25,12 @@ __version__ = "0.1.0"
 # By name the module that has it. `design` is the room of that name, which is called like a function.
 _PLACES = {
     **dict.fromkeys(("load", "designs", "new", "calibrate", "stiffness"), "tactcad.face"),
-    **dict.fromkeys(("Answer", "LoadedDesign", "OpenScene"), "tactcad.face"),
+    **dict.fromkeys(("Reply", "LoadedDesign", "OpenScene"), "tactcad.face"),
     **dict.fromkeys(("Part", "Extrusion", "Hole", "Material"), "tactcad.parts.language.description"),
     **dict.fromkeys(("rectangle", "circle"), "tactcad.contour"),
     **dict.fromkeys(("InputError", "CheckFailure"), "tactcad.design.messages"),
 }
 __all__ = [
-    "Answer",
     "CheckFailure",
     "Extrusion",
     "Hole",
@@ -40,6 +39,7 @@ __all__ = [
     "Material",
     "OpenScene",
     "Part",
+    "Reply",
     "calibrate",
     "circle",
     "design",

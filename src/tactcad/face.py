@@ -56,7 +56,7 @@ def _in_our_words(ask: Callable[Asked, Given]) -> Callable[Asked, Given]:
 
 
 @dataclass(frozen=True, repr=False)
-class Answer(Sequence[Any]):
+class Reply(Sequence[Any]):
     """What a question gave: a sequence of records, which shows itself as a table.
 
     title    what it is
@@ -241,7 +241,7 @@ class LoadedDesign:
         return overall_size(self.design)
 
     @_in_our_words
-    def estimate(self, model: str = "solid", force: float | None = None) -> Answer:
+    def estimate(self, model: str = "solid", force: float | None = None) -> Reply:
         """Stiffness, strain and strength of every element, by a rung of the ladder and at a force (N)."""
         from tactcad.design.tree import ASKED_FORCE
         from tactcad.mechanics.ladder import RUNGS
@@ -253,10 +253,10 @@ class LoadedDesign:
         family = family_of(self.design)
         rows = tuple(family.estimate.rows(family.layout(self.design), model, force))
         whole = {"design": self.name, "model": model, "size_mm": self.size, "elements": [*map(_plain, rows)]}
-        return Answer(f"{self.name} at {rows[0].force:g} N", rows, whole)
+        return Reply(f"{self.name} at {rows[0].force:g} N", rows, whole)
 
     @_in_our_words
-    def check(self, *scenes: str) -> Answer:
+    def check(self, *scenes: str) -> Reply:
         """The findings of every check on these scenes, or on all; `passed` in `to_dict` says whether none
         failed."""
         from tactcad.checks.check_report import as_record
@@ -265,10 +265,10 @@ class LoadedDesign:
         report = run_checks(self.design, self._scenes(scenes))
         told = f"{self.name}: {len(report.failures)} failed, {len(report.findings)} findings in all"
         first = sorted(report.findings, key=lambda finding: finding.severity != "fail")
-        return Answer(told, tuple(first), as_record(report))
+        return Reply(told, tuple(first), as_record(report))
 
     @_in_our_words
-    def export(self, folder: str | Path, *scenes: str, drawings: bool = False, guide: bool = False) -> Answer:
+    def export(self, folder: str | Path, *scenes: str, drawings: bool = False, guide: bool = False) -> Reply:
         """Write every file of these scenes, or of all, to a folder, all or nothing."""
         from tactcad.export.formats import ExportOptions
         from tactcad.export.manifest import read_export
@@ -279,7 +279,7 @@ class LoadedDesign:
         done = export(self.design, options, folder, Quiet())
         files = read_export(str(folder), Path(folder)).files
         whole = {"folder": str(done.folder), "files": [*map(_plain, files)], "made": list(done.made)}
-        return Answer(f"{done.folder}: {len(files)} files", tuple(files), whole)
+        return Reply(f"{done.folder}: {len(files)} files", tuple(files), whole)
 
     @_in_our_words
     def show(self, scene: str = "array") -> ShownPage:
@@ -340,12 +340,12 @@ class OpenScene:
         return self.made.size
 
     @property
-    def bill(self) -> Answer:
+    def bill(self) -> Reply:
         """The bill of materials."""
         from tactcad.scenes.bom import bom_rows
 
         rows = bom_rows(self.made, self.of.design.design.revision, {})
-        return Answer(f"{self.of.name}, {self.name}", rows, {"rows": [*map(_plain, rows)]})
+        return Reply(f"{self.of.name}, {self.name}", rows, {"rows": [*map(_plain, rows)]})
 
     @_in_our_words
     def add(
@@ -405,11 +405,11 @@ class OpenScene:
         self.of.added.append(new)
         return self
 
-    def export(self, folder: str | Path, **options: Any) -> Answer:
+    def export(self, folder: str | Path, **options: Any) -> Reply:
         """As `LoadedDesign.export`, of this scene."""
         return self.of.export(folder, self.name, **options)
 
-    def check(self) -> Answer:
+    def check(self) -> Reply:
         """As `LoadedDesign.check`, of this scene."""
         return self.of.check(self.name)
 
@@ -489,7 +489,7 @@ def new(source: str = DEFAULT_DESIGN, name: str = "my-sensor") -> LoadedDesign:
 
 
 @_in_our_words
-def design(target: str | Path, **options: Any) -> Answer:
+def design(target: str | Path, **options: Any) -> Reply:
     """From a target file to the design that feels it; options are those of `tactcad design`, as
     `within="1%"`.
 
@@ -500,28 +500,28 @@ def design(target: str | Path, **options: Any) -> Answer:
         whole = _command("design", target, out=out, best=True, **options)
         file = out / "design.toml"
         found = (load(file),) if file.exists() else ()
-    return Answer(f"target {whole['name']}: {'met' if whole['met'] else 'not met'}", found, whole)
+    return Reply(f"target {whole['name']}: {'met' if whole['met'] else 'not met'}", found, whole)
 
 
 @_in_our_words
-def calibrate(file: str | Path, **options: Any) -> Answer:
+def calibrate(file: str | Path, **options: Any) -> Reply:
     """Readings to stiffness and sensitivity, with intervals; options are those of `tactcad calibrate`, as
     `load_cell="57.04+-1"`."""
     whole = _command("calibrate", file, **options)
-    return Answer(f"calibration of {Path(file).name}", tuple(map(_estimates, whole["elements"])), whole)
+    return Reply(f"calibration of {Path(file).name}", tuple(map(_estimates, whole["elements"])), whole)
 
 
 @_in_our_words
-def stiffness(file: str | Path, calibration: str | Path | Answer, **options: Any) -> Answer:
+def stiffness(file: str | Path, calibration: str | Path | Reply, **options: Any) -> Reply:
     """Grasp readings and a calibration (a file, or what `calibrate` gave) to the object's stiffness; options
     are those of `tactcad stiffness`, as `thickness=6`."""
     with tempfile.TemporaryDirectory() as folder:
-        if isinstance(calibration, Answer):
+        if isinstance(calibration, Reply):
             kept = Path(folder) / "calibration.json"
             kept.write_text(json.dumps(calibration.to_dict()), "utf-8")
             calibration = kept
         whole = _command("stiffness", file, calibration=calibration, **options)
-    return Answer(f"object of {Path(file).name}", tuple(map(_estimates, whole["samples"])), whole)
+    return Reply(f"object of {Path(file).name}", tuple(map(_estimates, whole["samples"])), whole)
 
 
 def _estimates(record: Mapping[str, Any]) -> dict[str, Any]:
