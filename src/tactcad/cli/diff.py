@@ -208,13 +208,18 @@ def _seen(change: Change) -> bool:
     return old != new or change.moved is not None
 
 
+def _rank(change: Change) -> tuple[bool, bool]:
+    """Values and elements first, then contours, then the rest of parts, places and bills."""
+    return change.path[0] in ("parts", "scenes"), change.path[-1] != "contours"
+
+
 def _print(old: Side, new: Side, changes: list[Change], meant: Meaning, full: bool) -> None:
     from tactcad.export.sides import not_compared
     from tactcad.review.summary import lines
 
     for line in lines(meant):
         print(line)
-    told = changes if full else sorted(filter(_seen, changes), key=lambda c: c.path[0] in ("parts", "scenes"))
+    told = changes if full else sorted(filter(_seen, changes), key=_rank)
     for change in told if full else told[:MOST_CHANGES]:
         print(change)
     if left := len(changes) - (len(told) if full else min(len(told), MOST_CHANGES)):
