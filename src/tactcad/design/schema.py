@@ -51,8 +51,8 @@ def _one(table: str) -> tuple[type, bool]:
 def text_schema(table: str | None = None) -> str:
     """Every table, or one, with its fields: name, default, legal values, meaning."""
     if table is not None:
-        kind, optional = _one(table)
-        return "\n".join(table_text(table, kind, optional)[:-1])
+        kind, spare = _one(table)
+        return "\n".join(table_text(table, kind, spare)[:-1])
     lines = [
         "Lengths in mm, forces in N, stresses in MPa, density in kg/m3 unless a field says otherwise.",
         "",
