@@ -5,6 +5,7 @@ Its being here also puts tests/ on the import path, for variants.py and sound_de
 
 from __future__ import annotations
 
+import gc
 import os
 
 import pytest
@@ -21,6 +22,13 @@ def own_cache(tmp_path_factory):
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("TACTCAD_CACHE", str(folder / "cache"))
         yield
+
+
+def pytest_collection_finish():
+    """Thousands of tests and all libraries stay to the end: they are not looked through for garbage again and
+    again, nor copied by what is forked."""
+    gc.collect()
+    gc.freeze()
 
 
 def pytest_terminal_summary(terminalreporter):

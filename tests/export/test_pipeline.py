@@ -88,58 +88,63 @@ def exported(design, out: Path, others: str = "refuse"):
     return export(design, ARRAY, out, notes, others), notes
 
 
-# --- the shipped array and one of its rigs, twice in fresh processes ---
+# --- the shipped array and one of its rigs, in a fresh process ---
 
 # every scene of every design, with guides and drawings: tests/faults/test_surroundings.py, nightly
 TWO_SCENES = ("--scene", "array", "--scene", "sample-stiffness")
 
 
+def export_in_a_home_of_its_own(home: Path, seed: str, zone: str, language: str, *scenes: str) -> Path:
+    """The design exported by a process that shares nothing with another but the code."""
+    (home / "designs").mkdir()
+    shutil.copy(HARDWARE / "macro-array.toml", home / "designs" / "paper.toml")
+    said, _ = run(
+        "export",
+        "designs/paper.toml",
+        *scenes,
+        "--out",
+        f"out-{seed}",
+        cwd=home,
+        HOME=str(home),
+        TZ=zone,
+        LANG=language,
+        PYTHONHASHSEED=seed,
+        TACTCAD_CACHE=str(home / "cache"),
+    )
+    # whatever of the code a cold export runs, the manifest's inputs watch (the command line's own room
+    # apart)
+    assert "solids" in said["rooms"]
+    # profiling counts, shutdown puts away: neither shapes a file
+    assert set(said["rooms"]) - {"cli", "profiling", "shutdown"} <= set(pipeline.ROOMS)
+    return home
+
+
+def assert_names_no_machine(home: Path, out: str) -> None:
+    for name, data in contents(home / out).items():
+        for trace in (str(home), str(home.parent), "/root", "/home", os.uname().nodename):
+            assert trace.encode() not in data, f"{trace} in {name}"
+
+
 @pytest.fixture(scope="module")
-def two_exports(tmp_path_factory):
-    """The same design exported by two processes that share nothing but the code; by the second its array
-    only."""
-    folders = []
-    for seed, zone, language, scenes in (
-        ("1", "Pacific/Auckland", "C", TWO_SCENES),
-        ("4242", "America/St_Johns", "C.UTF-8", TWO_SCENES[:2]),
-    ):
-        home = tmp_path_factory.mktemp(f"home {seed}")
-        (home / "designs").mkdir()
-        shutil.copy(HARDWARE / "macro-array.toml", home / "designs" / "paper.toml")
-        said, _ = run(
-            "export",
-            "designs/paper.toml",
-            *scenes,
-            "--out",
-            f"out-{seed}",
-            cwd=home,
-            HOME=str(home),
-            TZ=zone,
-            LANG=language,
-            PYTHONHASHSEED=seed,
-            TACTCAD_CACHE=str(home / "cache"),
-        )
-        # whatever of the code a cold export runs, the manifest's inputs watch (the command line's own room
-        # apart)
-        assert "solids" in said["rooms"]
-        assert set(said["rooms"]) - {"cli", "profiling", "shutdown"} <= set(
-            pipeline.ROOMS
-        )  # profiling counts, shutdown puts away: neither shapes a file
-        folders.append(home)
-    return folders
+def shipped(tmp_path_factory) -> Path:
+    """Where that export, out-1, and its cache lie."""
+    home = tmp_path_factory.mktemp("home 1")
+    return export_in_a_home_of_its_own(home, "1", "Pacific/Auckland", "C", *TWO_SCENES)
 
 
 @pytest.mark.slow
-def test_two_processes_write_equal_bytes_in_every_file_of_the_array(two_exports):
+def test_two_processes_write_equal_bytes_in_every_file_of_the_array(shipped, tmp_path):
     """But for those that speak of all scenes together, which test_surroundings.py compares."""
-    first, second = (contents(home / f"out-{seed}") for home, seed in zip(two_exports, ("1", "4242")))
+    other = export_in_a_home_of_its_own(tmp_path, "4242", "America/St_Johns", "C.UTF-8", *TWO_SCENES[:2])
+    first, second = contents(shipped / "out-1"), contents(other / "out-4242")
     assert len(second) > 40 and set(second) < set(first)
     of_all_scenes = {"manifest.json", "inspection.csv", "inspection-parts.csv", "stack.csv", "stack.html"}
     assert {name for name in second if first[name] != second[name]} <= of_all_scenes
+    assert_names_no_machine(other, "out-4242")
 
 
-def test_the_export_is_what_the_contract_says(two_exports):
-    folder = two_exports[0] / "out-1"
+def test_the_export_is_what_the_contract_says(shipped):
+    folder = shipped / "out-1"
     assert check_manifest(folder) == []
     record = json.loads((folder / "manifest.json").read_text())
     kinds = {f["kind"] for f in record["files"]}
@@ -176,20 +181,17 @@ def test_the_export_is_what_the_contract_says(two_exports):
 
 
 @pytest.mark.parametrize("name", ["open", "below"])
-def test_pictures_shown_in_the_docs_are_the_exports(two_exports, name):
+def test_pictures_shown_in_the_docs_are_the_exports(shipped, name):
     shown = (HARDWARE.parent / "docs" / "images" / f"macro-array-{name}.svg").read_bytes()
-    assert (two_exports[0] / f"out-1/pictures/macro-array-array-{name}.svg").read_bytes() == shown
+    assert (shipped / f"out-1/pictures/macro-array-array-{name}.svg").read_bytes() == shown
 
 
-def test_nothing_in_the_export_names_the_machine(two_exports):
-    for home, seed in zip(two_exports, ("1", "4242")):
-        for name, data in contents(home / f"out-{seed}").items():
-            for trace in (str(home), str(home.parent), "/root", "/home", os.uname().nodename):
-                assert trace.encode() not in data, f"{trace} in {name}"
+def test_nothing_in_the_export_names_the_machine(shipped):
+    assert_names_no_machine(shipped, "out-1")
 
 
-def test_a_second_export_does_nothing_and_loads_nothing(two_exports):
-    home = two_exports[0]
+def test_a_second_export_does_nothing_and_loads_nothing(shipped):
+    home = shipped
     before = {p: p.lstat().st_mtime_ns for p in home.rglob("*") if "pycache" not in str(p)}
     said, log = run(
         "export",
@@ -278,8 +280,8 @@ def area_of(segments: list[tuple]) -> float:
     return abs(twice) / 2 - holes
 
 
-def test_hinge_and_area_measured_in_the_cut_files(two_exports):
-    folder, design = two_exports[0] / "out-1", variant()
+def test_hinge_and_area_measured_in_the_cut_files(shipped):
+    folder, design = shipped / "out-1", variant()
     volumes = {p.part_no: p.volume_mm3 for p in read_manifest(folder).parts}
     for place in Layout(design).elements:
         number = f"macro-array-element-a{place.arm:g}mm"

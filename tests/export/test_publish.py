@@ -452,6 +452,25 @@ def test_of_writers_at_once_one_stays_whole(tmp_path, how):
     assert names(tmp_path) == {"macro"}
 
 
+@pytest.mark.parametrize("read", ["_sealed_record", "_entries"])
+def test_a_folder_that_another_writer_replaces_while_it_is_read_is_read_again(
+    tmp_path, way, monkeypatch, read
+):
+    out, real = tmp_path / "macro", getattr(contents, read)
+    export(out, "old")
+
+    def meanwhile(folder, *more):
+        found = real(folder, *more)
+        if folder == out:
+            monkeypatch.setattr(contents, read, real)
+            export(out, "other")
+        return found
+
+    monkeypatch.setattr(contents, read, meanwhile)
+    export(out, "new")
+    assert whole(out) == "new" and names(tmp_path) == {"macro"}
+
+
 def test_a_writer_leaves_the_folder_of_another_that_runs(tmp_path):
     out = tmp_path / "macro"
     with replacing(out, SCHEMA) as slow:

@@ -26,6 +26,7 @@ import tactcad
 
 ROOT = Path(__file__).parents[2]
 MODULE = [sys.executable, "-m", "tactcad"]
+HANGS = 600  # s; what takes longer is ended, and fails: busy machines take five times as long as quiet ones
 RIGS = ("cart", "holder", "sample", "calibration", "grasping", "bonding")
 
 
@@ -69,14 +70,14 @@ def environment(folder: Path, **changes: str) -> dict[str, str]:
 def tactcad_run(
     *arguments: str | bytes | Path, cwd: Path, env: dict[str, str], command: Sequence[str] = MODULE, **more
 ) -> subprocess.CompletedProcess[bytes]:
-    """`tactcad ARGUMENTS` to its end, at most two minutes: what hangs fails."""
+    """`tactcad ARGUMENTS` to its end; what hangs fails."""
     return subprocess.run(
         [*command, *arguments],
         cwd=cwd,
         env=env,
         capture_output=True,
         check=False,
-        timeout=600,
+        timeout=HANGS,
         stdin=subprocess.DEVNULL,
         **more,
     )
@@ -140,7 +141,7 @@ class Bench:
 
 # Forks for each command with the program loaded: what a shell would do, without Python's start and the
 # libraries' loading. Reads JSON lines; writes two lines for each, the process's number and its status.
-LOADED = """
+LOADED = f"""
 import contextlib, gc, importlib, json, os, signal, sys, traceback
 from tactcad.cli.main import COMMANDS, main
 modules = "drawing.assemblies.assembly_sheets export.pipeline export.sides release.make"
@@ -154,7 +155,7 @@ while line := sys.stdin.buffer.readline():
     asked = json.loads(line)
     process = os.fork()
     if not process:
-        signal.alarm(120)  # what hangs is ended
+        signal.alarm({HANGS})  # what hangs is ended
         os.chdir(asked["cwd"])
         os.environ.clear()
         os.environ.update(asked["env"])

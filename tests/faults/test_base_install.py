@@ -51,13 +51,14 @@ size --stiffness 10 --load-arm 6 --within 1%
 size --stiffness 10 --load-arm 6 --hinge-length 1 --fillet-radius 0.2 --arm-height 3 --sides two
 size --stiffness 10 --load-arm 6 --width 3 --youngs-modulus 7e4 --poisson 0.3 --alloy 7075-T6 --force 0.1
 size --stiffness 10 --load-arm 6 --tolerance 0.01 --model beam --body-height 5 --body-length 4
+size --stiffness 10 --load-arm 6 --within 1% --in 1
 calibrate calibration.csv --load-cell 57+-1 --run-scatter 0.01 --drop-outliers --out cal.csv
 calibrate calibration.csv --design macro-array --level 0.9 --within 1% --in 1 --json
 stiffness grasp.csv --calibration cal.csv --reference 8 --level 0.9 --json
 stiffness grasp.csv --calibration cal.csv --design macro-array --coupling 1 --thickness 5 --within 1% --in 1
-grasp A.toml --object E=0.5,nu=0.49,thickness=6 --load 1 --angle 0,0 --out p.svg
-grasp A.toml --object E=0.5,nu=0.49,thickness=6 --rung layer --within 5% --json
 schema --target --json
+grasp macro-array --object E=0.5,nu=0.49,thickness=6 --load 1 --angle 0.5,1 --rung layer --out p.svg
+grasp --object E=0.5,nu=0.49,thickness=6 --within 1% --json
 schema --study
 schema element
 completion bash

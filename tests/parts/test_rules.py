@@ -331,10 +331,12 @@ def test_the_legal_tolerance_of_a_stop_is_accepted_and_slightly_more_is_not(path
     assert wrong.part == path
     legal = float(re.fullmatch(r"at most ([\d.]+) mm", wrong.limit)[1])
     assert found(legal) == []
-    low, high = 0.001, 0.1
+    rule, low, high = design_rules()["stop_gap_above_tolerance"], 0.001, 0.1
     while high - low > 1e-6:
         middle = (low + high) / 2
-        low, high = (low, middle) if found(middle) else (middle, high)
+        wrong = list(rule(Layout(variant({**others, path: middle}))))
+        low, high = (low, middle) if wrong else (middle, high)
+    assert found(low) == [] and found(high)
     assert legal <= low + 1e-6 < legal + 1.01e-4
 
 

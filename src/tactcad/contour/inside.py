@@ -7,7 +7,7 @@ from itertools import combinations, product
 from math import atan2, dist, inf, pi, sqrt, tau
 
 from .contour import Contour
-from .nearest import distance, distance_to, meeting_points
+from .nearest import box_around, distance, distance_to, gap, meeting_points
 from .rounded import ROUNDING_MM
 from .segment import Line, Point, Segment
 
@@ -109,10 +109,11 @@ def crossings(one: Contour, other: Contour) -> list[Point]:
 
 def smallest_distance(contour: Contour) -> float:
     """Smallest distance of two pieces that are not neighbours, mm; infinite where there are none."""
-    pairs = combinations(enumerate(contour), 2)
-    return min(
-        (distance(a, b) for (i, a), (j, b) in pairs if not _joints(contour, i, j)), default=float("inf")
-    )
+    boxes, least = [box_around(s) for s in contour], float("inf")
+    for (i, a), (j, b) in combinations(enumerate(contour), 2):
+        if gap(boxes[i], boxes[j]) < least and not _joints(contour, i, j):
+            least = min(least, distance(a, b))
+    return least
 
 
 def _joints(contour: Contour, i: int, j: int) -> list[Point]:

@@ -109,6 +109,25 @@ def distance(a: Segment, b: Segment) -> float:
     return 0.0 if meeting_points(a, b) else min(dist(p, q) for p, q in common_normals(a, b))
 
 
+Box = tuple[float, float, float, float]
+
+
+def box_around(s: Segment) -> Box:
+    """A box, x and y from and to, that holds the segment (of an arc: its whole circle)."""
+    if isinstance(s, Arc):
+        (x, y), r = s.centre, s.radius
+        return (x - r, y - r, x + r, y + r)
+    (x, y), (u, v) = s.start, s.end
+    return (min(x, u), min(y, v), max(x, u), max(y, v))
+
+
+def gap(one: Box, other: Box) -> float:
+    """Distance of two boxes, 0 where they overlap: what they hold is no nearer, but for rounding (mm)."""
+    x = max(one[0] - other[2], other[0] - one[2], 0.0)
+    y = max(one[1] - other[3], other[1] - one[3], 0.0)
+    return hypot(x, y) - ROUNDING_MM if x or y else 0.0
+
+
 def meeting_points(a: Segment, b: Segment) -> list[Point]:
     """Points in which two segments meet, within rounding; where they overlap, the ends of the common
     stretch.

@@ -14,7 +14,7 @@ from math import dist, hypot, pi
 from typing import Literal
 
 from .contour import Contour
-from .nearest import common_normals, meeting_points
+from .nearest import Box, box_around, common_normals, gap, meeting_points
 from .rounded import ROUNDING_MM
 from .segment import Arc, Line, Point, Segment
 
@@ -48,6 +48,7 @@ class _Piece:
     segment: Segment
     arriving: Point  # unit direction of the one before, where it ends
     leaving: Point  # unit direction of the one after, where it starts
+    box: Box  # that holds it
 
 
 def necks(outer: Contour, openings: Sequence[Contour] = (), below: float = float("inf")) -> list[Neck]:
@@ -70,6 +71,8 @@ def necks(outer: Contour, openings: Sequence[Contour] = (), below: float = float
     pieces = [piece for contour in contours for piece in _pieces(contour)]
     candidates = []
     for a, b in combinations_with_replacement(pieces, 2):
+        if gap(a.box, b.box) >= below:
+            continue
         for p, q in _facing(a, b):
             width = dist(p, q)
             if ROUNDING_MM < width < below:
@@ -107,7 +110,9 @@ def _facing(a: _Piece, b: _Piece) -> Iterator[tuple[Point, Point]]:
 def _pieces(contour: Contour) -> list[_Piece]:
     run = contour.segments
     return [
-        _Piece(s, direction(run[i - 1], run[i - 1].end), direction(run[(i + 1) % len(run)], s.end))
+        _Piece(
+            s, direction(run[i - 1], run[i - 1].end), direction(run[(i + 1) % len(run)], s.end), box_around(s)
+        )
         for i, s in enumerate(run)
     ]
 

@@ -6,6 +6,7 @@ End points are stored, never computed, so that neighbours in a chain share them 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from math import atan2, cos, hypot, pi, sin, tau
 
 Point = tuple[float, float]
@@ -56,22 +57,22 @@ class Arc:
     ccw: bool
     name: str = ""
 
-    @property
+    @cached_property
     def radius(self) -> float:
         """Radius in mm, measured at the start."""
         return hypot(self.start[0] - self.centre[0], self.start[1] - self.centre[1])
 
-    @property
+    @cached_property
     def start_angle(self) -> float:
         """Direction from centre to start, radians in (-pi, pi]."""
         return atan2(self.start[1] - self.centre[1], self.start[0] - self.centre[0])
 
-    @property
+    @cached_property
     def end_angle(self) -> float:
         """Direction from centre to end, radians in (-pi, pi]."""
         return atan2(self.end[1] - self.centre[1], self.end[0] - self.centre[0])
 
-    @property
+    @cached_property
     def sweep(self) -> float:
         """Signed angle in radians: positive counter-clockwise, of magnitude in (0, 2 pi]."""
         if self.start == self.end:
@@ -79,7 +80,7 @@ class Arc:
         turn = (self.end_angle - self.start_angle) % tau
         return turn if self.ccw else turn - tau
 
-    @property
+    @cached_property
     def length(self) -> float:
         """Arc length in mm."""
         return self.radius * abs(self.sweep)

@@ -66,7 +66,7 @@ def looked_at(directory: str | Path, schema: str, others: str = REFUSE) -> Conte
             manifest = folder / NAME
             if manifest.is_file() and b'"schema": "tactcad-' in manifest.read_bytes()[:40]:
                 raise InputError(str(out), f"lies inside {folder}, which tactcad wrote", legal=LEGAL)
-        seen = contents(out, schema)
+        seen = _contents_of_one(out, schema)
     if seen.foreign and others == REFUSE:
         raise InputError(
             str(directory),
@@ -74,6 +74,31 @@ def looked_at(directory: str | Path, schema: str, others: str = REFUSE) -> Conte
             legal="--keep, which moves the folder beside, --discard, which removes it, or another folder",
         )
     return seen
+
+
+def _contents_of_one(out: Path, schema: str) -> Contents:
+    """What lies in DIR; read again where another run put its folder there meanwhile, or the files of one
+    would be held against the manifest of the other.
+    """
+    while True:
+        before = _which(out)
+        try:
+            seen = contents(out, schema)
+        except OSError:
+            if _which(out) == before:
+                raise
+        else:
+            if _which(out) == before:
+                return seen
+
+
+def _which(out: Path) -> tuple[int, int] | None:
+    """Which folder it is: a number, which a later one may have again, and when it was last renamed."""
+    try:
+        found = os.lstat(out)
+    except FileNotFoundError:
+        return None
+    return found.st_ino, found.st_ctime_ns
 
 
 def named(foreign: Mapping[str, str]) -> str:

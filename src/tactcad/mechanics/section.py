@@ -19,6 +19,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import MISSING, dataclass, field, fields, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -75,14 +76,14 @@ class HingeSection:
         for each in fields(self):
             kind = bool if each.name == "two_sided" else float
             object.__setattr__(self, each.name, np.asarray(getattr(self, each.name), dtype=kind))
-        np.broadcast_shapes(*(getattr(self, f.name).shape for f in fields(self)))
+        self.shape  # raises ValueError where they do not broadcast
 
     @classmethod
     def of(cls, **parameters: ArrayLike) -> HingeSection:
         """A section from numbers, lists or arrays."""
         return cls(**{name: np.asarray(value) for name, value in parameters.items()})
 
-    @property
+    @cached_property
     def shape(self) -> tuple[int, ...]:
         """Common shape of all parameters."""
         return np.broadcast_shapes(*(getattr(self, f.name).shape for f in fields(self)))

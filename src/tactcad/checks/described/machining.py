@@ -173,7 +173,7 @@ def _hole_walls(part: Part, limit: Machining) -> Iterator[Finding]:
     """Material between holes, and between a hole and the part's sides."""
     cylinders = [c for h in _holes(part) for c in _cylinders(h)]
     for (h, a, b, r), (k, c, d, q) in combinations(cylinders, 2):
-        if h is k:
+        if h is k or dist(a, c) - dist(a, b) - dist(c, d) - r - q >= limit.wall:  # too far to measure
             continue
         wall = _between(a, b, c, d) - r - q
         yield from _thin("hole-web", part, a, wall, limit, f"{wall:.3g} mm between {h.name} and {k.name}")
