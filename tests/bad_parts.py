@@ -316,7 +316,7 @@ BAD: dict[str, Bad] = {
         lambda: strength(stop__gaps={"4": 0.2}),
         "tests/checks/test_strength_check.py",
     ),
-    "origin": Bad("origins", "soft-tissue of another sheet", origin, "tests/design/test_origins.py"),
+    "origin": Bad("origins", "soft-tissue with another hinge", origin, "tests/design/test_origins.py"),
     "fatigue": Bad(
         "fatigue",
         "the shipped arms, rated above what they endure",
