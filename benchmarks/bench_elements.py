@@ -32,8 +32,7 @@ from tactcad.fem.elements import solve_plane, solve_solid
 from tactcad.fem.fem_ladder import RATE, richardson, stiffness
 from tactcad.fem.mapped_mesh import plane_mesh
 from tactcad.fem.shape import ElementShape, reference_shape
-from tactcad.mechanics import ladder
-from tactcad.mechanics.register import BY_NAME
+from tactcad.mechanics import ladder, register
 from tactcad.mechanics.section import REFERENCE, HingeSection
 from tactcad.report.report import sig
 
@@ -133,7 +132,7 @@ def rungs(plan: RunPlan) -> dict:
     ]
     seconds = _times(plan)
     for row in rows:
-        row |= seconds[row["rung"]] | {"when": BY_NAME[row["rung"]].when}
+        row |= seconds[row["rung"]] | {"when": register.rungs()[row["rung"]].when}
         row["time ratio"] = row["seconds"] / seconds[ladder.DEFAULT_RUNG]["seconds"]
     columns = (
         "rung; solid mean: solid: mean error [%]; solid worst: worst [%]; solid designs: designs; plane "
@@ -179,7 +178,7 @@ def _closed_form(rung: str, columns: Columns) -> dict:
     K = ladder.evaluate(section(columns), rung).stiffness
     row = {"rung": rung} | errors(K, solid_of(columns), "solid")
     # what models the width is not comparable with plane stress
-    return row if BY_NAME[rung].against == "solid" else row | errors(K, plane_of(columns), "plane")
+    return row if register.rungs()[rung].against == "solid" else row | errors(K, plane_of(columns), "plane")
 
 
 def _elements(rung: str, fine: Columns, plan: RunPlan, count: int) -> dict:

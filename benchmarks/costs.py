@@ -16,13 +16,12 @@ import sys
 import tempfile
 import time
 from datetime import date
-from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from bench_geometry import volume
-from measuring import ROOT, array_of, array_text, child_seconds, processor_seconds, python, tactcad
+from measuring import array_of, array_text, child_seconds, processor_seconds, python, tactcad
 from samples import draw_box, draw_edges, draw_range, joined, section
 from scipy.optimize import nnls
 
@@ -40,7 +39,6 @@ SOLVED = 30  # designs, a third each of the box, of its edges, and of the whole 
 # Largest elements x layers of a coarsest mesh that is solved here: some 10 s; beyond, the law goes on.
 MOST = {2: 400, 3: 160}
 MARGIN = 1.4  # of the largest share of w^2/24 that was measured, as of the rungs
-BESIDE = 3.8  # s, measured once: variance shares and solid elements of the shipped target's answer
 LONGEST_MESH = 4.0  # s; a part that takes longer is not meshed finer still
 
 
@@ -213,44 +211,6 @@ def builds() -> dict[str, Any]:
     }
 
 
-def syntheses() -> dict[str, Any]:
-    """`design`: a candidate looked at, a search beside the answer, an array tried, and the rest."""
-    from tactcad.synthesis.candidates import stands
-    from tactcad.synthesis.made_arrays import MadeSensor
-    from tactcad.synthesis.search import search
-    from tactcad.synthesis.synthesise import QUICK
-    from tactcad.synthesis.target import read_target
-
-    target = read_target(ROOT / "hardware" / "targets" / "better-array.toml")
-    stand, goal = stands(target)[0], lambda c: c.half_width
-    start = time.process_time()
-    found = search(stand, goal)
-    candidate = (time.process_time() - start) / found.evaluations
-    again = partial(search, stand, goal, start=found.row, within=QUICK)
-    near = [processor_seconds(partial(again, seed=n)) for n in (1, 2, 3)]
-    sizes, each = [], []
-    for name in DESIGNS:
-        if load(name).calibration is None:  # what is known of its elements is not counted from a rig
-            continue
-        made = MadeSensor(target, load(name))
-        made.built(50, 0.1)
-        sizes.append({"element": float(len(made.layout.elements))})
-        each.append(
-            (
-                processor_seconds(lambda: made.built(1000, 0.1))
-                - processor_seconds(lambda: made.built(200, 0.1))
-            )
-            / 800
-        )
-    loading = child_seconds(
-        python("-c", "import tactcad.synthesis.target_report, tactcad.synthesis.synthesise")
-    )
-    return {
-        "synthesis": {"start": loading + BESIDE, "candidate": candidate, "near": float(np.mean(near))},
-        "array tried": fitted(("start", "element"), sizes, each),
-    }
-
-
 STUDY = """
 [study]
 name = "costs"
@@ -282,7 +242,7 @@ def sweeps() -> dict[str, Any]:
     return {"sweep": {"start": start, "row": row, "closed": closed, "design": rules}}
 
 
-PARTS = {part.__name__: part for part in (starts, elements, meshes, commands, builds, syntheses, sweeps)}
+PARTS = {part.__name__: part for part in (starts, elements, meshes, commands, builds, sweeps)}
 
 if __name__ == "__main__":
     raise SystemExit(main())

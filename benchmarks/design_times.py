@@ -1,8 +1,9 @@
-"""Time from a target to its answer, and of arrays built virtually: the tables of docs/targets.md and
-docs/stack.md.
+"""Time from a target to its answer, and of arrays built virtually: the tables of docs/targets.md,
+docs/benchmarks.md and docs/stack.md.
 
-    python benchmarks/design_times.py docs/targets.md    some minutes
-    python benchmarks/design_times.py docs/stack.md      a few minutes
+    python benchmarks/design_times.py docs/targets.md       some minutes
+    python benchmarks/design_times.py docs/benchmarks.md    half an hour
+    python benchmarks/design_times.py docs/stack.md         a few minutes
 
 Processor time of one process, each case in turn: arrays of ten and forty elements against the number of free
 numbers; the same candidates in a plain loop over `estimate`'s closed form; arrays made against the width of
@@ -12,6 +13,8 @@ elements.
 
 from __future__ import annotations
 
+import csv
+import os
 import time
 
 import numpy as np
@@ -25,9 +28,38 @@ from tactcad.stacks.virtual_build import sensor
 from tactcad.synthesis.candidates import Candidates, realised, stands
 from tactcad.synthesis.made_arrays import MadeSensor
 from tactcad.synthesis.search import search
-from tactcad.synthesis.target import Target, read_target
+from tactcad.synthesis.synthesise import Synthesis, design
+from tactcad.synthesis.target import Target, parse_target, read_target
 
 TARGET = ROOT / "hardware" / "targets" / "better-array.toml"
+BEFORE = ROOT / "benchmarks" / "data" / "design-before.csv"
+HEADS = (
+    "target | answer before, processor s | now | now, s | end before, s | now, s | half-width before, % | "
+    "now, % | met"
+)
+PAPER = """
+    object.stiffness = [2.34, 10.01]
+    grasp = {force = 13.04, overload = 13.04, element_force = 2.0}
+    room = {elements = [2, 10], pitch = 4.0, length = 64.0, width = 40.0}
+    """
+BY_HAND = (
+    """
+    target = {name = "tissue", half_width = 15}
+    object.stiffness = [3, 6]
+    grasp = {force = 6, overload = 8}
+    room = {elements = [4, 6], pitch = 4}
+    elements = {arms = [5, 7], hinges = [0.25, 0.4]}
+    """,
+    """
+    target = {name = "stainless"}
+    object.stiffness = [1, 5]
+    grasp = {force = 6, overload = 12}
+    room = {elements = [12, 12], pitch = 3, length = 60, width = 40}
+    stock = {alloys = ["1.4310-C1300"], sheets = [2.0]}
+    """,
+    f'target = {{name = "paper"}}{PAPER}',
+    f'target = {{name = "paper-finer", half_width = 2}}{PAPER}',
+)
 LOOPED = 50  # candidates of the plain loop
 ARRAYS = (500, 2000, 8000)
 SIZES = (10, 40, 160, 1000)
@@ -108,6 +140,66 @@ def virtual_builds() -> str:
     return lines(heads, rows)
 
 
+def asked(n: int) -> str:
+    """One of the twenty targets: four by hand, the others by chance."""
+    if n < len(BY_HAND):
+        return BY_HAND[n]
+    rng = np.random.default_rng((20261125, n))
+
+    def between(low: float, high: float) -> float:
+        return float(np.exp(rng.uniform(np.log(low), np.log(high))))
+
+    soft, elements, sheet = between(0.5, 30.0), int(rng.integers(4, 11)), rng.choice([2, 3, 4])
+    force = elements * sheet / 3.0 * between(0.3, 2.0)
+    arm, hinge, width = rng.uniform(3.0, 7.0), between(0.12, 0.3), rng.choice([0, 0, 3, 6, 12, 25])
+    least = rng.choice(["width", "room", "kinds", "cut", "tolerance"], p=[0.6, 0.1, 0.1, 0.1, 0.1])
+    wish = f', half_width = {width}, least = "{least}"' if width else ""
+    return f"""
+        target = {{name = "by-chance"{wish}}}
+        object.stiffness = [{soft:.3g}, {soft * between(1.5, 6.0):.3g}]
+        grasp = {{force = {force:.3g}, overload = {force * between(1.0, 3.0):.3g}}}
+        room.rows = {rng.integers(1, 3)}
+        room.elements = [2, {elements}]
+        room.pitch = {rng.choice([0.2, 4.0, 6.0])}
+        room.length = {rng.choice([60, 70, 2000])}
+        stock.sheets = [{sheet}]
+        stock.hinge_tolerances = {rng.choice(["[0.005]", "[0.002, 0.01]"])}
+        elements.arms = [{arm:.1f}, {arm + rng.uniform(1.0, 8.0):.1f}]
+        elements.hinges = [{hinge:.2f}, {hinge * between(1.5, 4.0):.2f}]
+        elements.kinds = {rng.choice([2, 2, 3])}
+        known.how = "{rng.choice(["calibrated", "drawn", "inspected"], p=[0.6, 0.2, 0.2])}"
+        """
+
+
+def processors() -> float:
+    """Processor seconds of this process and of its children that have ended."""
+    return sum(os.times()[:4])
+
+
+def answers() -> str:
+    """The twenty targets by `design`, beside what the version before answered first took of them."""
+    rows = []
+    with open(BEFORE, encoding="utf-8") as file:
+        for before in csv.DictReader(file):
+            start, cost, first = time.perf_counter(), processors(), dict[str, float]()
+
+            def answered(got: Synthesis) -> None:
+                first.update(s=time.perf_counter() - start, cost=processors() - cost)
+
+            got = design(parse_target(asked(int(before["target"])), "t"), answered=answered)
+            end, then = time.perf_counter() - start, before["half_width"]
+            shown = (before["processor_s"], f"{first['cost']:.3g}", f"{first['s']:.3g}", before["end_s"])
+            widths = [f"{100 * float(w):.4g}" if w else "" for w in (then, got.found.half_width)]
+            rows.append((before["target"], *shown, f"{end:.3g}", *widths, "yes" if got.met else "no"))
+    return lines(HEADS, rows)
+
+
 if __name__ == "__main__":
-    tables = {"searches": searches, "loop": loop, "yields": yields, "virtual builds": virtual_builds}
+    tables = {
+        "answers": answers,
+        "searches": searches,
+        "loop": loop,
+        "yields": yields,
+        "virtual builds": virtual_builds,
+    }
     raise SystemExit(write_tables(__doc__, tables))

@@ -19,7 +19,7 @@ from tactcad.fem.elements import end_load, fixed_unknowns, solve_plane
 from tactcad.fem.fem_ladder import RATE, richardson
 from tactcad.fem.mapped_mesh import PlaneMesh, plane_mesh
 from tactcad.fem.shape import ElementShape, reference_shape
-from tactcad.mechanics import beams
+from tactcad.mechanics.rungs import beams
 from tactcad.mechanics.section import REFERENCE, HingeSection
 
 THICKNESSES = (0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5)  # mm: least that a file may hold to twice the usual

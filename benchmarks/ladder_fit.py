@@ -28,10 +28,11 @@ from samples import BOX, GRIDS, LEAST_HEIGHT, SEEDS, Columns, joined, section, t
 from scipy.optimize import least_squares
 
 from tactcad import __version__
-from tactcad.mechanics import accuracy, plane, solid, strain, validity
+from tactcad.mechanics import accuracy, strain, validity
 from tactcad.mechanics.accuracy import CANDIDATES, Candidate
-from tactcad.mechanics.plane import compliance_by
-from tactcad.mechanics.register import REGISTER
+from tactcad.mechanics.register import rungs
+from tactcad.mechanics.rungs import plane, solid
+from tactcad.mechanics.rungs.plane import compliance_by
 from tactcad.mechanics.section import HingeSection
 
 Array = NDArray[np.float64]
@@ -248,7 +249,7 @@ def _errors(data: dict, rows: Columns, side: str, strains: bool) -> dict[str, di
     flat = plane.parts(s, k["root"])
     errors = {
         f"{rung.name}, against plane elements": 1.0 / (rung.compliance(s, data) * K2) - 1.0
-        for rung in REGISTER
+        for rung in rungs().values()
         if rung.compliance and not rung.fitted
     }
     errors["plane, against plane elements"] = 1.0 / (flat.whole * K2) - 1.0
@@ -359,11 +360,11 @@ def candidate_errors(columns: Columns, ladder_data: dict) -> Errors:
     truth = plane * columns["width_factor"]
     errors = {
         rung.name: np.abs(1.0 / (rung.compliance(s, ladder_data) * truth) - 1.0)
-        for rung in REGISTER
+        for rung in rungs().values()
         if rung.compliance
     }
     flat = np.abs(1.0 / (compliance_by(s, ladder_data) * plane) - 1.0)
-    for rung in REGISTER:
+    for rung in rungs().values():
         if rung.compliance and "width" in rung.fitted:
             errors[rung.name] = np.fmax(errors[rung.name], flat)
     errors["fem-plane"] = np.abs(plane / truth - 1.0)
@@ -380,7 +381,7 @@ def closed_form_seconds(ladder_data: dict, repeats: int = 7) -> dict[str, tuple[
     many = section(drawn.draw_box(200, seed=0)).rows(np.arange(TIMED) % 200)
     one = many.rows(0)
     seconds = {}
-    for rung in REGISTER:
+    for rung in rungs().values():
         if form := rung.compliance:
             call, table = (min(_seconds(form, s, ladder_data) for _ in range(repeats)) for s in (one, many))
             seconds[rung.name] = (call, table / TIMED)

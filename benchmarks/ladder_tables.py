@@ -13,7 +13,7 @@ from tables import lines, write_tables
 from tactcad.mechanics import ladder, strain
 from tactcad.mechanics.accuracy import CANDIDATES, accuracy_data, zone_name
 from tactcad.mechanics.constants import ladder_data, strain_data
-from tactcad.mechanics.register import REGISTER
+from tactcad.mechanics.register import rungs
 from tactcad.mechanics.section import REFERENCE, HingeSection
 
 # per cent at 2 N, by arm length in mm: the paper's finite-element study
@@ -34,7 +34,7 @@ def errors() -> str:
     """Of every closed form over the promised box, on designs that the fit has not seen."""
     report = ladder_data()["report"]["relative_error"]["held out, box"]
     rows = []
-    for rung in (rung for rung in REGISTER if rung.compliance):
+    for rung in (rung for rung in rungs().values() if rung.compliance):
         against = f"{rung.against} elements"
         rows.append((rung.name, against, *_both(report, f"{rung.name}, against {against}")))
     return lines(f"rung | against converged | {BOTH}", rows)
@@ -51,7 +51,7 @@ def beyond() -> str:
     """Over the whole range in which a rung answers, mostly in its corners, on designs that the fit has not
     seen."""
     report = ladder_data()["report"]["relative_error"]["held out, corners"]
-    fitted = (rung for rung in REGISTER if rung.fitted)
+    fitted = (rung for rung in rungs().values() if rung.fitted)
     rows = [(r.name, *_both(report, f"{r.name}, against {r.against} elements")) for r in fitted]
     return lines(f"rung | {BOTH}", rows)
 

@@ -22,7 +22,7 @@ from measuring import BENCHMARKS
 from tables import filled, lines, markdown
 
 from tactcad.design.messages import InputError
-from tactcad.mechanics.register import BY_NAME
+from tactcad.mechanics.register import rungs
 from tactcad.report.report import sig
 
 REFERENCE = "benchmarks/results/reference.json"
@@ -55,7 +55,7 @@ def choice(result: dict) -> str:
 
     shown: list[tuple[str, ...]] = []
     for r in rows("rungs"):
-        error, when = f"{sig(100 * r['solid worst'], 2)} %", BY_NAME[r["rung"]].when
+        error, when = f"{sig(100 * r['solid worst'], 2)} %", rungs()[r["rung"]].when
         shown.append(("rung, per element", f"`{r['rung']}`", error, duration(r["seconds"]) + " |", when))
     for r in rows("tessellation"):
         when = TESSELLATION.get(r["angular"])

@@ -7,11 +7,11 @@ import json
 import numpy as np
 import pytest
 import samples
+from exact_ladder import section
 from ladder_fit import main
 
-from tactcad.mechanics import plane, solid
 from tactcad.mechanics.constants import ladder_data
-from tactcad.mechanics.section import HingeSection
+from tactcad.mechanics.rungs import plane, solid
 
 
 @pytest.fixture(scope="module")
@@ -25,19 +25,8 @@ def test_command_gives_the_shipped_constants_again(tmp_path, capsys):
     again, data = json.loads((tmp_path / "ladder.json").read_text()), ladder_data()
     assert again["range"] == data["range"]
     rng = np.random.default_rng(1)
-    s = HingeSection(
-        rng.uniform(0.15, 0.4, 200),
-        0.9,
-        rng.uniform(0.1, 0.3, 200),
-        5.0,
-        rng.uniform(1.5, 3, 200),
-        4.0,
-        3.0,
-        0.3,
-        1.0,
-        3.0,
-        True,
-    )
+    t, r, h = (rng.uniform(*ends, 200) for ends in ((0.15, 0.4), (0.1, 0.3), (1.5, 3)))
+    s = section((t, 0.9, r, 5.0, h, 4.0, 3.0, 0.3, 1.0, 3.0), True)
     for group, f in (
         ("root", plane.compliance),
         ("width", lambda s, k: solid.width_factor(s, plane.parts(s), k)),

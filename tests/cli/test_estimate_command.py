@@ -300,24 +300,6 @@ def test_estimates_load_neither_kernel_nor_scipy():
     subprocess.run([sys.executable, "-c", code], check=True, capture_output=True)
 
 
-NEW_RUNG = """
-import dataclasses, sys, tactcad.mechanics.register as register
-new = dataclasses.replace(register.BY_NAME["beam"], name="new")
-register.REGISTER += (new,)
-register.BY_NAME["new"] = new
-from tactcad.cli.main import main
-sys.exit(main(sys.argv[1:]))
-"""
-
-
-@pytest.mark.parametrize("words", ["estimate --model new", "estimate --within 1%"])
-def test_a_rung_whose_errors_are_not_measured_is_refused_in_one_line(words):
-    command = [sys.executable, "-c", NEW_RUNG, *words.split()]
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
-    assert done.returncode == 2 and done.stdout == "" and done.stderr.count("\n") == 1
-    assert done.stderr.startswith("tactcad: rung new of mechanics/register.py: its errors are not measured")
-
-
 def test_help_shows_examples(capsys):
     for command in ("estimate", "size"):
         with pytest.raises(SystemExit) as done:

@@ -195,7 +195,7 @@ def test_twenty_moments_of_each_signal(bench, tmp_path, command):
 
 
 def test_of_a_killed_synthesis_nothing_is_left(tmp_path):
-    """It takes minutes, and its folder comes in one step at its end. After SIGKILL the next run clears up."""
+    """Before the answer nothing; the answer comes in one step. After SIGKILL the next run clears up."""
     environment(tmp_path)
     (tmp_path / "N.toml").write_text(SMALL, "utf-8")
     case = Case(tmp_path, "design N.toml --out there/out", 0.0, {})
@@ -209,5 +209,7 @@ def test_of_a_killed_synthesis_nothing_is_left(tmp_path):
         assert ended(case, "N", sent, seconds)
         found = lying(tmp_path)
         visible = {path for path in found if not hidden(path)}
-        assert visible <= {"N.toml", "there"}, sent
+        answer = {f"there/out/{name}" for name in ("design.toml", "report.html", "report.json")}
+        assert visible - answer <= {"N.toml", "there"} and visible & answer in (set(), answer), sent
         assert sent == "SIGKILL" or set(found) == visible, (sent, sorted(set(found) - visible))
+        shutil.rmtree(tmp_path / "there" / "out", ignore_errors=True)

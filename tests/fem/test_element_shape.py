@@ -50,7 +50,7 @@ def test_reference_contour_is_read_back(name, mirror):
     s = SECTIONS[name]
     contour = moved(reference_contour(s), 11.0, mirror)
     shape = read(contour, 11.0 + (-6.0 if mirror else 6.0))
-    assert shape.thickness == pytest.approx(0.25, abs=1e-12)
+    assert shape.hinge_thickness == pytest.approx(0.25, abs=1e-12)
     assert outline(shape).area == pytest.approx(contour.area, rel=1e-12)
     assert shape.two_sided == bool(s.two_sided)
     K = solve_plane(shape, 69000.0, 0.33, 3.0, density=1).stiffness
@@ -77,7 +77,7 @@ def test_rounded_coordinates_of_a_fillet_at_its_wall_are_no_deviation(layout):
     other = Layout(replace(d, array=replace(d.array, row_arms=((8.3, 7.3),)), element=hinge))
     place = next(p for p in other.elements if p.arm == 7.3)
     ends = other.clamp_edge, place.hinge_x - place.load_arm
-    assert cut_element(element(other, place).extrusion.outer, *ends).thickness == 0.395
+    assert cut_element(element(other, place).extrusion.outer, *ends).hinge_thickness == 0.395
 
 
 def test_changing_the_contour_alone_changes_the_stiffness(layout):
@@ -109,7 +109,10 @@ def test_changing_the_contour_alone_changes_the_stiffness(layout):
     )
     load_x = place.hinge_x - place.load_arm
     before, after = (cut_element(c, layout.clamp_edge, load_x) for c in (contour, cut))
-    assert (before.thickness, after.thickness) == (pytest.approx(floor), pytest.approx(floor - 0.01))
+    assert (before.hinge_thickness, after.hinge_thickness) == (
+        pytest.approx(floor),
+        pytest.approx(floor - 0.01),
+    )
     ratio = [solve_plane(s, 69000.0, 0.33, 3.0, density=2).stiffness for s in (after, before)]
     # K goes nearly with t^3: the roots take a part with t^2
     assert (1 - 0.01 / floor) ** 3 < ratio[0] / ratio[1] < (1 - 0.01 / floor) ** 2.3

@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 from exact_ladder import condition, section, true_compliance
 
-from tactcad.mechanics import beams, ladder, plane, solid
+from tactcad.mechanics import ladder
+from tactcad.mechanics.rungs import beams, plane, solid
 from tactcad.mechanics.section import REFERENCE
 
 EPS = np.finfo(float).eps

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from tactcad.mechanics import ladder, strain
-from tactcad.mechanics.section import HingeSection
+from tactcad.mechanics.section import REFERENCE, HingeSection
 from tactcad.mechanics.strength import (
     back_share,
     deflection_share,
@@ -21,7 +21,15 @@ from tactcad.mechanics.strength import (
 
 
 def section(load_arm: float, arm_height: float = 2.6, body_length: float = 4.0) -> HingeSection:
-    return HingeSection(0.25, 0.88, 0.30, load_arm, arm_height, 3.0, body_length, 0.33, 69000.0, 3.0, False)
+    return REFERENCE.with_(
+        hinge_length=0.88,
+        fillet_radius=0.3,
+        load_arm=load_arm,
+        arm_height=arm_height,
+        body_height=3.0,
+        body_length=body_length,
+        two_sided=False,
+    )
 
 
 @dataclass(frozen=True)

@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 
 from tactcad.design.messages import CheckFailure
-from tactcad.mechanics import plane, strain
+from tactcad.mechanics import strain
 from tactcad.mechanics.constants import ladder_data
+from tactcad.mechanics.rungs import plane
 from tactcad.mechanics.section import REFERENCE
 
 EPS = np.finfo(float).eps

@@ -13,6 +13,7 @@ import zipfile
 from pathlib import Path
 
 import pytest
+from exact_ladder import ORDER, true_compliance
 from variants import TINY_TEXT
 
 from tactcad.design.family import Late, all_families
@@ -237,6 +238,66 @@ def test_a_design_rule_takes_one_file(tree):
         check=False,
     )
     assert asked.returncode and "rule rows_stand_together has no witness: add " in asked.stderr
+
+
+RUNG = """
+from ..register import Rung
+from . import plane
+
+STIFF = Rung("stiff", 8, "the recipe's test", lambda s, data: plane.compliance_by(s, data) / 1.01)
+"""
+
+
+def test_a_rung_takes_one_file_and_data_by_one_command(tree):
+    tree.write("mechanics/rungs/stiff.py", RUNG)
+    assert len(tree.changed) == 1
+    for words in ("estimate --model stiff", "estimate --within 1%"):
+        refused = tree.run(*words.split())
+        assert refused.returncode == 2 and refused.stdout == "" and refused.stderr.count("\n") == 1
+        assert refused.stderr.startswith(
+            "tactcad: rung stiff of mechanics/rungs: its errors are not measured"
+        )
+
+    data = tree.src / "tactcad" / "mechanics" / "data"
+    constants = json.loads((data / "ladder.json").read_text("utf-8"))
+    fit = [sys.executable, HERE.parents[1] / "benchmarks" / "ladder_fit.py", data]
+    subprocess.run(fit, env=os.environ | {"PYTHONPATH": str(tree.src)}, capture_output=True, check=True)
+    measured = json.loads((data / "ladder.json").read_text("utf-8"))
+    assert measured.pop("report") and constants.pop("report") and measured == constants
+
+    def stiffness(model):
+        done = tree.run("estimate", "--model", model, "--json")
+        assert done.returncode == 0, done.stderr
+        return json.loads(done.stdout)["elements"]
+
+    for stiff, plane in zip(stiffness("stiff"), stiffness("plane"), strict=True):
+        assert stiff["stiffness"] == pytest.approx(1.01 * plane["stiffness"], rel=1e-9)
+    within = tree.run("estimate", "--within", "1%", "--json")
+    assert within.returncode == 0, within.stderr
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("A = 1\n", "no Rung is declared in tactcad.mechanics.rungs.lacking"),
+        ("from ..register import Rung\nRUNG = Rung('lacking', 9)\n", "missing 1 required"),
+        ("from ..register import Rung\nRUNG = Rung('lacking', 9, 'never')\n", "a compliance or elements"),
+        ("from .solid import RUNG\n", "two rungs have one name"),
+        (
+            "import dataclasses as d\nfrom . import solid as o\nRUNG = d.replace(o.RUNG, name='lacking')\n",
+            "two rungs have one place",
+        ),
+    ],
+)
+def test_an_incomplete_rung_is_refused_at_import(tree, text, said):
+    tree.write("mechanics/rungs/lacking.py", text)
+    done = tree.run("estimate")
+    assert done.returncode and said in done.stderr.splitlines()[-1]
+
+
+def test_a_rung_without_its_exact_twin_is_asked_for():
+    with pytest.raises(LookupError, match="rung stiff .* tests/exact_ladder.py"):
+        true_compliance("stiff", [1.0] * len(ORDER), True)
 
 
 @pytest.mark.slow  # checks and releases a design by the kernel

@@ -2,23 +2,16 @@
 
 from __future__ import annotations
 
-from itertools import count
-from types import SimpleNamespace
-
 import pytest
 
-from tactcad.costs import grades
 from tactcad.synthesis import synthesise
 
 
-@pytest.fixture(autouse=True)
-def machine_as_published(monkeypatch):
-    """What fits into given seconds does not hang on how busy the machine is that tests."""
-    monkeypatch.setattr(grades, "slowness", lambda: 1.0)
-
-
 @pytest.fixture
-def time_is_over(monkeypatch):
-    """A clock by which any time given is over at once."""
-    clock = count(step=1e4)
-    monkeypatch.setattr(synthesise, "time", SimpleNamespace(perf_counter=lambda: next(clock)))
+def answer_only(monkeypatch):
+    """There is time for the answer, and for nothing beside it."""
+
+    def answer(tasks, *_, **__):
+        return ((n, task.make()) for n, task in enumerate(tasks) if task.name == synthesise.ANSWER)
+
+    monkeypatch.setattr(synthesise, "side_by_side", answer)

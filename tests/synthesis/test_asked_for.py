@@ -70,7 +70,7 @@ def test_a_design_that_its_own_reader_refuses_is_never_accepted():
     target = small()
     (stand,) = stands(target)
     wide = replace(stand, base=replace(stand.base, array=replace(stand.base.array, pitch=50.0, spacer=47.0)))
-    assert refusals(wide.base) == {"array.spacer"}
+    assert list(refusals(wide.base)) == ["array.spacer"]
     best = quick(target, 0.5).found.row
     wide.__dict__["limits"] = (best, best + 1.0)
     got = search(wide, lambda c: c.half_width, within=0.05)
@@ -90,17 +90,16 @@ def test_the_force_resolution_that_the_base_design_wishes_for_limits_the_search(
     got = with_wish(finer)
     assert got.met and told(got) <= finer and not list(check_signals(got.design))
     r = record(with_wish(1e-3))
-    assert not r["met"] and "misses readout.force_resolution" in answer(r)
+    assert r["met"] is False and "misses readout.force_resolution" in answer(r)
 
 
 def test_a_best_design_that_fails_a_slow_check_is_left_for_one_that_passes(monkeypatch):
     elements_of = lambda design: sum(map(len, design.array.row_arms))  # noqa: E731
     too_many = lambda design: [Finding("assembly", "fail", "", (), 0, 1, "")] * (elements_of(design) > 4)  # noqa: E731
     assert elements_of(quick(small(), 0.5).design) > 4
-    for module in ("search", "synthesise"):
-        monkeypatch.setattr(f"tactcad.synthesis.{module}.slow_failures", too_many)
+    monkeypatch.setattr("tactcad.synthesis.search.slow_failures", too_many)
     got = quick(small(), 0.5)
-    assert got.met and elements_of(got.design) == 4 and got.found.refused["check assembly"] > 0
+    assert got.met and elements_of(got.design) == 4 and "check assembly" in got.found.refused
 
 
 def test_a_base_with_overrides_leaves_none_of_their_origins():

@@ -6,8 +6,6 @@ from __future__ import annotations
 import errno
 import json
 from functools import lru_cache
-from itertools import chain, repeat
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -18,7 +16,7 @@ from tactcad.design.load import parse, read
 from tactcad.design.messages import CheckFailure
 from tactcad.parts.designs import load
 from tactcad.parts.rules import broken_rules
-from tactcad.synthesis import relax, synthesise
+from tactcad.synthesis import relax
 from tactcad.synthesis import target_report as write_module
 from tactcad.synthesis.candidates import order
 from tactcad.synthesis.made_arrays import MadeSensor
@@ -93,35 +91,18 @@ def test_the_least_change_is_the_nearest_that_does():
         assert relax.value_of(eased, name) != relax.value_of(target, name) or name == "stock.hinge_tolerances"
 
 
-def test_the_command_writes_design_and_report(tmp_path, capsys, monkeypatch):
-    """Time ends while what limits the sensor is looked for: that is left out, and all that comes after it."""
+def test_the_command_writes_design_and_report(tmp_path, capsys, answer_only):
     (tmp_path / "small.toml").write_text(SMALL)
     out = tmp_path / "out"
-    clock = chain([0.0, 1.0, 2.0, 3.0], repeat(1e4))
-    monkeypatch.setattr(synthesise, "time", SimpleNamespace(perf_counter=lambda: next(clock)))
-    assert (
-        main(
-            [
-                "design",
-                str(tmp_path / "small.toml"),
-                "--out",
-                str(out),
-                "--within",
-                "5%",
-                "--in",
-                "30",
-                "--json",
-            ]
-        )
-        == 0
-    )
+    args = ["design", str(tmp_path / "small.toml"), "--out", str(out), "--within", "5%"]
+    assert main([*args, "--json"]) == 0
     record = json.loads(capsys.readouterr().out)
     wanted = {"met", "yield", "yield_interval", "object_interval", "binding", "shares", "front"}
-    assert wanted <= set(record) and record["met"] is True
+    assert wanted <= set(record) and record["met"] is None
     del record["budget"]  # what the machine takes is no part of the report
     assert record == json.loads((out / "report.json").read_text())
-    assert record["left_out"] == ["what limits it", "alternatives", "stiffness ratios"]
-    assert record["shares"] and record["binding"] == [] and not (out / "front").exists()
+    assert {"variance shares (1 of 1)", "solid elements (1 of 1)"} <= set(record["left_out"])
+    assert record["shares"] == record["binding"] == [] and not (out / "front").exists()
     written = load(out / "design.toml")  # every rule is tried
     assert written.name == "small"
     low, high = record["yield_interval"]
@@ -159,7 +140,7 @@ def test_a_synthesis_is_written_whole_or_not_at_all(tmp_path, monkeypatch):
 
 
 def test_an_impossible_target_ends_with_1_and_writes_nothing_but_the_best_when_asked(
-    tmp_path, capsys, time_is_over, monkeypatch
+    tmp_path, capsys, answer_only, monkeypatch
 ):
     text = SMALL.replace('name = "small"', 'name = "small"\nhalf_width = 0.5')
     (tmp_path / "no.toml").write_text(text)
@@ -178,7 +159,7 @@ def test_an_impossible_target_ends_with_1_and_writes_nothing_but_the_best_when_a
     assert main(["estimate", str(out / "design.toml")]) == 0
 
 
-def test_where_nothing_fits_the_limit_is_named(tmp_path, capsys, time_is_over):
+def test_where_nothing_fits_the_limit_is_named(tmp_path, capsys, answer_only):
     (tmp_path / "no.toml").write_text(SMALL.replace("pitch = 4", "pitch = 4\nheight = 10"))
     assert (
         main(

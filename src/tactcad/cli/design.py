@@ -5,28 +5,29 @@ from __future__ import annotations
 import argparse
 import json
 import sys
+import time
 from typing import TYPE_CHECKING
 
-from tactcad.design.allowance import Allowance, Picked, pick
-from tactcad.design.messages import CheckFailure
+from tactcad.design.allowance import Allowance, pick
 
 from .parser import add_allowance, add_json, allowance
 
 if TYPE_CHECKING:
     from tactcad.synthesis.synthesise import Synthesis
-    from tactcad.synthesis.target import Target
 
+LATE = 1.1  # of the seconds asked for, from which on an overrun is said
+OVERRUN = "one search, the yield and the report take at least so long here"
 EXAMPLES = """\
   tactcad design hardware/targets/better-array.toml --out better
   tactcad design mine.toml --out mine --within 0.5%    the yield's 95 % interval plus and minus 0.5 % at most
-  tactcad design mine.toml --out mine --in 60   as many arrays as 60 s allow
+  tactcad design mine.toml --out mine --in 20   the best found by then, and what of the report is
   tactcad design mine.toml --out mine --best    the best there is, even where the target is not met
   tactcad schema --target                       every field of a target file
 
-DIR gets design.toml, which every rule accepts, report.html and report.json, and a design file for each
-alternative. The search is never cut short for time. Exit status 1 where the target cannot be met: what it
-misses, and the least change of each single field that would make it possible; nothing is written then but
-with --best."""
+DIR gets the answer first: design.toml, which every rule accepts, report.html and report.json. What limits
+it and a design file for each alternative follow. Without --in the answer takes at most 30 s on two cores,
+and all of it 2 minutes. Exit status 1 if the target cannot be met: what it misses, and the least change of
+each single field that would make it possible; nothing is written then except with --best."""
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -42,38 +43,65 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    from tactcad.costs.grades import arrays_of
+    from tactcad.costs.grades import YIELD, arrays_of, yield_grades
     from tactcad.design.family import family_of
     from tactcad.synthesis import target_report as report
     from tactcad.synthesis.synthesise import ARRAYS
     from tactcad.synthesis.target import read_target
-    from tactcad.synthesis.target_report import answer, refuse_unwritable, write
 
     from .streams import slow_work
 
+    started = time.perf_counter()
     asked = allowance(args)
     target = read_target(args.target)
-    refuse_unwritable(args.out)
-    picked = _picked(target, asked) if asked else None
+    report.refuse_unwritable(args.out)
+    picked = pick(yield_grades(), Allowance(asked.within), YIELD) if asked.within else None
     count = arrays_of(picked.grade) if picked else ARRAYS
+    writing = 0.0
+
+    def is_written(got: Synthesis) -> bool:
+        return got.met or (args.best and got.found.accepted)
+
+    def answered(got: Synthesis) -> None:
+        """The answer as soon as it is there; what the report tells beside it follows."""
+        nonlocal writing
+        before = time.perf_counter()
+        if is_written(got):
+            report.write(got, args.out)
+        if not args.json:
+            r = report.record(got)
+            print(report.answer(r))
+            for bound in r["bounds"]:
+                print(f"  {_bound(bound)}")
+            for field, by in r["room"].items() if got.met else ():
+                print(f"  {field}: {by}")
+            if is_written(got):
+                print(f"{args.out}: written; what is found beside the answer follows", flush=True)
+        writing = time.perf_counter() - before
+
     with slow_work(sys.stderr) as tell:
         design = family_of(target.base).must("variables", "target.base")
-        got = design(target, arrays=count, seconds=asked.seconds, tell=tell)
-    r = report.record(got)
-    written = got.met or (args.best and got.found.accepted)
-    if written:
-        write(got, args.out)
+        seconds = asked.seconds and asked.seconds - (time.perf_counter() - started)
+        got = design(
+            target, arrays=count, seconds=seconds, tell=tell, answered=answered, ending=lambda: writing
+        )
+        if is_written(got):
+            report.complete(got, args.out)
+    took = time.perf_counter() - started
     if args.json:
-        print(json.dumps(r | ({"budget": picked.record()} if picked else {}), indent=1))
+        budget = {"in_s": asked.seconds, "took_s": round(took, 1)} if asked.seconds else {}
+        budget |= picked.record() if picked else {}
+        print(json.dumps(report.record(got) | ({"budget": budget} if budget else {}), indent=1))
     else:
-        print(answer(r))
-        _print(got, r)
+        _print(got, report.record(got))
         if picked:
             print(picked.text())
-        if written:
+        if is_written(got):
             print(f"{args.out}: written\nnext: {_next(args.out)}")
         elif args.best:
             print(f"{args.out}: not written: no candidate keeps every limit and rule, so none is the best")
+    if asked.seconds and took > LATE * asked.seconds:
+        print(f"tactcad: took {took:.3g} s, not {asked.seconds:g} s: {OVERRUN}", file=sys.stderr)
     return 0 if got.met else 1
 
 
@@ -88,15 +116,13 @@ def _next(out: str) -> str:
     )
 
 
-def _picked(target: Target, asked: Allowance) -> Picked:
-    """With the whole report in the time, or else with what of it the search and the yield leave."""
-    from tactcad.costs.grades import YIELD, synthesis_grades
-    from tactcad.synthesis.synthesise import work_ahead
+def _bound(b: dict) -> str:
+    from tactcad.synthesis.target_report import beyond
 
-    try:
-        return pick(synthesis_grades(work_ahead(target, True)), asked, YIELD)
-    except CheckFailure:
-        return pick(synthesis_grades(work_ahead(target, False)), asked, YIELD)
+    return (
+        f"bound: {b['field']} {_text(b['value'])} ({b['whose']}); one step beyond, {_text(b['beyond'])}: "
+        f"half-width {beyond(b)}"
+    )
 
 
 def _print(got: Synthesis, r: dict) -> None:
@@ -111,7 +137,7 @@ def _print(got: Synthesis, r: dict) -> None:
         print(
             f"  possible with {change['field']} {_text(change['needed'])} instead of {_text(change['value'])}"
         )
-    if not r["met"]:
+    if not got.met:
         print(f"  {no_other_change(got)}")
     elif r["left_out"]:
         print(f"  left out of the report for time: {', '.join(r['left_out'])}")

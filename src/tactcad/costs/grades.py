@@ -39,7 +39,7 @@ from tactcad.mechanics.accuracy import (
     expected_error,
     zones,
 )
-from tactcad.mechanics.register import BY_NAME
+from tactcad.mechanics.register import rungs
 from tactcad.mechanics.section import REFERENCE, Array, HingeSection
 from tactcad.mechanics.validity import reasons
 from tactcad.parts.language.description import Part
@@ -122,11 +122,9 @@ def build_grades(design: Design) -> list[Grade]:
     return _built(linear(published()["build"], elements), linear(published()["array"], elements))
 
 
-def synthesis_grades(work: Mapping[str, float]) -> list[Grade]:
-    """`tactcad design` whose search looks at so many candidates and whose yield is found so many times, as
-    `synthesis.work_ahead` counts them."""
-    each = work["yield"] * linear(published()["array tried"], work)
-    return _built(linear(published()["synthesis"], work), each)
+def yield_grades() -> list[Grade]:
+    """`tactcad design` by the arrays made for its yield; its time is the clock's."""
+    return [Grade(grade.name, grade.error, None) for grade in _built(0.0, 0.0)]
 
 
 def arrays_of(grade: Grade) -> int:
@@ -214,7 +212,7 @@ def seconds_each(s: HingeSection) -> dict[Candidate, float]:
     return {
         c: float(power_law(published()["elements"][c.name], *sizes).mean())
         for c in CANDIDATES
-        if not BY_NAME[c.rung].compliance
+        if not rungs()[c.rung].compliance
     }
 
 
@@ -228,7 +226,7 @@ def mesh_sizes(s: HingeSection) -> tuple[Array, Array]:
 
 def _mesh_size(one: HingeSection) -> tuple[int, int]:
     mesh = plane_mesh(reference_shape(one), order=1)
-    return len(mesh.cells), len(layers(float(one.width) / 2.0, mesh.shape.thickness, 1)) - 1
+    return len(mesh.cells), len(layers(float(one.width) / 2.0, mesh.shape.hinge_thickness, 1)) - 1
 
 
 @cache

@@ -16,29 +16,6 @@ from tactcad.parts.array.layout import Layout
 from tactcad.parts.array.stop_gap import overloads
 
 NAME = "strength.csv"
-COLUMNS = (
-    "design",
-    "revision",
-    "element",
-    "part_no",
-    "alloy",
-    "yield_strength_MPa",
-    "arm_mm",
-    "stiffness_N_per_mm",
-    "stiffness_with_tables_modulus_N_per_mm",
-    "rated_force_N",
-    "yield_force_N",
-    "yield_factor_at_rated",
-    "goodman_factor_at_rated",
-    "overload_force_N",
-    "largest_stop_gap_mm",
-    "stop_closes_at_N",
-    "hinge_deflection_at_overload_mm",
-    "rated_deflection_mm",
-    "fillet_stress_at_overload_MPa",
-    "yield_factor_at_overload",
-    "not_known_because",
-)
 
 
 def elements(design: Design) -> dict[str, dict]:
@@ -78,36 +55,36 @@ def strength_bytes(layout: Layout) -> bytes:
     states = overloads(layout)
     rated = np.array([state.rated_force for state in states])
     goodman = strength.goodman(alloy, rated * alloy.yield_strength / yields)
-    text = io.StringIO(newline="")
-    writer = csv.writer(text)
-    writer.writerow(COLUMNS)
+    rows = []
     for i, (place, state) in enumerate(zip(places, states)):
-        figures = (
-            stiffness[i],
-            stiffness[i] * (design.stiffness_factor or 1.0),
-            state.rated_force,
-            yields[i],
-            yields[i] / state.rated_force,
-            goodman[i],
-            design.rating.overload_force,
-            state.gap,
-            state.closing_force,
-            state.deflection,
-            state.rated_deflection,
-            state.stress,
-            state.yield_factor,
-        )
-        writer.writerow(
-            (
-                design.name,
-                design.design.revision,
-                place.designator,
-                element_number(design, place),
-                alloy.name,
-                f"{alloy.yield_strength:g}",
-                f"{place.arm:g}",
-                *("" if state.refused else f"{float(value):.4g}" for value in figures),
-                state.refused,
-            )
-        )
+        figures = {
+            "stiffness_N_per_mm": stiffness[i],
+            "stiffness_with_tables_modulus_N_per_mm": stiffness[i] * (design.stiffness_factor or 1.0),
+            "rated_force_N": state.rated_force,
+            "yield_force_N": yields[i],
+            "yield_factor_at_rated": yields[i] / state.rated_force,
+            "goodman_factor_at_rated": goodman[i],
+            "overload_force_N": design.rating.overload_force,
+            "largest_stop_gap_mm": state.gap,
+            "stop_closes_at_N": state.closing_force,
+            "hinge_deflection_at_overload_mm": state.deflection,
+            "rated_deflection_mm": state.rated_deflection,
+            "fillet_stress_at_overload_MPa": state.stress,
+            "yield_factor_at_overload": state.yield_factor,
+        }
+        row = {
+            "design": design.name,
+            "revision": design.design.revision,
+            "element": place.designator,
+            "part_no": element_number(design, place),
+            "alloy": alloy.name,
+            "yield_strength_MPa": f"{alloy.yield_strength:g}",
+            "arm_mm": f"{place.arm:g}",
+        }
+        row |= {name: "" if state.refused else f"{float(value):.4g}" for name, value in figures.items()}
+        rows.append(row | {"not_known_because": state.refused})
+    text = io.StringIO(newline="")
+    writer = csv.DictWriter(text, list(rows[0]))
+    writer.writeheader()
+    writer.writerows(rows)
     return text.getvalue().encode()

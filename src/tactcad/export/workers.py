@@ -48,6 +48,7 @@ def side_by_side(
     tasks: Sequence[Task],
     hear: Callable[[str], None] = lambda _: None,
     say: Callable[[str], None] = lambda _: None,
+    every: float = EVERY,
 ) -> Generator[tuple[int, Any], None, None]:
     """Make everything, as many at once as there are cores; yields number and result of each that is ready.
 
@@ -58,7 +59,7 @@ def side_by_side(
     tasks
         A single one has a process of its own, too: the kernel would block this one, or crash it.
     hear
-        Receives what is under way, at least every EVERY seconds.
+        Receives what is under way, at least every `every` seconds; what it raises ends the work.
     say
         Receives lines that `relayed` hands on, each once.
 
@@ -84,7 +85,7 @@ def side_by_side(
                 pipe.send(n)
                 busy[pipe] = n, time.monotonic()
                 hear(f"{tasks[n].name} (making)")
-            ready = wait([*busy], EVERY)
+            ready = wait([*busy], every)
             for pipe in [] if ready else [min(busy, key=lambda each: busy[each][1])]:
                 n, since = busy[pipe]
                 hear(f"{tasks[n].name} ({heard.get(pipe) or f'for {time.monotonic() - since:.0f} s'})")

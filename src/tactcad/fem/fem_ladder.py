@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from tactcad.design.messages import CheckFailure
 from tactcad.mechanics import friction
 from tactcad.mechanics.ladder import require_range
+from tactcad.mechanics.register import rungs
 from tactcad.mechanics.section import HingeSection
 
 from .elements import PlaneSolution, SolidSolution, solve_plane, solve_solid
@@ -89,11 +90,10 @@ def converged(
         raise CheckFailure(f"rung {rung} needs rounded slot corners: fillet_radius is 0")
     E, nu, b = float(s.youngs_modulus), float(s.poisson), float(s.width)
     shape = shape or reference_shape(s)
-    return (
-        converged_plane(shape, E, nu, b)
-        if rung == "fem-plane"
-        else converged_solid(shape, E, nu, b, mesh=mesh)
-    )
+    declared = rungs()[rung]
+    assert declared.elements is not None
+    chosen = {} if declared.meshes == (None,) else {"mesh": mesh}
+    return declared.elements(shape, E, nu, b, **chosen)
 
 
 def solve(

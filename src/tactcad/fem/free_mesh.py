@@ -229,7 +229,7 @@ def uncut_compliance(
     walls = sorted({f.wall for f in fillets})
     middle = (shape.low + shape.high) / 2.0
     fine = tuple(
-        Fine((x, middle), shape.thickness / per_thickness) for x in np.linspace(walls[0], walls[-1], 9)
+        Fine((x, middle), shape.hinge_thickness / per_thickness) for x in np.linspace(walls[0], walls[-1], 9)
     )
     mesh = triangle_mesh(outer, holes, fine, LARGEST)
     basis = Basis(mesh, ElementTriP2(), intorder=4)

@@ -161,7 +161,7 @@ def _without_slivers(shape: ElementShape) -> ElementShape:
         if mine is None:
             return block
         half = abs(mine.wall - theirs.wall) / 2.0
-        near = half - mine.radius <= SLIVER * shape.thickness
+        near = half - mine.radius <= SLIVER * shape.hinge_thickness
         return replace(block, **{side: replace(mine, radius=half)}) if near else block
 
     arm, body = shape.arm, shape.body
@@ -186,7 +186,7 @@ def _half(shape: ElementShape, middle: float, upper: bool, density: int, order: 
     fillets = [(b, b.slot_corner(upper)) for b in (shape.arm, shape.body)]
     centre = sum(f.wall for _, f in fillets) / 2.0
     arm_direction = 1.0 if shape.arm.end > shape.body.end else -1.0
-    column = COLUMN * shape.thickness
+    column = COLUMN * shape.hinge_thickness
     to_arm, to_body = (max(0.0, abs(f.wall - centre) - f.radius) for _, f in fillets)
     straight = to_arm + to_body > 0.0
     steps, finest = density * order, NEAR * min(f.radius for _, f in fillets)

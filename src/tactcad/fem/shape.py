@@ -59,7 +59,7 @@ class ElementShape:
     body: Block
 
     @property
-    def thickness(self) -> float:
+    def hinge_thickness(self) -> float:
         return self.high - self.low
 
     @property

@@ -139,7 +139,7 @@ class AcrossSpace:
 
     @classmethod
     def of(cls, mesh: PlaneMesh, half_width: float, density: int, order: int) -> AcrossSpace:
-        ends = layers(half_width, mesh.shape.thickness, density)
+        ends = layers(half_width, mesh.shape.hinge_thickness, density)
         return cls(
             np.interp(np.arange(order * (len(ends) - 1) + 1) / order, np.arange(len(ends)), ends), order
         )

@@ -28,7 +28,6 @@ from tactcad.report.figures import Figure, aligned
 from .array_estimate import ELEMENT, ElementEstimate, estimate_sections, material_lines, material_record
 from .inspection_sheet import Reading
 
-THICKNESS = "hinge thickness"
 NO, ARM, K, STRAIN, RATED = ELEMENT.some("number", "arm", "stiffness", "gauge_strain", "rated_force")
 COLUMNS = (
     (NO.heading, NO.unit),
@@ -193,7 +192,7 @@ def report(design: Design, rung: str, rows: Sequence[AsMade]) -> str:
 
 def _cells(row: AsMade) -> list[str]:
     made, nominal = row.made, row.nominal
-    t = next(r for r in row.readings if r.dimension.name == THICKNESS)
+    t = next(r for r in row.readings if r.dimension.enters == "hinge_thickness")
 
     def ranged(figure: Figure) -> list[str]:
         ends = [figure.written(end) for end in present(row.intervals[figure.name])]

@@ -22,7 +22,7 @@ import numpy as np
 from tactcad.design.messages import CheckFailure, InputError
 
 from . import validity
-from .register import BY_NAME, REGISTER
+from .register import rungs
 from .section import Array, HingeSection
 
 MEASURED_FOR = "solid"  # the rung whose range is the envelope: its sample is where errors were measured
@@ -43,7 +43,7 @@ class Candidate:
 
 # In the order of the work per element: operations of the closed forms, unknowns of the finite elements. An
 # order by measured time would put the finer of two meshes first whenever one run was disturbed.
-CANDIDATES = tuple(Candidate(rung.name, mesh) for rung in REGISTER for mesh in rung.meshes)
+CANDIDATES = tuple(Candidate(rung.name, mesh) for rung in rungs().values() for mesh in rung.meshes)
 
 
 @dataclass(frozen=True)
@@ -63,7 +63,7 @@ def accuracy_data() -> dict:
     measured = set.intersection(*(set(zone["promised"]) for zone in data["zones"]))
     for name in (c.name for c in CANDIDATES if c.name not in measured):
         raise InputError(
-            f"rung {name} of mechanics/register.py",
+            f"rung {name} of mechanics/rungs",
             "its errors are not measured",
             legal="mechanics/data as `python benchmarks/ladder_fit.py src/tactcad/mechanics/data` writes it",
         )
@@ -172,7 +172,7 @@ def expected_error_of(s: HingeSection, rung: str, mesh: int | None = None) -> Ar
     Array
         Of the section's shape.
     """
-    return expected_error(s, Candidate(rung, mesh or BY_NAME[rung].meshes[0]))
+    return expected_error(s, Candidate(rung, mesh or rungs()[rung].meshes[0]))
 
 
 def stated(error: float) -> str:

@@ -13,15 +13,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from tactcad.design.messages import CheckFailure
-from tactcad.mechanics import ladder
 
 from . import friction, validity
-from .register import BY_NAME, REGISTER
+from .register import rungs
 from .section import Array, HingeSection
 
-CLOSED_FORMS = tuple(rung.name for rung in REGISTER if rung.compliance)
-FITTED = tuple(rung.name for rung in REGISTER if rung.fitted)  # they know the fillets and the hinge's roots
-FINITE_ELEMENTS = tuple(rung.name for rung in REGISTER if not rung.compliance)
+CLOSED_FORMS = tuple(name for name, rung in rungs().items() if rung.compliance)
+FITTED = tuple(name for name, rung in rungs().items() if rung.fitted)  # they know the fillets and the roots
+FINITE_ELEMENTS = tuple(name for name, rung in rungs().items() if rung.elements)
 RUNGS = CLOSED_FORMS + FINITE_ELEMENTS
 DEFAULT_RUNG = "solid"
 
@@ -103,7 +102,7 @@ def compliance(s: HingeSection, rung: str) -> Array:
 
     Friction is left out, and the rung's range is not checked.
     """
-    form = BY_NAME[rung].compliance
+    form = rungs()[rung].compliance
     if form is None:
         raise ValueError(f"{rung} is no closed form")
     return form(s, None)
@@ -124,7 +123,7 @@ def _stiffness(s: HingeSection, rung: str) -> Array:
 STEP = 1e-5  # relative; central differences then err by 1e-9 of the exponent
 
 
-def elasticity(s: HingeSection, parameter: str, rung: str = ladder.DEFAULT_RUNG) -> Array:
+def elasticity(s: HingeSection, parameter: str, rung: str = DEFAULT_RUNG) -> Array:
     """Relative change of stiffness per relative change of a parameter: dln K/dln p.
 
     Parameters
@@ -146,10 +145,10 @@ def elasticity(s: HingeSection, parameter: str, rung: str = ladder.DEFAULT_RUNG)
     CheckFailure
         Where a design is out of the rung's range; the steps beside it may lie just outside.
     """
-    ladder.require_range(s, rung)
+    require_range(s, rung)
     value = getattr(s, parameter)
     moved = (s.with_(**{parameter: value * (1.0 + sign * STEP)}) for sign in (1.0, -1.0))
-    up, down = (friction.factor(m) / ladder.compliance(m, rung) for m in moved)
+    up, down = (friction.factor(m) / compliance(m, rung) for m in moved)
     return np.log(up / down) / (2.0 * STEP)
 
 
@@ -160,7 +159,7 @@ SEARCHED = {
 GRID = 4001  # points, by logarithm, on which the rung's range is looked for
 
 
-def size(s: HingeSection, stiffness: float, parameter: str, rung: str = ladder.DEFAULT_RUNG) -> float:
+def size(s: HingeSection, wanted: float, parameter: str, rung: str = DEFAULT_RUNG) -> float:
     """The hinge thickness or length that gives a stiffness, mm.
 
     Stiffness grows with thickness and falls with length, so there is at most one answer.
@@ -169,8 +168,8 @@ def size(s: HingeSection, stiffness: float, parameter: str, rung: str = ladder.D
     ----------
     s
         One design (scalars); its own value of the parameter is not used.
-    stiffness
-        Wanted at the tip, N/mm.
+    wanted
+        Stiffness at the tip, N/mm.
     parameter
         "hinge_thickness" or "hinge_length".
     rung
@@ -183,21 +182,19 @@ def size(s: HingeSection, stiffness: float, parameter: str, rung: str = ladder.D
     """
     low, high = SEARCHED[parameter]
     values = np.geomspace(low, high, GRID)
-    result = ladder.evaluate(s.with_(**{parameter: values}), rung)
+    result = evaluate(s.with_(**{parameter: values}), rung)
     if not result.valid.any():
         raise CheckFailure(f"no {parameter} lies in the range of rung {rung}: {result.reason[GRID // 2]}")
     reached, reachable = values[result.valid], result.stiffness[result.valid]
-    if not reachable.min() <= stiffness <= reachable.max():
+    if not reachable.min() <= wanted <= reachable.max():
         raise CheckFailure(
-            f"{stiffness:g} N/mm is out of reach: with {parameter} from {reached[0]:.3g} to "
+            f"{wanted:g} N/mm is out of reach: with {parameter} from {reached[0]:.3g} to "
             f"{reached[-1]:.3g} mm, the range of rung {rung}, "
             f"stiffness goes from {reachable.min():.4g} to {reachable.max():.4g} N/mm"
         )
-    at = np.flatnonzero(np.diff(np.sign(reachable - stiffness)) != 0)[0] if reachable[0] != stiffness else 0
+    at = np.flatnonzero(np.diff(np.sign(reachable - wanted)) != 0)[0] if reachable[0] != wanted else 0
     return _bisect(
-        lambda v: float(ladder.stiffness(s.with_(**{parameter: v}), rung)) - stiffness,
-        reached[at],
-        reached[at + 1],
+        lambda v: float(stiffness(s.with_(**{parameter: v}), rung)) - wanted, reached[at], reached[at + 1]
     )
 
 

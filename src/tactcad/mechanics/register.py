@@ -1,28 +1,35 @@
-"""The rungs of the model ladder, each registered once, in the order of the work they take.
+"""A rung of the model ladder: declared once, in a module of its own.
 
-Every list of rungs elsewhere is derived from this one. A new closed form is a file with its compliance and an
-entry in `REGISTER`; `benchmarks/ladder_fit.py` then measures its errors (data/ladder.json,
-data/accuracy.json).
+Every module in mechanics/rungs declares one or more, each a `Rung`; nothing lists them, and every list of
+rungs elsewhere is derived from them. A module without, a declaration that lacks something, or two of one name
+or place are refused when they are imported. `benchmarks/ladder_fit.py` measures their errors
+(data/ladder.json, data/accuracy.json).
 """
 
 from __future__ import annotations
 
+import pkgutil
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache
+from importlib import import_module
 from typing import Literal
 
-from . import beams, plane, solid
+from tactcad.design.family import Late
+
 from .section import Array, HingeSection
 
 
 @dataclass(frozen=True)
 class Rung:
-    """A model of the hinge's stiffness.
+    """A model of the hinge's stiffness: a closed form, or elements.
 
     name             as `--model` takes it
+    place            among the rungs, by the work that they take
     when             what it is good for, in the benchmarks' table
     compliance       tip compliance (mm/N) by a closed form, from the constants passed in or else the shipped
-                     ones; None for finite elements, which tactcad.fem solves by the rung's name
+                     ones
+    elements         (shape, E, nu, width, and `mesh` where there is a choice) to `fem_ladder.Converged`
     fitted           which samples its constants were fitted on, whose range therefore bounds it: "plane", and
                      "width" for solid elements; empty where nothing is fitted
     constant_moment  whether the leaf's moment is taken as the same along the slot
@@ -31,11 +38,17 @@ class Rung:
     """
 
     name: str
+    place: int
     when: str
     compliance: Callable[[HingeSection, dict | None], Array] | None = None
+    elements: Late | None = None
     fitted: tuple[Literal["plane", "width"], ...] = ()
     constant_moment: bool = False
     meshes: tuple[int | None, ...] = (None,)
+
+    def __post_init__(self) -> None:
+        if callable(self.compliance) == callable(self.elements):
+            raise TypeError(f"rung {self.name}: it must have a compliance or elements, and not both")
 
     @property
     def against(self) -> str:
@@ -45,13 +58,19 @@ class Rung:
         return "solid" if "width" in self.fitted else "plane"
 
 
-REGISTER = (
-    Rung("short", "orders of magnitude, by hand", lambda s, _: beams.short_hinge(s), constant_moment=True),
-    Rung("beam", "to see what beams alone explain", lambda s, _: beams.beam(s)),
-    Rung("section", "notches with r/t far above 1", lambda s, _: beams.section_integral(s)),
-    Rung("plane", "thin sheet; to compare with plane models", plane.compliance_by, ("plane",)),
-    Rung("solid", "design: the default", solid.compliance_by, ("plane", "width")),
-    Rung("fem-plane", "a contour of your own, in plane stress"),
-    Rung("fem-solid", "the reference", meshes=(2, 3)),
-)
-BY_NAME = {rung.name: rung for rung in REGISTER}
+@cache
+def rungs() -> dict[str, Rung]:
+    """Every rung by name, in the order of the work they take."""
+    from . import rungs as folder
+
+    found: list[Rung] = []
+    for _, name, _ in pkgutil.iter_modules(folder.__path__):
+        module = import_module(f"{folder.__name__}.{name}")
+        if not (own := [r for r in vars(module).values() if isinstance(r, Rung)]):
+            raise TypeError(f"no Rung is declared in {module.__name__}")
+        found += own
+    found.sort(key=lambda rung: rung.place)
+    for attribute in ("name", "place"):
+        if len({getattr(rung, attribute) for rung in found}) < len(found):
+            raise TypeError(f"two rungs have one {attribute}, of {', '.join(rung.name for rung in found)}")
+    return {rung.name: rung for rung in found}

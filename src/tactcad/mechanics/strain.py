@@ -17,9 +17,10 @@ import numpy as np
 
 from tactcad.design.messages import CheckFailure
 
-from . import friction, ladder, plane, validity
+from . import friction, ladder, validity
 from .constants import by_sides, strain_data
-from .register import BY_NAME
+from .register import rungs
+from .rungs import plane
 from .section import Array, HingeSection
 
 Constants = plane.Constants
@@ -85,7 +86,7 @@ def peak(s: HingeSection, force: Array | float, rung: str = ladder.DEFAULT_RUNG)
     if rung in ladder.FITTED:
         factor: Array | float = fillet_factor(s)
     else:
-        factor = 1.0 if BY_NAME[rung].constant_moment else 1.0 + s.straight_length / 2.0 / s.load_arm
+        factor = 1.0 if rungs()[rung].constant_moment else 1.0 + s.straight_length / 2.0 / s.load_arm
     return nominal(s, force) * factor * width_reduction(s, rung, "fillet")
 
 
@@ -183,7 +184,7 @@ def width_reduction(s: HingeSection, rung: str, at: str) -> Array | float:
 
     `at` is "grid" or "fillet". K2D/K3D, since strain per deflection hardly changes, times `mid_width`.
     """
-    if "width" not in BY_NAME[rung].fitted:
+    if "width" not in rungs()[rung].fitted:
         return 1.0
     # a leaf longer than wide curls no more than one as long as wide, up to which the polynomial was fitted
     curled = s.with_(hinge_length=np.minimum(s.hinge_length, s.width))

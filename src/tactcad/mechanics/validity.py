@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import lru_cache, reduce
 
 import numpy as np
 
@@ -12,7 +12,7 @@ from tactcad.design.text_values import NINE_DIGITS
 
 from . import friction
 from .constants import ladder_data
-from .register import BY_NAME
+from .register import rungs
 from .section import OPTIONAL, REQUIRED, Array, HingeSection
 
 ROUNDING = 1e-12  # a design on a limit is inside, however its ratios are rounded
@@ -53,7 +53,7 @@ def _each(name: str, fields: tuple[str, ...], breaks: Callable[[HingeSection, st
     """A rule that every field has to keep by itself."""
 
     def broken(s: HingeSection) -> np.ndarray:
-        return np.logical_or.reduce(np.broadcast_arrays(*(breaks(s, field) for field in fields)))
+        return reduce(np.logical_or, (breaks(s, field) for field in fields))
 
     return RangeRule(name, broken, fields, breaks)
 
@@ -190,10 +190,10 @@ def _fitted(rung: str) -> tuple[RangeRule, ...]:
     rules += [
         RangeRule(f"{what} for the fit: {name} < {least:g}", _outside(value, least, np.inf), FIELDS[name])
         for name, (what, value, of) in LEAST.items()
-        if of in BY_NAME[rung].fitted
+        if of in rungs()[rung].fitted
         for least in (sampled["least"][name],)
     ]
-    bounding = PLANE_GROUPS | (WIDTH_GROUPS if "width" in BY_NAME[rung].fitted else {})
+    bounding = PLANE_GROUPS | (WIDTH_GROUPS if "width" in rungs()[rung].fitted else {})
     for name, value in bounding.items():
         low, high = sampled["groups"][name]
         rules.append(
@@ -218,7 +218,7 @@ def _outside(
 
 def rules(rung: str) -> tuple[RangeRule, ...]:
     """The rung's rules in the order in which they are looked at."""
-    return GEOMETRY + _fitted(rung) if BY_NAME[rung].fitted else GEOMETRY
+    return GEOMETRY + _fitted(rung) if rungs()[rung].fitted else GEOMETRY
 
 
 def broken_rules(s: HingeSection, rung: str) -> dict[str, np.ndarray]:
@@ -229,9 +229,12 @@ def broken_rules(s: HingeSection, rung: str) -> dict[str, np.ndarray]:
     dict of str to ndarray of bool
         By the rule's name, the mask of the designs that break it, of the section's shape.
     """
-    with np.errstate(all="ignore"):
-        masks = {rule.name: np.broadcast_to(rule.broken(s), s.shape) for rule in rules(rung)}
-    return {name: mask for name, mask in masks.items() if mask.any()}
+    known = s.__dict__.setdefault("broken_rules", {})  # asked again by every formula of the section
+    if rung not in known:
+        with np.errstate(all="ignore"):
+            masks = {rule.name: rule.broken(s) for rule in rules(rung)}
+        known[rung] = {name: np.broadcast_to(mask, s.shape) for name, mask in masks.items() if mask.any()}
+    return known[rung]
 
 
 def within(s: HingeSection, rung: str) -> np.ndarray:

@@ -49,8 +49,8 @@ class Residuals:
     predicted: dict[str, np.ndarray]  # by rung
     rung: str  # the one that explanations and bands use
     residual: np.ndarray  # ln(measured/predicted) of that rung
-    thickness: np.ndarray  # nominal
-    thickness_needed: np.ndarray  # NaN where none within the rung's range does
+    hinge_thickness: np.ndarray  # nominal
+    hinge_thickness_needed: np.ndarray  # NaN where none within the rung's range does
     load_arm: np.ndarray
     load_arm_needed: np.ndarray
     pad_half: float
@@ -78,8 +78,8 @@ class Residuals:
         return float(np.delete(self.residual, self.furthest).std(ddof=1))
 
     @property
-    def thickness_change(self) -> np.ndarray:
-        return self.thickness_needed - self.thickness
+    def hinge_thickness_change(self) -> np.ndarray:
+        return self.hinge_thickness_needed - self.hinge_thickness
 
     @property
     def load_arm_change(self) -> np.ndarray:
@@ -274,7 +274,7 @@ def _place(r: Residuals, band: np.ndarray, i: int) -> str:
 
 
 def _cause(r: Residuals, i: int, array: ArrayModel) -> str:
-    t, dt, dl = r.thickness_needed[i], r.thickness_change[i], r.load_arm_change[i]
+    t, dt, dl = r.hinge_thickness_needed[i], r.hinge_thickness_change[i], r.load_arm_change[i]
     wide = [name for name, half in WIRE_TOLERANCE.items() if abs(dt) <= half]
     thick = (
         f"a hinge of {sig(t)} mm ({dt * 1e3:+.0f} µm, "
@@ -342,7 +342,7 @@ def _explained(r: Residuals, array: ArrayModel) -> ReportTable:
         return Marked(text) if beyond else text
 
     def thicker(i: int) -> Cell:
-        um = r.thickness_change[i] * 1e3
+        um = r.hinge_thickness_change[i] * 1e3
         return change(f"{um:+.1f}", abs(um) > WIRE_TOLERANCE["1 pass"] * 1e3)
 
     def longer(i: int) -> Cell:
@@ -416,7 +416,7 @@ def _needed(r: Residuals) -> Picture:
     with d.panels(1, 2, size=(11.2, 4.2), sharey=True) as (figure, (left, right)):
         for half, shade in zip(WIRE_TOLERANCE.values(), (0.18, 0.28, 0.42)):
             left.axvspan(-half * 1e3, half * 1e3, color=d.BLUE, alpha=shade, lw=0)
-        left.plot(r.thickness_change[order] * 1e3, y, "o", color=d.RED, ms=8)
+        left.plot(r.hinge_thickness_change[order] * 1e3, y, "o", color=d.RED, ms=8)
         left.set_xlabel("change of hinge thickness that gives the measured K, µm")
         left.set_title("hinge thickness alone (bands: wire tolerance, 1, 2–3, 4+ passes)", fontsize=10.5)
         right.axvspan(-r.pad_half, r.pad_half, color=d.BLUE, alpha=0.18, lw=0)

@@ -24,6 +24,7 @@ from tactcad.parts.array.clamp import SQUARE, lean
 from tactcad.parts.array.element import PAD_HEIGHT
 from tactcad.parts.array.hinge_section import hinge_section
 from tactcad.parts.array.layout import Layout
+from tactcad.parts.array.measurements import WAYS
 from tactcad.parts.array.stop_gap import stop_gap
 from tactcad.scenes.requirement import Deviations, DimensionLimits
 
@@ -31,13 +32,11 @@ from .variables import IN_PLAY, MODULUS, SHEET
 
 CUT = 100.0  # stress over yield strength, at most; chosen: whatever is beyond it is gone
 PAD = f"element: {PAD_HEIGHT}"
-# Variables of elements, by the field of HingeSection that each sets.
+# The field of HingeSection that a variable sets; the load arm follows from two others.
 HINGE = {
-    "element: hinge thickness": "hinge_thickness",
-    "element: slot length": "hinge_length",
-    "element: fillet radius": "fillet_radius",
-    "element: arm height": "arm_height",
-    SHEET: "width",
+    SHEET if field == "width" else f"element: {name}": field
+    for name, (field, *_) in WAYS.items()
+    if field not in ("", "load_arm")
 }
 
 

@@ -13,7 +13,7 @@ from tactcad.design.allowance import Allowance, Grade, Picked, pick
 from tactcad.design.messages import CheckFailure, InputError
 from tactcad.mechanics.accuracy import CANDIDATES, MEASURED_FOR, Candidate, accuracy_data, zones
 from tactcad.mechanics.ladder import RUNGS
-from tactcad.mechanics.register import BY_NAME
+from tactcad.mechanics.register import rungs
 from tactcad.mechanics.section import HingeSection
 from tactcad.mechanics.validity import reasons
 from tactcad.parts.array.hinge_section import element_section
@@ -26,7 +26,7 @@ from .designs_taken import designs_taken
 from .measured import CLOSED_FORMS_A_TASK
 from .study import BUILDS, CHECKS, EXPORT, Study
 
-OWN_MESH = tuple(c for c in CANDIDATES if c.mesh == BY_NAME[c.rung].meshes[0])  # a study names no other
+OWN_MESH = tuple(c for c in CANDIDATES if c.mesh == rungs()[c.rung].meshes[0])  # a study names no other
 
 
 def with_allowance(study: Study, asked: Allowance, workers: int) -> tuple[Study, Picked]:
@@ -117,7 +117,7 @@ def _seconds(study: Study, each: dict[Candidate, float], workers: int) -> float:
     kinds = {(p.arm, p.hinge, p.body_length) for n, p in places.items() if n in study.elements}
     one = 0.0
     for rung in measure.rungs:
-        closed = bool(BY_NAME[rung].compliance)
+        closed = bool(rungs()[rung].compliance)
         own = next(c for c in OWN_MESH if c.rung == rung)
         one += len(study.elements) * costs["sweep"]["closed"] if closed else max(len(kinds), 1) * each[own]
     if BUILDS in measure.what:

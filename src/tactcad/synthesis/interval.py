@@ -72,7 +72,8 @@ class Bounds:
 
 def motion(e: Elements, count: Array, x: Array, force: float, loads: int) -> InGrasp:
     """Deflections and forces of elements on separate springs x (N/mm) under `loads` even loads up to `force`
-    (N); `count` says how many there are of each. x broadcasts against (..., elements)."""
+    (N); `count` says how many there are of each. x broadcasts against (..., elements). The one place where a
+    synthesis asks the object's model for forces."""
     share = x / (e.stiffness + x)
     total = (count * e.stiffness * share).sum(axis=-1, keepdims=True)  # N per mm of approach
     load = force * (np.arange(loads) + 1.0) / loads

@@ -100,19 +100,28 @@ class MadeSensor:
         return max(float(np.quantile(widths, share, method="higher")) for widths in made_)
 
     def _built(self, name: Distribution, count: int, wanted: float, seed: int) -> Yield:
-        rng, why, widths, met = np.random.default_rng(seed), dict[str, int](), [], 0
-        for start in range(0, count, AT_ONCE):
-            some = min(AT_ONCE, count - start)
-            lacks, width = self._some(name, some, wanted, rng)
-            for what, bad in lacks.items():
-                why[what] = why.get(what, 0) + int(bad.sum())
-            met += int((~np.logical_or.reduce(list(lacks.values()))).sum())
-            widths.append(width)
-        why = {what: n for what, n in sorted(why.items(), key=lambda item: -item[1]) if n}
-        return Yield(count, met / count, of_share(met, count), name, why, np.concatenate(widths))
+        lacking, widths = self._tried(name, count, seed)
+        met = int((widths <= wanted).sum())
+        lacking = lacking | {"interval too wide": count - met}
+        why = {what: n for what, n in sorted(lacking.items(), key=lambda item: -item[1]) if n}
+        return Yield(count, met / count, of_share(met, count), name, why, widths)
+
+    def _tried(self, name: Distribution, count: int, seed: int) -> tuple[dict[str, int], Array]:
+        """By what arrays lack, how many do; and their half-widths: made once, whatever they are held
+        against."""
+        known = self.__dict__.setdefault("tried", {})
+        if (name, count, seed) not in known:
+            rng, why, widths = np.random.default_rng(seed), dict[str, int](), []
+            for start in range(0, count, AT_ONCE):
+                lacks, width = self._some(name, min(AT_ONCE, count - start), rng)
+                for what, bad in lacks.items():
+                    why[what] = why.get(what, 0) + int(bad.sum())
+                widths.append(width)
+            known[name, count, seed] = why, np.concatenate(widths)
+        return known[name, count, seed]
 
     def _some(
-        self, distribution: Distribution, count: int, wanted: float, rng: np.random.Generator
+        self, distribution: Distribution, count: int, rng: np.random.Generator
     ) -> tuple[dict[str, Array], Array]:
         arrays = Assembled(self.layout, made(self.parts.variables, count, distribution, rng))
         lacks: dict[str, np.ndarray] = {
@@ -133,7 +142,6 @@ class MadeSensor:
         lacks["hinge beyond its rated force"] = (forces > yields).any(axis=1)
         lacks["force on one element"] = (forces > grip.element_force * (1.0 + 1e-9)).any(axis=1)
         width = np.where(np.logical_or.reduce(list(lacks.values())), np.inf, self._half_widths(e, rng))
-        lacks["interval too wide"] = ~(width <= wanted)
         return lacks, width
 
     def softening(

@@ -1,14 +1,19 @@
-"""The search: scipy's differential evolution over whole numbers, closed forms for many candidates at a time.
+"""The search: scipy's differential evolution over whole numbers, closed forms for many candidates at a time;
+then all candidates one or two numbers away from its best, until none of them is better.
 
-What is better: less violation of limits first, then the goal. Only a candidate that would be the best yet is
-made a design and held against every rule; one that a rule refuses is as good as none.
+What is better: less violation of limits first, then the goal. The best is made a design and held against
+every rule. Where one refuses it, the search is done again, and whatever would be the best yet is held against
+them.
 """
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
+from itertools import combinations, product
+from math import inf
 
 import numpy as np
 from scipy.optimize import differential_evolution
@@ -28,9 +33,15 @@ POPULATION = 12  # candidates for each number
 GENERATIONS = 400
 WORTH = 1e-3  # relative; a gain below is not worth holding against the rules again
 FAR = 1e3  # goal of a candidate that violates limits, and on
+BY = (-5, -2, -1, 1, 2, 5)  # steps by which two numbers are moved at once
+FURTHER = (-30, -12, 12, 30)  # and one alone
+DESCENT = 0.4  # of the time, at least, for what follows evolution
+REFUSED = 100  # candidates by rules or checks, after which no more are tried
+LOOKED_BACK = 8  # candidates, where time is over and the best is refused
+SEVERAL = 400  # moves of several numbers, by chance
 
 Goal = Callable[[Candidates], Array]
-Refusals = Callable[[Design], set[str]]
+Refusals = Callable[[Design], dict[str, str]]
 
 
 @dataclass(frozen=True)
@@ -41,7 +52,8 @@ class Found:
     goal          what was made least
     accepted      whether it keeps every limit and every rule
     evaluations   candidates that were looked at
-    refused       by rule or field, how many candidates it refused that would have been the best yet
+    refused       why candidates were refused that would have been the best, by rule, check or field
+    in_time       whether the search came to its own end
     """
 
     candidate: Candidates
@@ -49,7 +61,8 @@ class Found:
     goal: float
     accepted: bool
     evaluations: int
-    refused: dict[str, int]
+    refused: dict[str, str]
+    in_time: bool
 
     @property
     def half_width(self) -> float:
@@ -60,30 +73,31 @@ class Found:
         return realised(self.candidate)
 
 
-def refusals(design: Design) -> set[str]:
-    """Rules that a design breaks, the field that its own file would be refused for, or quick checks that it
-    fails."""
+def refusals(design: Design) -> dict[str, str]:
+    """Why a design is refused: all rules that it breaks, else the quick checks that it fails; or the field
+    that its own file would be refused for."""
     try:
         parse(design_text(design), design.name)
     except InputError as error:
-        return {error.where}
-    broken = {f"rule {finding.check}" for finding in broken_rules(design)}
-    return broken or {f"check {finding.check}" for finding in quick_failures(design)}
+        return {error.where: str(error)}
+    broken = {f"rule {f.check}": f.broken for f in broken_rules(design)}
+    return broken or {f"check {f.check}": f.said for f in quick_failures(design)}
 
 
-def all_refusals(design: Design) -> set[str]:
+def all_refusals(design: Design) -> dict[str, str]:
     """As `refusals`, with the checks that take a second."""
-    return refusals(design) or {f"check {finding.check}" for finding in slow_failures(design)}
+    return refusals(design) or {f"check {f.check}": f.said for f in slow_failures(design)}
 
 
 def search(
     stand: Stand,
     goal: Goal,
     *,
-    rules: Refusals | None = refusals,
+    rules: Refusals | None = all_refusals,
     start: Array | None = None,
+    evolve: bool = True,
     within: float = 1e-4,
-    seed: int = SEED,
+    until: float = inf,
 ) -> Found:
     """The candidate of a stand with the least goal.
 
@@ -94,68 +108,124 @@ def search(
     goal
         To be made least among candidates that keep every limit, (candidates,).
     rules
-        Why a design is refused; None where the best are not held against rules and checks.
+        Why a design is refused; None where the best is not held against rules and checks.
     start
         A candidate's numbers to start from.
+    evolve
+        False where only what lies around `start` is looked at.
     within
-        Spread of the population's goals, relative, at which the search stops: further generations would
+        Spread of the population's goals, relative, at which evolution stops: further generations would
         change the answer by less.
-    seed
-        Of chance.
+    until
+        Of `time.perf_counter`, when the best yet is the answer.
     """
     low, high = stand.limits
     high = np.maximum(low, high)
-    best: dict = {"goal": np.inf, "row": None, "looked": 0, "refused": {}}
-    tried: dict[bytes, bool] = {}
+    refused: dict[str, str] = {}
+    tried: dict[tuple[str, bytes], bool] = {}
+    looked, in_time = 0, True
+    least = (inf, np.rint((low + high) / 2.0))  # goal and numbers of the best, whether it keeps limits or not
+    kept: list[tuple[float, Array]] = []  # of the best that keep them, one after the other
 
-    def keeps_rules(row: Array, rules: Refusals) -> bool:
-        key = np.rint(row).astype(int).tobytes()
+    def over(left: float = 0.0) -> bool:
+        return time.perf_counter() > until - left
+
+    def spent() -> bool:
+        return over() or list(tried.values()).count(False) >= (REFUSED if evolve else REFUSED // 5)
+
+    def keeps(row: Array, held: Refusals) -> bool:
+        key = held.__name__, row.astype(int).tobytes()
         if key not in tried:
-            why = rules(realised(stand.candidates(row[np.newaxis])))
-            for name in why:
-                best["refused"][name] = best["refused"].get(name, 0) + 1
+            why = held(realised(stand.candidates(row[np.newaxis])))
+            refused.update(why)
             tried[key] = not why
         return tried[key]
 
-    def value(numbers: Array) -> Array:
-        rows = numbers.T if numbers.ndim == 2 else numbers[np.newaxis]
-        best["looked"] += len(rows)
+    def value(numbers: Array, held: Refusals | None) -> Array:
+        nonlocal least, looked
+        rows = np.rint(numbers.T if numbers.ndim == 2 else numbers[np.newaxis])
+        looked += len(rows)
         c = stand.candidates(rows)
         with np.errstate(all="ignore"):
             bad, wanted = c.violation, goal(c)
             out = np.where(bad > 0.0, FAR * (1.0 + np.minimum(bad, 1e3)), wanted)
         out = np.where(np.isfinite(out), out, FAR * 1e4)
         for i in np.argsort(out):
-            if out[i] >= FAR or out[i] >= best["goal"] * (1.0 - WORTH if best["row"] is not None else 1.0):
+            if out[i] < least[0]:
+                least = float(out[i]), rows[i]
+            if out[i] >= FAR or (kept and out[i] >= kept[-1][0] * (1.0 - WORTH if held else 1.0)):
                 break
-            if rules and not keeps_rules(rows[i], rules):
+            if held and spent():
+                break
+            if held and not keeps(rows[i], held):
                 out[i] = FAR * 0.9
                 continue
-            best["goal"], best["row"] = float(out[i]), np.rint(rows[i])
+            kept.append((float(out[i]), rows[i]))
             break
         return out
 
-    got = differential_evolution(
-        value,
-        list(zip(low.astype(float), high.astype(float))),
-        integrality=np.ones(len(low), bool),
-        vectorized=True,
-        updating="deferred",
-        polish=False,
-        popsize=POPULATION,
-        maxiter=GENERATIONS,
-        tol=within,
-        # from nowhere "best1bin" was caught up to 24 % above the best of a small problem; from a design
-        # that was best for nearly the same target it is quicker
-        strategy="rand1bin" if start is None else "best1bin",
-        mutation=(0.3, 0.7) if start is None else (0.4, 0.9),
-        recombination=0.8,
-        init="sobol",
-        x0=None if start is None else np.clip(start, low, high),
-        rng=np.random.default_rng(seed),
-    )
-    accepted = best["row"] is not None
-    row = best["row"] if accepted else np.rint(got.x)
-    return Found(
-        stand.candidates(row[np.newaxis]), row, float(got.fun), accepted, best["looked"], best["refused"]
-    )
+    def look(held: Refusals | None) -> None:
+        descent = DESCENT * (until - time.perf_counter())
+
+        def evolved(*_: object, **__: object) -> bool:
+            nonlocal in_time
+            in_time = not over(descent)
+            return not in_time or (held is not None and not kept and spent())
+
+        if evolve or start is None:
+            differential_evolution(
+                value,
+                list(zip(low.astype(float), high.astype(float))),
+                args=(held,),
+                integrality=np.ones(len(low), bool),
+                vectorized=True,
+                updating="deferred",
+                polish=False,
+                callback=evolved,
+                popsize=POPULATION,
+                maxiter=GENERATIONS,
+                tol=within,
+                # from nowhere "best1bin" was caught up to 24 % above the best of a small problem; from a
+                # design that was best for nearly the same target it is quicker
+                strategy="rand1bin" if start is None else "best1bin",
+                mutation=(0.3, 0.7) if start is None else (0.4, 0.9),
+                recombination=0.8,
+                init="sobol",
+                x0=None if start is None else np.clip(start, low, high),
+                rng=np.random.default_rng(SEED),
+            )
+        else:
+            value(np.clip(start, low, high), held)
+        before = inf
+        while not over() and (now := (kept[-1] if kept else least))[0] < before:
+            before = now[0]
+            value(np.unique(np.clip(now[1] + moves(len(low)), low, high), axis=0).T, held)
+
+    every = () if rules is None else (refusals, rules) if rules is not refusals else (rules,)
+    accepted = False
+    for held in (None, *every):
+        if held is refusals is not rules and keeps(kept[-1][1], refusals):
+            continue  # what refuses the best are the slow checks
+        earlier, kept = kept, []
+        look(held)
+        accepted = bool(kept) and (rules is None or keeps(kept[-1][1], rules))
+        if accepted or over() or not (earlier or kept):
+            break
+    if rules and not accepted:  # some of what was best before, the latest first
+        passed = [*earlier, *kept][::-1]
+        some = passed[:: 1 + len(passed) // LOOKED_BACK]
+        kept = next(([one] for one in some if keeps(one[1], rules)), [])
+        accepted = bool(kept)
+    reached, row = kept[-1] if accepted else least
+    candidate = stand.candidates(row[np.newaxis])
+    return Found(candidate, row, reached, accepted, looked, refused, in_time)
+
+
+@lru_cache
+def moves(count: int) -> Array:
+    """Steps from a candidate of so many numbers to those around it, (candidates, numbers)."""
+    unit = np.eye(count)
+    alone = [step * unit for step in (*BY, *FURTHER)]
+    both = [a * unit[i] + b * unit[j] for i, j in combinations(range(count), 2) for a, b in product(BY, BY)]
+    several = np.random.default_rng(SEED).choice((0, 0, 0, *BY), (SEVERAL, count))
+    return np.vstack([*alone, *both, several])

@@ -1,14 +1,16 @@
-"""From a target to a synthesis: the chosen design, how surely it feels, what limits it, and alternatives;
-and how much there is to do for a target, counted before anything is searched."""
+"""From a target to a synthesis: first the answer, the chosen design and the bounds that it lies on, or that
+there is none; then what limits it and alternatives, or the least changes, while there is time."""
 
 from __future__ import annotations
 
+import multiprocessing
+import os
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import closing, suppress
 from dataclasses import dataclass, replace
-from functools import cached_property
-from math import ceil, log2
-from operator import attrgetter
+from functools import cached_property, partial
+from math import inf
 from typing import Any
 
 import numpy as np
@@ -16,33 +18,44 @@ import numpy as np
 from tactcad.checks.check import slow_failures
 from tactcad.design.messages import CheckFailure
 from tactcad.design.tree import Design
+from tactcad.export.workers import Task, side_by_side
 from tactcad.lab import array_estimate
 from tactcad.mechanics.section import Array
 from tactcad.scenes import LeftOut, left_out
 
-from . import relax
+from . import bounds, relax
 from .candidates import Candidates, Stand, origins, stands
 from .interval import coupled_estimate
 from .made_arrays import MadeSensor, Yield
-from .search import FAR, GENERATIONS, POPULATION, Found, Goal, all_refusals, refusals, search
+from .search import FAR, Found, Goal, all_refusals, refusals, search
 from .shares import Share, half_space_shares, variance_shares
 from .target import Target
 
 ARRAYS = 2000  # made of each distribution
+TRIED = 500  # for the least change of a field: the yield's interval is some 2 % either way
 MARGINS = (1.0, 1.1, 1.2, 1.35, 1.5, 1.75, 2.0)  # between wanted and nominal half-width, tried for the yield
 CURVE = 25  # points of the object's range in the report
 RATIOS = (2.0, 4.0, 6.0, 10.0, 16.0, 30.0)  # K_r/K_m; the paper proposes about 10
 PAPERS_RATIO = 10.0
 SAME_RATIO = 0.03  # relative, within which a ratio counts as the asked one
-NEAR = 0.01  # relative gain below which an eased field is not said to limit
-ALTERNATIVES = 9  # searches for the report's front, about
+GAIN = 0.01  # relative gain below which an eased field is not said to limit
 QUICK = 2e-3  # relative; searches beside the answer stop there
-NEAR_SEEDS = (1, 2)  # each such search is made twice, and the better one counts
-
-_narrowest = attrgetter("half_width")  # the goal of searches beside the answer
+# s from the beginning on, where nothing else is asked: the search for the answer, and all before the report;
+# with bounds, yield and report they keep 30 s and 2 minutes.
+SEARCHING, IN_ALL = 20.0, 105.0
+SHARE = 0.4  # of the seconds asked for, for the search
+HEARD = 0.2  # s, between looks at the clock
+ANSWER = "answer"  # what is done for it
+PARTS = (  # of the report, beside the answer
+    "variance shares",
+    "what limits it",
+    "alternatives",
+    "stiffness ratios",
+    "solid elements",
+    "least change",
+)
 
 Tell = Callable[[int, int, str], None]
-GoOn = Callable[[], None]  # called before each search beside the answer; raises TimeIsOver
 
 
 class TimeIsOver(Exception):
@@ -116,11 +129,11 @@ class Synthesis:
                 `target.share` of them keep
     made        its yield
     solid       K of every element by solid elements, N/mm
-    met         whether the target is
+    met         whether the target is, as far as it asks for anything
+    bounds      what the answer lies on
     left_out    parts of the report that there was no time for
-    not_tried   fields whose least change there was no time to search
     unknown     what of the report is not known, and why
-    binding     fields whose easing narrows the interval; None where that was not searched
+    binding     fields whose easing narrows the interval, the bounds apart
     """
 
     target: Target
@@ -128,7 +141,8 @@ class Synthesis:
     wanted: float
     made: Yield
     met: bool
-    binding: tuple[Limit, ...] | None = None
+    bounds: tuple[bounds.Bound, ...] = ()
+    binding: tuple[Limit, ...] = ()
     shares: tuple[Share, ...] = ()
     front: tuple[Alternative, ...] = ()
     ratios: tuple[tuple[float, float], ...] = ()
@@ -136,7 +150,6 @@ class Synthesis:
     solid: tuple[float, ...] = ()
     evaluations: int = 0
     left_out: tuple[str, ...] = ()
-    not_tried: tuple[str, ...] = ()
     unknown: tuple[str, ...] = ()
 
     @cached_property
@@ -148,10 +161,8 @@ class Synthesis:
         """A found candidate as a design of that name."""
         d, wish = found.design, self.target.target
         identity = replace(d.design, name=name, title=wish.title, revision="A")
-        binding = "limits not searched"
-        if self.binding is not None:
-            binding = f"binding: {', '.join(limit.field for limit in self.binding) or 'nothing near'}"
-        return replace(d, design=identity, origin={**d.origin, **origins(self.target.base, d, binding)})
+        on = f"on bounds: {', '.join(b.field for b in self.bounds) or 'none'}"
+        return replace(d, design=identity, origin={**d.origin, **origins(self.target.base, d, on)})
 
     @cached_property
     def sensor(self) -> MadeSensor:
@@ -165,9 +176,9 @@ class Synthesis:
         return float(got.max()) if np.isfinite(got).all() else None
 
     @cached_property
-    def base_cannot(self) -> str:
-        """Why the base design as it is does not bear the target's forces; "" where it does."""
-        return MadeSensor(self.target, self.target.base).cannot_bear
+    def base_breaks(self) -> list[str]:
+        """By what the base design as it is does not meet the target."""
+        return bounds.base_breaks(self.target)
 
     @cached_property
     def scenes_left_out(self) -> list[LeftOut]:
@@ -204,7 +215,15 @@ def goal_of(target: Target, margin: float = 1.0) -> Goal:
     return goal
 
 
-def attempt(target: Target, arrays: int = ARRAYS, within: float = 1e-3) -> Synthesis:
+def attempt(
+    target: Target,
+    arrays: int = ARRAYS,
+    within: float = 1e-3,
+    *,
+    until: float = inf,
+    near: Found | None = None,
+    evolve: bool = True,
+) -> Synthesis:
     """The best design of a target, its yield and whether that meets it; nothing else.
 
     Parameters
@@ -215,16 +234,27 @@ def attempt(target: Target, arrays: int = ARRAYS, within: float = 1e-3) -> Synth
         To be made of each distribution for the yield.
     within
         Relative, by how much more search might change the answer.
+    until
+        Of `time.perf_counter`, when the best yet is taken.
+    near, evolve
+        A candidate of nearly the same target, and whether more is looked at than what lies around it. With
+        one, only what the least change of a field needs is found.
     """
-    looked, best = 0, None
+    looked, best, rules = 0, None, refusals if near else all_refusals
+    arrays = min(arrays, TRIED) if near else arrays
     for margin, some in tries(target):
-        for rules in (refusals, all_refusals):
-            found = [search(s, goal_of(target, margin), rules=rules, within=within) for s in some]
-            looked += sum(one.evaluations for one in found)
-            chosen = min(found, key=lambda f: (not f.accepted, f.goal))
-            if not (chosen.accepted and slow_failures(chosen.design)):
-                break  # else once more, where whatever would be the best yet is held against slow checks too
-        made, wanted = _made(target, chosen, arrays)
+        if best and time.perf_counter() > until:
+            break
+        goal = goal_of(target, margin)
+        found = _together(
+            [
+                partial(_in_turn, s, goal, rules, near, evolve, within, until, len(some) - i)
+                for i, s in enumerate(some)
+            ]
+        )
+        looked += sum(one.evaluations for one in found)
+        chosen = min(found, key=lambda f: (not f.accepted, f.goal))
+        made, wanted = _made(target, chosen, arrays, bool(near))
         met = chosen.accepted and made.share >= target.target.share and chosen.half_width <= wanted
         this = Synthesis(target, chosen, wanted, made, met)
         if best is None or _worth(this) > _worth(best):
@@ -233,6 +263,34 @@ def attempt(target: Target, arrays: int = ARRAYS, within: float = 1e-3) -> Synth
             break
     assert best is not None
     return replace(best, evaluations=looked)
+
+
+def _in_turn(
+    stand: Stand,
+    goal: Goal,
+    rules: Any,
+    near: Found | None,
+    evolve: bool,
+    within: float,
+    until: float,
+    left: int,
+) -> Found:
+    """The search on one of the `left` stands that share the time until then."""
+    now, start = time.perf_counter(), bounds.numbers(near, stand) if near else None
+    until = now + max(until - now, 0.0) * min(1.0, _cores() / left)
+    return search(stand, goal, rules=rules, start=start, evolve=evolve, within=within, until=until)
+
+
+def _cores() -> int:
+    return 1 if multiprocessing.current_process().daemon else len(os.sched_getaffinity(0))
+
+
+def _together(makes: Sequence[Callable[[], Any]]) -> list[Any]:
+    """Side by side; one after the other where this process is one of several itself."""
+    if len(makes) == 1 or _cores() == 1:
+        return [make() for make in makes]
+    done = dict(side_by_side([Task(ANSWER, make) for make in makes]))
+    return [done[n] for n in range(len(makes))]
 
 
 def _worth(got: Synthesis) -> tuple[bool, bool, float, float]:
@@ -253,9 +311,9 @@ def tries(target: Target) -> list[tuple[float, list[Stand]]]:
     ]
 
 
-def _made(target: Target, found: Found, arrays: int) -> tuple[Yield, float]:
+def _made(target: Target, found: Found, arrays: int, only_met: bool) -> tuple[Yield, float]:
     asked = target.target.half_width
-    if not found.accepted:
+    if not found.accepted or (only_met and asked and 100.0 * found.half_width > asked):
         return Yield(0, 0.0, (0.0, 1.0), "normal", {}, np.zeros(0)), (asked or 0.0) / 100.0
     sensor = MadeSensor(target, found.design)
     if asked is not None:
@@ -272,6 +330,8 @@ def design(
     arrays: int = ARRAYS,
     seconds: float | None = None,
     tell: Tell = lambda done, total, what: None,
+    answered: Callable[[Synthesis], object] = lambda got: None,
+    ending: Callable[[], float] = lambda: 0.0,
 ) -> Synthesis:
     """A sensor from a target.
 
@@ -282,10 +342,14 @@ def design(
     arrays
         To be made of each distribution for the yield.
     seconds
-        Time to take; what is not done by then of the report (limits, variance shares, front, ratios) is left
-        out and named. The search and the yield are never cut short.
+        Time to take: the best design found by then, and what of the report is. The bounds and the yield are
+        never left out.
     tell
         Called with (done, total, what comes next).
+    answered
+        Called with the answer, before what the report tells beside it is begun.
+    ending
+        Seconds that are to be left for what the caller does with the result; asked after `answered`.
 
     Returns
     -------
@@ -294,180 +358,154 @@ def design(
         alone would make it possible.
     """
     started = time.perf_counter()
+    tell(0, 1, "searching")
+    searching = SEARCHING if seconds is None else min(SHARE * seconds, max(SEARCHING, seconds / 4.0))
+    got = attempt(target, arrays, until=started + searching)
+    on = _together([partial(bounds.bound, got.found, field) for field in bounds.touched(got.found)])
+    got = replace(got, bounds=tuple(each for each in on if each))
+    if not got.found.in_time:
+        got = replace(
+            got, unknown=(f"the search was ended after {searching:.3g} s: more time may find better",)
+        )
+    tasks = list(_beside(got) if got.met else _changes(got, arrays))
+    answered(_told(got, tasks, {}))
+    until, done = started + (seconds or IN_ALL) - ending(), dict[int, Any]()
 
-    def go_on() -> None:
-        if seconds is not None and time.perf_counter() - started > seconds:
+    def hear(what: str) -> None:
+        tell(len(done), len(tasks), what)
+        if time.perf_counter() > until:
             raise TimeIsOver
 
-    steps: list[tuple[str, Callable[[Synthesis, GoOn], Synthesis]]] = [
-        ("variance shares", _with_shares),
-        ("solid elements", _with_solids),
-        ("what limits it", _with_limits),
-        ("alternatives", _with_front),
-        ("stiffness ratios", _with_ratios),
-    ]
-    tell(0, len(steps) + 1, "searching")
-    got = attempt(target, arrays)
-    if not got.met:
-        return _with_changes(got, arrays, tell, go_on)
-    skipped, unknown = [], []
-    for i, (what, step) in enumerate(steps, start=1):
-        try:
-            go_on()
-            tell(i, len(steps) + 1, what)
-            got = step(got, go_on)
-        except TimeIsOver:
-            skipped.append(what)
-        except CheckFailure as why:
-            unknown.append(f"{what}: not known, because {why}")
-    return replace(got, left_out=tuple(skipped), unknown=tuple(unknown))
+    with suppress(TimeIsOver), closing(side_by_side(tasks, hear, every=HEARD)) as ready:
+        for n, result in ready:
+            done[n] = result
+            hear(tasks[n].name)
+    return _told(got, tasks, done)
 
 
-def _with_shares(got: Synthesis, _: GoOn) -> Synthesis:
-    return replace(got, shares=tuple(variance_shares(got.sensor)))
+def _told(got: Synthesis, tasks: Sequence[Task], done: dict[int, Any]) -> Synthesis:
+    """The answer with what was found beside it, in the order of the tasks whichever came first."""
+    part = [task.name.partition(": ")[0] for task in tasks]
+    found: dict[str, list] = {name: [] for name in part}
+    for n in sorted(done):
+        found[part[n]] += [done[n]] if done[n] else []
+    left = {name: sum(part[n] == name and n not in done for n in range(len(tasks))) for name in found}
+    told = {name: found.get(name, []) for name in PARTS}
+    chosen = Alternative("chosen", "the design chosen", got.found)
+    solid = told["solid elements"][0] if told["solid elements"] else ()
+    return replace(
+        got,
+        shares=told["variance shares"][0] if told["variance shares"] else (),
+        solid=() if isinstance(solid, str) else solid,
+        binding=tuple(sorted(told["what limits it"], key=lambda limit: -limit.gain)),
+        front=(chosen, *told["alternatives"]) if told["alternatives"] else (),
+        ratios=tuple(told["stiffness ratios"]),
+        changes=tuple(told["least change"]),
+        left_out=tuple(f"{name} ({count} of {part.count(name)})" for name, count in left.items() if count),
+        unknown=(*got.unknown, solid) if isinstance(solid, str) else got.unknown,
+    )
 
 
-def _with_solids(got: Synthesis, _: GoOn) -> Synthesis:
-    rows = array_estimate.estimate(got.sensor.layout, "fem-solid")
-    return replace(got, solid=tuple(row.stiffness for row in rows))
-
-
-def _search_near(target: Target, found: Found, goal: Goal | None = None) -> Found:
-    """The search on the found one's stand for another target, started from it."""
-    here = found.candidate.stand
-    same = [s for s in stands(target) if _same_stand(s, here)] or stands(target)
-    near = [
-        search(
-            s,
-            goal or goal_of(target),
-            start=found.row if s.kinds == here.kinds else None,
-            within=QUICK,
-            seed=seed,
-        )
-        for s in same
-        for seed in NEAR_SEEDS
-    ]
-    return min(near, key=lambda f: (not f.accepted, f.goal))
-
-
-def _same_stand(one: Stand, other: Stand) -> bool:
-    """Whether all is the same but tolerances; or one has more kinds of element than the other's target
-    allows."""
-    alike = one.base.sheet, one.base.material.alloy
-    kinds = one.kinds == other.kinds or one.kinds > other.target.elements.kinds
-    return kinds and alike == (other.base.sheet, other.base.material.alloy)
-
-
-def _with_limits(got: Synthesis, go_on: GoOn) -> Synthesis:
-    """Fields whose easing by a step narrows the interval, the most helpful first."""
-    width, limits = got.found.half_width, []
+def _beside(got: Synthesis) -> Iterator[Task]:
+    """What the report tells beside the answer, what matters most first."""
+    on = (*relax.NOT_NARROWING, *(b.field for b in got.bounds))
+    yield Task("variance shares", lambda: tuple(variance_shares(got.sensor)))
     for name, other in relax.eased(got.target):
-        if name in relax.NOT_NARROWING:
-            continue
-        go_on()
-        found = _search_near(other, got.found, _narrowest)
-        if found.accepted and found.half_width < width * (1.0 - NEAR):
-            gain = 1.0 - found.half_width / width
-            values = relax.value_of(got.target, name), relax.value_of(other, name)
-            limits.append(Limit(name, *values, found.half_width, gain))
-    return replace(got, binding=tuple(sorted(limits, key=lambda limit: -limit.gain)))
+        if name not in on:
+            yield Task(f"what limits it: {name}", partial(_limit, got, name, other))
+    yield from _front(got)
+    for ratio in RATIOS:
+        yield Task(f"stiffness ratios: {ratio:g}", partial(_ratio, got, ratio))
+    yield Task("solid elements", partial(_solid, got))
 
 
-def _with_front(got: Synthesis, go_on: GoOn) -> Synthesis:
+def _solid(got: Synthesis) -> tuple[float, ...] | str:
+    """K of every element, or why it is not known."""
+    try:
+        return tuple(row.stiffness for row in array_estimate.estimate(got.sensor.layout, "fem-solid"))
+    except CheckFailure as why:
+        return f"solid elements: not known, because {why}"
+
+
+def _near(target: Target, found: Found, goal: Goal = bounds.narrowest) -> Found:
+    """The best for nearly the same target: around the found one; from anywhere where nothing is there."""
+    some = bounds.near(target, found)
+    for evolve in (False, True):
+        near = [
+            search(s, goal, rules=refusals, start=bounds.numbers(found, s), evolve=evolve, within=QUICK)
+            for s in some
+        ]
+        best = min(near, key=lambda f: (not f.accepted, f.goal))
+        if best.accepted:
+            break
+    return best
+
+
+def _limit(got: Synthesis, name: str, other: Target) -> Limit | None:
+    """The field, where easing it by a step narrows the interval."""
+    width, found = got.found.half_width, _near(other, got.found)
+    if not found.accepted or found.half_width >= width * (1.0 - GAIN):
+        return None
+    values = relax.value_of(got.target, name), relax.value_of(other, name)
+    return Limit(name, *values, found.half_width, 1.0 - found.half_width / width)
+
+
+def _front(got: Synthesis) -> Iterator[Task]:
     """Designs with fewer elements, in less room, with looser tolerances, each as accurate as can be."""
     target, c = got.target, got.found.candidate
     wish = target.with_("target.half_width", None)
-    entries = [Alternative("chosen", "the design chosen", got.found)]
+
+    def entry(name: str, what: str, path: str, value: Any, total: int | None = None) -> Task:
+        def make() -> Alternative | None:
+            found = _near(wish.with_(path, value), got.found)
+            fits = found.accepted and total in (None, int(found.candidate.total[0]))
+            return Alternative(name, what, found) if fits and not slow_failures(found.design) else None
+
+        return Task(f"alternatives: {name}", make)
+
     most = int(target.room.elements[1])
     for n in sorted({2, 4, 6, 8, most // 2, most, 2 * most}):
         if max(2, 2 * target.elements.of_a_kind) <= n != int(c.total[0]):
-            go_on()
             low = min(int(target.room.elements[0]), n)
-            found = _search_near(wish.with_("room.elements", (low, n)), got.found, _narrowest)
-            if found.accepted and int(found.candidate.total[0]) == n:
-                entries.append(Alternative(f"elements-{n}", f"at most {n} elements", found))
+            yield entry(f"elements-{n}", f"at most {n} elements", "room.elements", (low, n), n)
     longest = float(np.max(c.layout.carrier_length))
     for less in (1.0, 2.0, 3.0):
-        go_on()
-        found = _search_near(wish.with_("room.length", round(longest - less, 3)), got.found, _narrowest)
-        if found.accepted:
-            entries.append(Alternative(f"shorter-{less:g}", f"{less:g} mm shorter", found))
+        length = round(longest - less, 3)
+        yield entry(f"shorter-{less:g}", f"{less:g} mm shorter", "room.length", length)
     for times in (0.5, 2.0) if target.known.how == "drawn" else ():
-        go_on()
         finest = round(min(target.stock.hinge_tolerances) * times, 6)
-        found = _search_near(wish.with_("stock.hinge_tolerances", (finest,)), got.found, _narrowest)
-        if found.accepted:
-            entries.append(Alternative(f"tolerance-{finest:g}", f"hinges within {finest:g} mm", found))
-    return replace(got, front=tuple(e for e in entries if not slow_failures(e.found.design)))
+        what = f"hinges within {finest:g} mm"
+        yield entry(f"tolerance-{finest:g}", what, "stock.hinge_tolerances", (finest,))
 
 
-def _with_ratios(got: Synthesis, go_on: GoOn) -> Synthesis:
-    """Half-width by K_r/K_m, everything else at its best."""
-    out = []
-    for ratio in RATIOS:
+def _ratio(got: Synthesis, ratio: float) -> tuple[float, float] | None:
+    """Half-width at a K_r/K_m, everything else at its best."""
 
-        def goal(c: Candidates, ratio: float = ratio) -> Array:
-            K = c.elements.stiffness
-            off = np.abs(np.log(K.max(axis=1) / K.min(axis=1) / ratio))
-            return np.where(off > SAME_RATIO, FAR * (1.0 + off), c.half_width)
+    def goal(c: Candidates) -> Array:
+        K = c.elements.stiffness
+        off = np.abs(np.log(K.max(axis=1) / K.min(axis=1) / ratio))
+        return np.where(off > SAME_RATIO, FAR * (1.0 + off), c.half_width)
 
-        go_on()
-        found = _search_near(got.target, got.found, goal)
-        if found.accepted:
-            out.append((ratio, found.half_width))
-    return replace(got, ratios=tuple(out))
+    at = _near(got.target, got.found, goal)
+    return (ratio, at.half_width) if at.accepted else None
 
 
-def _with_changes(got: Synthesis, arrays: int, tell: Tell, go_on: GoOn) -> Synthesis:
+def _changes(got: Synthesis, arrays: int) -> Iterator[Task]:
     """What of the target, changed alone by the least, would make it possible; each shown by a run."""
-    names = [name for name, _ in relax.eased(got.target)]
-    changes, skipped = [], []
 
-    def possible(target: Target) -> bool:
-        go_on()
-        return attempt(target, arrays).met
+    def change(name: str) -> LeastChange | None:
+        near = got.found
 
-    for i, name in enumerate(names):
-        try:
-            go_on()
-            tell(i, len(names), f"impossible as asked; the least change of {name}")
-            change = relax.least_change(got.target, name, possible)
-        except TimeIsOver:
-            skipped.append(name)
-            continue
-        if change:
-            changes.append(LeastChange(name, relax.value_of(got.target, name), change[0]))
-    return replace(got, changes=tuple(changes), not_tried=tuple(skipped))
+        def possible(target: Target) -> bool:
+            nonlocal near
+            tried = attempt(target, arrays, QUICK, near=near, evolve=False)
+            if not tried.met and near is got.found:  # nothing found yet: from anywhere
+                tried = attempt(target, arrays, QUICK, near=near)
+            near = tried.found if tried.met else near
+            return tried.met
 
+        least = relax.least_change(got.target, name, possible)
+        return LeastChange(name, relax.value_of(got.target, name), least[0]) if least else None
 
-def work_ahead(target: Target, report: bool) -> dict[str, float]:
-    """Counts of what `design` does at most.
-
-    Parameters
-    ----------
-    target
-        What is asked for.
-    report
-        With what the report tells beside the design: limits, alternatives, ratios.
-
-    Returns
-    -------
-    dict
-        candidate: looked at by the search; near: searches beside the answer; yield: how often arrays are
-        made; element: of the largest array.
-    """
-    some = tries(target)
-    asked_too = 2 if target.target.half_width is None else 1  # what arrays keep, then how many keep it
-    near = len(list(relax.eased(target))) + ALTERNATIVES + len(RATIOS)
-    return {
-        "candidate": sum(_candidates(stand) for _, stands in some for stand in stands),
-        "near": float(near * len(NEAR_SEEDS) * report),
-        "yield": float(asked_too * len(some)),
-        "element": float(target.room.elements[1]),
-    }
-
-
-def _candidates(stand: Stand) -> float:
-    """scipy's population by Sobol is the next power of two; all generations of it, and its first."""
-    numbers = len(stand.limits[0])
-    return float(2 ** ceil(log2(POPULATION * numbers)) * (GENERATIONS + 1))
+    for name, _ in relax.eased(got.target):
+        yield Task(f"least change: {name}", partial(change, name))

@@ -164,7 +164,7 @@ class Known:
 
 @dataclass(frozen=True)
 class Target:
-    """A whole target file, with the design that it starts from."""
+    """A whole target file, with the design that it starts from; `written` has the paths of its own values."""
 
     target: Wish
     object: Object
@@ -175,6 +175,7 @@ class Target:
     elements: Kinds = Kinds()
     known: Known = Known()
     origin: dict[str, str] = field(default_factory=dict)
+    written: frozenset[str] = frozenset()
 
     @property
     def stiffness_range(self) -> tuple[float, float]:
@@ -254,7 +255,8 @@ def parse_target(text: str, where: str, folder: Path = Path()) -> Target:
         stock.alloys or (base.material.alloy,),
         stock.hinge_tolerances or (base.tolerance.hinge_thickness,),
     )
-    target = Target(**values, base=base, origin=_origins(table.get("origin", {}), values))
+    written = frozenset(f"{name}.{field}" for name in TABLES for field in table.get(name, {}))
+    target = Target(**values, base=base, origin=_origins(table.get("origin", {}), values), written=written)
     _refuse_contradictions(target)
     return target
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import asdict
 from html import escape
 from pathlib import Path
@@ -15,13 +15,14 @@ import numpy as np
 from matplotlib.ticker import MaxNLocator
 
 from tactcad.design.design_text import design_text
-from tactcad.design.files import absolute, flush_entry, make_folder, refusal
+from tactcad.design.files import absolute, flush_entry, make_folder, refusal, write_whole
 from tactcad.design.messages import InputError
 from tactcad.design.staging import MAKING, staged_folder
 from tactcad.parts.array.layout import Layout
 from tactcad.report.plots import BLACK, BLUE, GREY, ORANGE, SKY, log_ticks, panels, series, svg
 from tactcad.scenes.rigs.calibration import RIG as CALIBRATION
 
+from .bounds import SIZES, deciding
 from .candidates import dealt
 from .interval import LEVEL
 from .shares import SLIGHT
@@ -44,14 +45,11 @@ def record(got: Synthesis) -> dict[str, Any]:
     """Everything of a synthesis as plain data; lengths mm, forces N, stiffnesses N/mm, shares of 1."""
     out: dict[str, Any] = {
         "name": got.target.target.name,
-        "met": got.met,
+        "met": None if got.met and got.target.target.half_width is None else got.met,
         "wanted_half_width": got.wanted,
         "half_width": got.found.half_width if got.found.accepted else None,
-        "base": {
-            "name": got.target.base.name,
-            "half_width": got.base_half_width,
-            "cannot": got.base_cannot if got.base_half_width is not None else "",
-        },
+        "base": {"name": got.target.base.name, "half_width": got.base_half_width, "breaks": got.base_breaks},
+        "bounds": [asdict(bound) for bound in got.bounds],
         "yield": got.made.share,
         "yield_wanted": got.target.target.share,
         "yield_interval": list(got.made.interval),
@@ -62,11 +60,11 @@ def record(got: Synthesis) -> dict[str, Any]:
         "object_range": list(got.target.stiffness_range),
         "evaluations": got.evaluations,
         "changes": [asdict(c) for c in got.changes],
-        "left_out": [*got.left_out, *(f"least change of {field}" for field in got.not_tried)],
+        "left_out": list(got.left_out),
         "beyond": _beyond(got),
+        "room": _room(got),
         "out_of_range": list(got.found.candidate.out_of_range),
         "refused": got.found.refused,
-        "limits_searched": got.binding is not None,
         "notes": _notes(got),
     }
     if not got.found.accepted:
@@ -87,7 +85,7 @@ def record(got: Synthesis) -> dict[str, Any]:
             for a, b, c in zip(x, whole.low, whole.high)
         ],
         "pairs": pairs,
-        "binding": [asdict(limit) for limit in got.binding or ()],
+        "binding": [asdict(limit) for limit in got.binding],
         "shares": [asdict(s) for s in got.shares],
         "front": [entry.record() for entry in got.front],
         "coupling": [{"share": c, "shift": got.coupling(c)} for c in COUPLINGS],
@@ -95,6 +93,7 @@ def record(got: Synthesis) -> dict[str, Any]:
         "ratios": [{"ratio": q, "half_width": w} for q, w in got.ratios],
         "papers_ratio": PAPERS_RATIO,
         "elements": _elements(got),
+        "size_mm": [round(size(Layout(got.found.design)), 3) for size in SIZES.values()],
         "read_from": got.target.grasp.force / got.target.grasp.loads,
     }
 
@@ -112,6 +111,14 @@ def _beyond(got: Synthesis) -> dict[str, float]:
     elif got.found.accepted:
         misses["target.half_width"] = got.found.half_width / got.wanted - 1.0 if got.wanted else 0.0
     return {name: v for name, v in misses.items() if v > 1e-9 and np.isfinite(v)}
+
+
+def _room(got: Synthesis) -> dict[str, str]:
+    """By size of the room that the answer lies on or misses, the base's fields that decide it."""
+    names = [b.field for b in got.bounds] + list(_beyond(got))
+    sides = [name.removeprefix("room.") for name in names if name.removeprefix("room.") in SIZES]
+    room, design = got.target.room, got.found.design
+    return {f"room.{side}": deciding(design, side, getattr(room, side)) for side in dict.fromkeys(sides)}
 
 
 def _notes(got: Synthesis) -> list[str]:
@@ -169,8 +176,9 @@ def report_page(got: Synthesis) -> bytes:
     """The page (HTML, UTF-8), pictures inside."""
     r = record(got)
     title = f"{got.target.target.name}: a sensor from a target"
-    parts = [f"<h1>{escape(title)}</h1>", _answer(got, r)]
+    parts = [f"<h1>{escape(title)}</h1>", _answer(got, r), _bounds_part(r)]
     if got.found.accepted:
+        parts.append(_size_part(got, r))
         parts += [_interval_part(got, r), _yield_part(r), _limits_part(r), _ratio_part(r), _front_part(r)]
         parts += [_elements_part(r)]
     if r["left_out"]:
@@ -185,7 +193,7 @@ def report_page(got: Synthesis) -> bytes:
 def _answer(got: Synthesis, r: dict[str, Any]) -> str:
     text = f'<p class="answer{"" if r["met"] else " no"}">{escape(answer(r))}</p>'
     text += "".join(f"<p>Note: {escape(note)}.</p>" for note in r["notes"])
-    if r["met"]:
+    if got.met:
         return text
     rows = [(c["field"], _value(c["value"]), _value(c["needed"])) for c in r["changes"]]
     if rows:
@@ -194,7 +202,50 @@ def _answer(got: Synthesis, r: dict[str, Any]) -> str:
     return text + f"<p>{escape(no_other_change(got).capitalize())}.</p>"
 
 
+def _bounds_part(r: dict[str, Any]) -> str:
+    if not r["bounds"]:
+        return ""
+    rows = [(b["field"], _value(b["value"]), b["whose"], _value(b["beyond"]), beyond(b)) for b in r["bounds"]]
+    heads = ("field", "value", "whose", "one step beyond", "half-width there")
+    text = "<h2>Bounds that the answer lies on</h2>" + _table(heads, rows)
+    return text + "".join(f"<p>{escape(field)}: {escape(by)}.</p>" for field, by in r["room"].items())
+
+
+def beyond(b: dict[str, Any]) -> str:
+    """The half-width one step beyond a bound."""
+    return "no design there" if b["half_width"] is None else percent(b["half_width"])
+
+
+def _size_part(got: Synthesis, r: dict[str, Any]) -> str:
+    """The array from above: the carrier's outline, and every element from its pad to its rear end."""
+    layout, (length, width, height) = Layout(got.found.design), r["size_mm"]
+    thick = got.found.design.sheet.thickness
+    with panels(1, 1, (9.0, max(2.2, 7.5 * width / length))) as (figure, ax):
+        ax.broken_barh([(-length / 2, length)], (-width / 2, width), facecolor="none", edgecolor=GREY)
+        for e in layout.elements:
+            side, y = (1.0 if e.row == 1 else -1.0), (e.y if e.row == 1 else -e.y)
+            for start, end, colour in (
+                (layout.pad_inner, layout.pad_outer, ORANGE),
+                (layout.pad_outer, e.hinge_x - e.hinge.l / 2, SKY),
+                (e.hinge_x - e.hinge.l / 2, e.hinge_x + e.hinge.l / 2, BLACK),
+                (e.hinge_x + e.hinge.l / 2, layout.rear_end, GREY),
+            ):
+                ax.broken_barh(
+                    [(min(side * start, side * end), end - start)], (y - thick / 2, thick), color=colour
+                )
+            ax.annotate(f"E{e.number}", (side * layout.rear_end * 0.8, y), ha="center", va="center")
+        ax.set(xlabel="along the arms, mm", ylabel="along the rows, mm", aspect="equal")
+        picture = svg(figure, "size")
+    return (
+        f"<h2>Size</h2><p>{length:g} x {width:g} x {height:g} mm (along the arms, along the rows, from the "
+        "pads to the carrier's top). From above: pads orange, arms blue, hinges black, clamped bodies "
+        f"grey.</p>{picture}"
+    )
+
+
 def _value(value: Any) -> str:
+    if value is None:
+        return ""
     if isinstance(value, (list, tuple)):
         return ", ".join(f"{v:.4g}" for v in value)
     return f"{value:.4g}" if isinstance(value, float) else str(value)
@@ -381,31 +432,38 @@ def percent(share: float) -> str:
 
 
 def answer(r: dict[str, Any]) -> str:
-    """What came out, in two sentences."""
-    low, high = r["object_range"]
-    if not r["met"]:
-        return f"Impossible as asked: the best there is {_why_not(r)}."
-    e, base = r["elements"], r["base"]
-    than = f"; {base['name']} as it is: {percent(base['half_width'])}" if base["half_width"] else ""
-    if base["cannot"]:
-        than = f"; {base['name']} as it is cannot take the force: {base['cannot']}"
+    """What came out, in a few sentences."""
+    (low, high), base = r["object_range"], r["base"]
+    if r["met"] is False:
+        rules = "; ".join(line for line in base["breaks"] if line.startswith("rule "))
+        told = f" {base['name']} as it is breaks {rules}." if rules else ""
+        return f"Impossible as asked: the best there is {_why_not(r)}.{told}"
+    e = r["elements"]
+    if base["breaks"]:
+        than = f"{base['name']} as it is does not meet the target: {'; '.join(base['breaks'])}"
+    else:
+        than = f"{base['name']} as it is: {percent(base['half_width'])}"
+    best = "Best to be had: no half-width was asked. " if r["met"] is None else ""
     return (
-        f"{len(e)} elements feel {low:.3g} to {high:.3g} N/mm within {percent(r['wanted_half_width'])} "
-        f"(half the 95 % interval; as drawn {percent(r['half_width'])}{than}). "
+        f"{best}{len(e)} elements feel {low:.3g} to {high:.3g} N/mm within {percent(r['wanted_half_width'])} "
+        f"(half the 95 % interval; as drawn {percent(r['half_width'])}). "
         f"{percent(r['yield'])} of arrays made within "
         f"their tolerances keep that ({percent(r['yield_interval'][0])} to "
-        f"{percent(r['yield_interval'][1])})."
+        f"{percent(r['yield_interval'][1])}). Size {' x '.join(f'{v:g}' for v in r['size_mm'])} mm. {than}."
     )
 
 
 def _why_not(r: dict[str, Any]) -> str:
-    why = [f"misses {name} by {_excess(v)}" for name, v in r["beyond"].items()]
+    why = [
+        f"misses {name} by {_excess(v)}" + (f" ({r['room'][name]})" if name in r["room"] else "")
+        for name, v in r["beyond"].items()
+    ]
     if r["out_of_range"]:
         why.append(f"has elements that the estimator does not reach ({'; '.join(r['out_of_range'])})")
     if why:
         return "; ".join(why)
     if r["half_width"] is None:
-        return f"keeps all limits, but is refused ({', '.join(sorted(r['refused']))})"
+        return f"keeps all limits, but is refused: {'; '.join(f'{k}: {v}' for k, v in r['refused'].items())}"
     kept, wanted = percent(r["yield"]), percent(r["yield_wanted"])
     return f"keeps it as drawn, but of the arrays made only {kept} do, not {wanted}"
 
@@ -415,9 +473,9 @@ def _excess(v: float) -> str:
 
 
 def no_other_change(got: Synthesis) -> str:
-    """What of changes of single fields was found not to do, and what was not tried."""
-    if got.not_tried:
-        return f"not tried for time: {len(got.not_tried)} fields that might make it possible if changed alone"
+    """What of changes of single fields was found not to do, or that not all were tried."""
+    if got.left_out:
+        return f"not tried for time: {'; '.join(got.left_out)}"
     other = "other " if got.changes else ""
     return f"no {other}single field changed up to eight times makes it possible"
 
@@ -449,18 +507,20 @@ def refuse_unwritable(out: str | Path) -> None:
 
 
 def write(got: Synthesis, out: str | Path) -> None:
-    """design.toml, front/NAME.toml, report.json and report.html: the whole folder in one step, or nothing.
+    """design.toml, report.json and report.html: the whole folder in one step, or nothing.
 
     Raises InputError where `out` is taken or cannot be written to, CheckFailure where there is no room.
     """
     folder = absolute(out)
     refuse_taken(out)
     make_folder(folder.parent)
+    heading = f"{got.target.target.name}: by `tactcad design`.\n{answer(record(got))}"
     try:
+        files = {"design.toml": design_text(got.design, heading).encode(), **_report(got)}
         with staged_folder(folder.parent, folder.name) as own:
             making = own / MAKING
-            for name, data in _files(got):
-                (making / name).parent.mkdir(parents=True, exist_ok=True)
+            making.mkdir()
+            for name, data in files.items():
                 (making / name).write_bytes(data)
                 flush_entry(making / name)
             making.rename(folder)  # an empty folder gives way, any other refuses
@@ -469,13 +529,20 @@ def write(got: Synthesis, out: str | Path) -> None:
         raise refusal(str(out), error) from error
 
 
-def _files(got: Synthesis) -> Iterator[tuple[str, bytes]]:
-    target = got.target.target.name
-    heading = f"{target}: by `tactcad design`.\n{answer(record(got))}"
-    yield "design.toml", design_text(got.design, heading).encode()
+def complete(got: Synthesis, out: str | Path) -> None:
+    """front/NAME.toml and the whole report in the folder that `write` made, each file in one step.
+
+    Raises as `write`.
+    """
+    folder, target = absolute(out), got.target.target.name
     for entry in got.front[1:]:
         name = f"{target[:24].rstrip('-')}-{entry.name.replace('.', '-')}"
         text = design_text(got.as_design(entry.found, name), f"{name}: {entry.what}.")
-        yield f"front/{entry.name}.toml", text.encode()
-    yield "report.json", report_json(got)
-    yield "report.html", report_page(got)
+        make_folder(folder / "front")
+        write_whole(folder / "front" / f"{entry.name}.toml", text.encode())
+    for name, data in _report(got).items():
+        write_whole(folder / name, data)
+
+
+def _report(got: Synthesis) -> dict[str, bytes]:
+    return {"report.json": report_json(got), "report.html": report_page(got)}

@@ -47,6 +47,11 @@ class Finding:
         at = " at (" + ", ".join(f"{v:.3f}" for v in self.place) + ")" if self.place else ""
         return f"{self.about}: {self.check}{at}: {self.message}"
 
+    @property
+    def broken(self) -> str:
+        """What is said of a rule that a design breaks: field, what is wrong, value found, what is legal."""
+        return f"{self.part}: {self.message}; found {self.value}; legal: {self.limit}"
+
     def __str__(self) -> str:
         return f"{self.severity}: {self.said}"
 

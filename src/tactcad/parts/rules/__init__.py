@@ -16,10 +16,8 @@ from tactcad.design.messages import InputError
 from tactcad.design.tree import Design
 
 from ..language.finding import Finding
-from .readout_blame import blamed
 from .rule import Rule
 
-READOUT = ("readout_rules",)
 # The order in which files are tried where it matters; any other file of this folder follows by name.
 FIRST = (
     "element_rules",
@@ -27,7 +25,7 @@ FIRST = (
     "stop_rules",
     "clamp_rules",
     "pressed_rules",
-    *READOUT,
+    "readout_rules",
     "cart_rules",
     "calibration_rules",
 )
@@ -36,25 +34,18 @@ FIRST = (
 def design_rules() -> dict[str, Rule]:
     """Every rule that a design must keep, by name, in the order in which they are tried."""
     found = sorted(name for _, name, _ in pkgutil.iter_modules(__path__) if name.endswith("_rules"))
-    every = dict.fromkeys((*FIRST, *found))
-    return {name: r for name, r in _rules(tuple(every)).items() if not r.fit}
-
-
-def _rules(subjects: tuple[str, ...]) -> dict[str, Rule]:
-    modules = [import_module(f"{__name__}.{subject}") for subject in subjects]
-    return {r.name: r for module in modules for r in vars(module).values() if isinstance(r, Rule)}
+    modules = [import_module(f"{__name__}.{subject}") for subject in dict.fromkeys((*FIRST, *found))]
+    every = [r for module in modules for r in vars(module).values() if isinstance(r, Rule)]
+    return {r.name: r for r in every if not r.fit}
 
 
 def broken_rules(design: Design) -> list[Finding]:
     """The first finding of every rule of its family that the design breaks, in the order of the rules."""
-    return _broken(design, family_of(design).rules())
-
-
-def _broken(design: Design, rules: dict[str, Rule]) -> list[Finding]:
-    layout = family_of(design).layout(design)
+    family = family_of(design)
+    layout = family.layout(design)
     broken: list[Finding] = []
     kept: dict[str, bool] = {}  # rule -> it and all before it are kept, as those are that are not tried
-    for name, rule in rules.items():
+    for name, rule in family.rules().items():
         if kept.get(rule.after, True):
             broken += rule(layout)
         kept[name] = not broken
@@ -65,9 +56,7 @@ def refuse_broken(design: Design) -> None:
     """Raise InputError for the first rule that the design breaks, naming the others."""
     broken = broken_rules(design)
     if broken:
-        first, on_readout = broken[0], _rules(READOUT)
-        if first.check in on_readout:
-            first = blamed(design, first, lambda d: _broken(d, on_readout))
+        first = broken[0]
         others = f" (and {', '.join(b.check for b in broken[1:])})" if broken[1:] else ""
         raise refusal(first, others)
 

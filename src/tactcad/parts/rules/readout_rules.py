@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from math import ceil, floor, log10
+from typing import Any
 
 from tactcad.design.sensing import AMPLIFIERS, MULTIPLEXERS, SWITCHES, WIRES, Readout, StrainGauge, Wiring
 from tactcad.design.tree import Design
@@ -43,12 +44,29 @@ def gauge_lies_in_slot(layout: Layout) -> Iterator[Finding]:
             )
 
 
+def _set_first(r: Readout, *names: str) -> str:
+    """The first of these fields that is set otherwise than it comes, or the first of them."""
+    came = Readout()
+    return next((name for name in names if getattr(r, name) != getattr(came, name)), names[0])
+
+
+def _borne(fits: Callable[[float], bool]) -> float:
+    """The largest share, from 0 to 1, that fits where all less do; 0 where none does."""
+    least, most = 0.0, 1.0
+    for _ in range(30 if fits(0.0) else 0):
+        middle = (least + most) / 2
+        least, most = (middle, most) if fits(middle) else (least, middle)
+    return least
+
+
 @rule()
 def reading_within_period(layout: Layout) -> Iterator[Finding]:
     r = layout.design.readout
     if r.on_time > r.period:
         what = f"readout.on_time = {r.on_time:g} is longer than readout.period = {r.period:g}"
-        yield wrong("readout.on_time", what, r.on_time, f"at most {r.period:g} s")
+        legal = {"on_time": f"at most {r.period:g} s", "period": f"at least {r.on_time:g} s"}
+        name = _set_first(r, *legal)
+        yield wrong(f"readout.{name}", what, getattr(r, name), legal[name])
 
 
 @rule()
@@ -66,12 +84,16 @@ def supplies_suit_parts(layout: Layout) -> Iterator[Finding]:
     least, most = max(p.least_supply for p in parts), min(p.most_supply for p in parts)
     between = round(r.supply_positive - r.supply_negative, 9)
     if not least <= between <= most:
+        name = _set_first(r, "supply_positive", "supply_negative")
+        positive = name == "supply_positive"
+        other = "supply_negative" if positive else "supply_positive"
+        fixed = getattr(r, other)
+        low, high = (least + fixed, most + fixed) if positive else (fixed - most, fixed - least)
         yield wrong(
-            "readout.supply_positive",
+            f"readout.{name}",
             f"{between:g} V between the supplies is not for {r.amplifier} and {r.multiplexer}",
-            r.supply_positive,
-            f"from {least + r.supply_negative:g} to {most + r.supply_negative:g} V "
-            f"with readout.supply_negative = {r.supply_negative:g}",
+            getattr(r, name),
+            f"from {low:g} to {high:g} V with readout.{other} = {fixed:g}",
         )
     yield from at_most(
         "readout.excitation",
@@ -102,17 +124,32 @@ def boards_have_inputs(layout: Layout) -> Iterator[Finding]:
 @rule(after="reading_within_period")
 def gauge_bears_power(layout: Layout) -> Iterator[Finding]:
     d = layout.design
-    hot, volts = heating(layout), d.readout.excitation
-    mean, rise = hot.power_density / d.gauge.power_density, hot.rise / d.gauge.rise
-    most = volts / max(mean, rise) ** 0.5
-    yield from at_most(
-        "readout.excitation",
+    r, hot = d.readout, heating(layout)
+
+    def load(**changed: Any) -> float:
+        """Of what the backing bears."""
+        found = heating(Layout(replace(d, readout=replace(r, **changed)))) if changed else hot
+        return max(found.power_density / d.gauge.power_density, found.rise / d.gauge.rise)
+
+    if load() <= 1.0 + SAME:
+        return
+    name = _set_first(r, "excitation", "on_time", "period")
+    if name == "on_time" and (share := _borne(lambda s: load(on_time=max(s, SAME) * r.on_time) <= 1.0)):
+        legal = f"at most {rounded_down(share * r.on_time)} s"
+    elif name == "period" and (share := _borne(lambda s: load(period=r.period / max(s, SAME)) <= 1.0)):
+        legal = f"at least {1 / float(rounded_down(share / r.period)):.4g} s"
+    else:
+        name, legal = (
+            "excitation",
+            f"at most {rounded_down(r.excitation / load() ** 0.5)} V, or shorter readings",
+        )
+    yield wrong(
+        f"readout.{name}",
         f"more than the gauge's backing bears: {hot.power_density:.3g} kW/m2 of grid on average "
         f"(gauge.power_density = {d.gauge.power_density:g}), {hot.rise:.3g} K over the body "
         f"(gauge.rise = {d.gauge.rise:g})",
-        volts,
-        most,
-        f"at most {rounded_down(most)} V, or shorter readings",
+        getattr(r, name),
+        legal,
     )
 
 
@@ -128,9 +165,6 @@ def bridge_stays_in_range(layout: Layout) -> Iterator[Finding]:
         f"unloaded bridges reach {low:.3g} to {high:.3g} V behind the amplifier, whose range is "
         f"{chain.lowest:.3g} to {chain.highest:.3g}"
     )
-    if not chain.lowest < 0.0 < chain.highest:
-        yield wrong("readout.headroom", said, d.readout.headroom, "both supplies further than this from 0 V")
-        return
 
     def bearable(reach: Callable[[float], tuple[float, float]]) -> float:
         """Share of a cause that the range leaves room for."""
@@ -139,18 +173,37 @@ def bridge_stays_in_range(layout: Layout) -> Iterator[Finding]:
             lowest, highest = reach(share)
             return chain.lowest <= lowest and highest <= chain.highest
 
-        least, most = 0.0, 1.0
-        for _ in range(30 if fits(0.0) else 0):
-            middle = (least + most) / 2
-            least, most = (middle, most) if fits(middle) else (least, middle)
-        return least
+        return _borne(fits)
 
     borne = [(cause, share) for cause in _causes(layout, arm) if (share := bearable(cause.reach)) > 0]
     if borne:  # what adds most of it
         cause, share = min(borne, key=lambda found: max(map(abs, found[0].reach(0.0))))
         yield wrong(cause.path, said, cause.value, cause.legal(share))
-        return
-    yield _too_much_gain(d, said, bearable(lambda share: (share * low, share * high)))
+    elif too_small := _too_small_a_range(d.readout, said, low, high):
+        yield too_small
+    elif not chain.lowest < 0.0 < chain.highest:
+        yield wrong("readout.headroom", said, d.readout.headroom, "both supplies further than this from 0 V")
+    else:
+        yield _too_much_gain(d, said, bearable(lambda share: (share * low, share * high)))
+
+
+def _too_small_a_range(r: Readout, said: str, low: float, high: float) -> Finding | None:
+    """The first field, set otherwise than it comes, of which another value alone makes the range hold these
+    volts."""
+    needed: dict[str, Any] = {
+        "headroom": min(r.supply_positive - high, low - r.supply_negative),
+        "adc_range": max(high, -low),
+        "supply_negative": low - r.headroom,
+        "supply_positive": high + r.headroom,
+    }
+    for name in (name for name in needed if getattr(r, name) != getattr(Readout(), name)):
+        now = replace(r, **{name: needed[name]})
+        reach = min(low - now.supply_negative, now.supply_positive - high) - now.headroom
+        if needed[name] and min(reach, now.adc_range - max(high, -low), now.headroom) >= -SAME:
+            upper = needed[name] < getattr(r, name)
+            legal = f"at {'most' if upper else 'least'} {_inward(needed[name], upper)} V"
+            return wrong(f"readout.{name}", said, getattr(r, name), legal)
+    return None
 
 
 @dataclass(frozen=True)
@@ -231,8 +284,14 @@ def _too_much_gain(design: Design, said: str, share: float) -> Finding:
 
 def rounded_down(value: float) -> str:
     """To three digits, not above the value (> 0)."""
-    step = 10.0 ** (floor(log10(value)) - 2)
-    return f"{floor(value / step + SAME) * step:.3g}"
+    return _inward(value, True)
+
+
+def _inward(bound: float, upper: bool) -> str:
+    """A bound (not 0) to three digits, on its legal side."""
+    step = 10.0 ** (floor(log10(abs(bound))) - 2)
+    steps = floor(bound / step + SAME) if upper else ceil(bound / step - SAME)
+    return f"{steps * step:g}"
 
 
 @rule(after="override_names_element")
@@ -251,29 +310,39 @@ def inputs_within_common_mode(layout: Layout) -> Iterator[Finding]:
         min(least, low),
         f"at most {least:.3g} V, or more excitation",
     )
-    most = r.excitation + amplifier.below_positive
-    yield from at_least(
-        "readout.supply_positive",
-        f"bridges fed with {r.excitation:g} V lie above the {r.amplifier}'s common mode while no switch "
-        "is closed",
-        r.supply_positive,
-        most,
-        f"at least {most:.3g} V, or less excitation",
-    )
+    least = r.excitation + amplifier.below_positive
+    if r.supply_positive < least - SAME:
+        legal = {"supply_positive": f"at least {least:.3g} V, or less excitation"}
+        if r.supply_positive > amplifier.below_positive:
+            legal |= {"excitation": f"at most {rounded_down(r.supply_positive - amplifier.below_positive)} V"}
+        name = _set_first(r, *legal)
+        yield wrong(
+            f"readout.{name}",
+            f"bridges fed with {r.excitation:g} V lie above the {r.amplifier}'s common mode while no switch "
+            "is closed",
+            getattr(r, name),
+            legal[name],
+        )
 
 
 @rule()
 def switching_settles(layout: Layout) -> Iterator[Finding]:
     r = layout.design.readout
     settling, sampling = settling_time(layout.design), r.samples / r.sample_rate
-    least = settling + sampling
+    least, left = settling + sampling, r.on_time - settling
     if r.on_time < least:
+        legal = {"on_time": f"at least {least * 1.005:.3g} s"}
+        if left * r.sample_rate >= 1.0:
+            legal |= {"samples": f"at most {floor(left * r.sample_rate)}"}
+        if left > 0.0:
+            legal |= {"sample_rate": f"at least {_inward(r.samples / left, False)} Hz"}
+        name = _set_first(r, *legal)
         yield wrong(
-            "readout.on_time",
+            f"readout.{name}",
             f"settling takes {settling:.3g} s and {r.samples} samples {sampling:.3g} s, more than "
             f"readout.on_time = {r.on_time:g} of each readout.period = {r.period:g}",
-            r.on_time,
-            f"at least {least * 1.005:.3g} s",
+            getattr(r, name),
+            legal[name],
         )
 
 

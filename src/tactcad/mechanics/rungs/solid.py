@@ -13,9 +13,10 @@ falls with b, whatever the constants' values are.
 
 from __future__ import annotations
 
+from ..constants import by_sides
+from ..register import Rung
+from ..section import Array, HingeSection
 from . import plane
-from .constants import by_sides
-from .section import Array, HingeSection
 
 
 def curled(s: HingeSection, flat: plane.Parts, k: plane.Constants | None = None) -> Array:
@@ -61,3 +62,6 @@ def compliance_by(s: HingeSection, data: dict | None = None) -> Array:
     """The same by the constants in `data` (as data/ladder.json), else the shipped ones."""
     flat = plane.parts(s, by_sides("root", s.two_sided, data))
     return curled(s, flat, by_sides("width", s.two_sided, data))
+
+
+RUNG = Rung("solid", 5, "design: the default", compliance_by, fitted=("plane", "width"))

@@ -6,7 +6,8 @@ from functools import lru_cache
 
 import numpy as np
 
-from .section import Array, HingeSection
+from ..register import Rung
+from ..section import Array, HingeSection
 
 SHEAR_FACTOR = 5.0 / 6.0  # of a rectangular section (Timoshenko)
 NODES = 24  # Gauss points over a fillet: rounding error only, down to t = n r/5
@@ -133,3 +134,8 @@ def _in_closed_form(depth: Array) -> tuple[Array, Array, Array]:
     i2 = 0.5 * ((2.0 * c * c - 1.0) * a2 - 4.0 * c * a1 + np.pi)
     i_shear = c * a1 - np.pi / 2.0
     return i0 / depth**3, i2 / depth**3, i_shear / depth
+
+
+SHORT = Rung("short", 1, "orders of magnitude, by hand", lambda s, _: short_hinge(s), constant_moment=True)
+BEAM = Rung("beam", 2, "to see what beams alone explain", lambda s, _: beam(s))
+SECTION = Rung("section", 3, "notches with r/t far above 1", lambda s, _: section_integral(s))

@@ -33,9 +33,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ..constants import by_sides
+from ..register import Rung
+from ..section import Array, HingeSection
 from .beams import SHEAR_FACTOR
-from .constants import by_sides
-from .section import Array, HingeSection
 
 THIN_NOTCH = (3.0 * np.pi / 16.0) ** 2 * 2.0  # over n: squared root length per r/t as r/t grows
 # Length, in heights of the strip, over which the energy of a self-equilibrated load fades: that of the
@@ -169,3 +170,6 @@ def _far(stout: Array, middle: Array | float, two_sided: NDArray[np.bool_]) -> A
 
 def _by_form(table: Mapping[bool, float], two_sided: NDArray[np.bool_]) -> Array:
     return np.where(two_sided, table[True], table[False])
+
+
+RUNG = Rung("plane", 4, "thin sheet; to compare with plane models", compliance_by, fitted=("plane",))

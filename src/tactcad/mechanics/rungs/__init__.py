@@ -1,0 +1,1 @@
+"""The rungs of the model ladder: every module declares one or more, each a `Rung`; nothing lists them."""

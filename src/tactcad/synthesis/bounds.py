@@ -1,0 +1,223 @@
+"""The bounds that an answer lies on, and the base's own answer to the target: what it breaks, and the fields
+that decide how much room an array takes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from tactcad.design.load import paths
+from tactcad.design.tree import Design
+from tactcad.parts.array.layout import Layout
+from tactcad.parts.rules import broken_rules
+
+from . import relax
+from .candidates import SEARCHED, Stand, stands
+from .interval import motion
+from .made_arrays import MadeSensor
+from .search import Found, refusals, search
+from .target import Target
+
+NEAR = 0.02  # relative; a limit with less room left is one that the answer lies on
+# Fields of the base design that bound the search, and the factor of a step that eases them.
+OF_BASE = {
+    "element.hinge_length": 1.1,
+    "element.fillet_radius": 1.1,
+    "element.corner_radius": 1 / 1.1,
+    "gauge.grid_length": 1 / 1.1,
+    "rating.yield_factor": 1 / 1.1,
+    "readout.gain": 1 / 1.1,
+    "readout.force_resolution": 1.1,
+    "calibration.step": 1 / 1.1,
+}
+# The field that eases a limit of `Candidates.misses` which is not called by it.
+EASED_BY = {
+    "strength": "rating.yield_factor",
+    "stop": "grasp.overload",
+    "readout": "readout.gain",
+    "calibration": "calibration.step",
+}
+SIZES: dict[str, Callable[[Layout], float]] = {
+    "length": lambda layout: layout.carrier_length,
+    "width": lambda layout: layout.carrier_width,
+    "height": lambda layout: (
+        layout.design.element.pad_height + layout.carrier_bottom + layout.design.clamp.carrier_thickness
+    ),
+}
+
+
+@dataclass(frozen=True)
+class Bound:
+    """A bound that the answer lies on.
+
+    field, value  of the target, or of its base design
+    whose         "written" in the target file, "default" of it, or "base design"
+    beyond        the value one step further; None where no such value is legal
+    half_width    relative, of the best around the answer there; None where none keeps the rules
+    """
+
+    field: str
+    value: Any
+    whose: str
+    beyond: Any = None
+    half_width: float | None = None
+
+
+def touched(found: Found) -> list[str]:
+    """Fields whose values hold the candidate where it is."""
+    c, stand = found.candidate, found.candidate.stand
+    target, e, numbers = stand.target, stand.base.element, found.row
+    wish, room, (low, high) = target.elements, target.room, stand.limits
+    arm, thickness, count = (numbers[i : 3 * stand.kinds : 3] for i in range(3))
+    longest = (
+        "elements.arms[1]" if high[0] * SEARCHED[0].step > wish.arms[1] - SEARCHED[0].step else "room.length"
+    )
+    slot_low = (
+        "gauge.grid_length" if stand.base.gauge.grid_length >= e.corner_radius else "element.corner_radius"
+    )
+    at = {
+        "elements.arms[0]": (arm <= low[0]).any(),
+        longest: (arm >= high[0]).any(),
+        "elements.hinges[0]": (thickness <= low[1]).any(),
+        "elements.hinges[1]": (thickness >= high[1]).any(),
+        "elements.kinds": stand.kinds == wish.kinds,
+        "elements.of_a_kind": (count <= wish.of_a_kind).any(),
+        "room.elements[0]": c.total[0] <= room.elements[0],
+        "room.elements[1]": c.total[0] >= room.elements[1],
+        "room.width": c.total[0] >= stand.most < room.elements[1],
+        slot_low: numbers[-2] <= low[-2],
+        "element.hinge_length": numbers[-2] >= high[-2],
+        "element.corner_radius": numbers[-1] <= low[-1],
+        "element.fillet_radius": numbers[-1] >= high[-1],
+    }
+    names = [name for name, holds in at.items() if holds]
+    limits = {name: float(miss[0]) for name, miss in c.misses.items() if name != "room.height"}
+    names += [EASED_BY.get(name, name) for name, miss in limits.items() if -NEAR < miss <= 1e-9]
+    if target.known.how == "drawn":
+        names.append("stock.hinge_tolerances")
+    return list(dict.fromkeys(names))
+
+
+def bound(found: Found, field: str) -> Bound | None:
+    """A bound with what one step beyond it would give; None where the field has no further to go."""
+    target = found.candidate.stand.target
+    if field in OF_BASE:
+        value = paths(target.base)[field]
+        further = round(value * OF_BASE[field], 4)
+        stepped, whose = replace(target, base=with_value(target.base, field, further)), "base design"
+    else:
+        eased = dict(relax.eased(target))
+        if field not in eased:
+            return None
+        stepped = eased[field]
+        value, further = relax.value_of(target, field), relax.value_of(stepped, field)
+        whose = "written" if field.partition("[")[0] in target.written else "default"
+    got = [
+        search(s, narrowest, rules=refusals, start=numbers(found, s), evolve=False)
+        for s in near(stepped, found)
+    ]
+    best = min((f.half_width for f in got if f.accepted), default=None)
+    return Bound(field, value, whose, further, best)
+
+
+def narrowest(c: Any) -> Any:
+    """The goal of searches beside the answer."""
+    return c.half_width
+
+
+def near(target: Target, found: Found) -> list[Stand]:
+    """Stands of a target that are the found one's, but for tolerances or for more kinds than it may have."""
+    here = found.candidate.stand
+    own = here.base.sheet, here.base.material.alloy
+
+    def alike(s: Stand) -> bool:
+        kinds = s.kinds == here.kinds or s.kinds > here.target.elements.kinds
+        return kinds and own == (s.base.sheet, s.base.material.alloy)
+
+    return [s for s in stands(target) if alike(s)] or stands(target)
+
+
+def numbers(found: Found, stand: Stand) -> Any:
+    """The found candidate's numbers on another stand: a kind more has half of the last one's elements; None
+    for fewer kinds."""
+    row, more = found.row, stand.kinds - found.candidate.stand.kinds
+    if more < 0:
+        return None
+    own, shared = row[:-2], row[-2:]
+    for _ in range(more):
+        last = own[-3:].copy()
+        last[2] = max(last[2] // 2, 1)
+        own = np.concatenate([own, last])
+        own[-4] = max(own[-4] - last[2], 1)
+    return np.concatenate([own, shared])
+
+
+def with_value(design: Design, path: str, value: Any) -> Design:
+    """A design with another value of one field of a table, unchecked."""
+    table, name = path.split(".")
+    return replace(design, **{table: replace(getattr(design, table), **{name: value})})
+
+
+def base_breaks(target: Target) -> list[str]:
+    """By what the base design as it is does not meet the target: room, forces, half-width, and every rule
+    that it breaks."""
+    base, room, layout = target.base, target.room, Layout(target.base)
+    made, wanted = MadeSensor(target, base), target.target.half_width
+    broken = [f"rule {f.check}: {f.broken}" for f in broken_rules(base)]
+    sizes = {name: size(layout) for name, size in SIZES.items()}
+    for name, is_ in sizes.items():
+        most = getattr(room, name)
+        if is_ > most + 1e-9:
+            broken.append(f"room.{name}: {is_:g} mm, at most {most:g} mm ({deciding(base, name, most)})")
+    count, (fewest, most) = len(layout.elements), room.elements
+    if not fewest <= count <= most:
+        broken.append(f"room.elements: {count}, {fewest:g} to {most:g}")
+    if len(base.array.row_arms) > room.rows:
+        broken.append(f"room.rows: {len(base.array.row_arms)}, at most {room.rows}")
+    if base.array.pitch < room.pitch - 1e-9:
+        broken.append(f"room.pitch: {base.array.pitch:g} mm, at least {room.pitch:g} mm")
+    if base.sheet.thickness not in target.stock.sheets or base.material.alloy not in target.stock.alloys:
+        broken.append(f"stock: a sheet of {base.sheet.thickness:g} mm {base.material.alloy}")
+    if broken or not np.isfinite(made.drawn.stiffness).all():
+        return broken or ["the estimator does not reach its elements"]
+    ones, grip = np.ones(1), target.grasp
+    largest = max(motion(made.drawn, ones, x, grip.force, grip.loads).largest.max() for x in made.points)
+    if largest > grip.element_force * (1.0 + 1e-9):
+        broken.append(f"grasp.element_force: {largest:.3g} N, at most {grip.element_force:g} N")
+    if made.cannot_bear:
+        broken.append(f"grasp.force: {made.cannot_bear}")
+    width = float(made.interval(made.points).half_width(made.points).max())
+    if wanted is not None and not 100.0 * width <= wanted:
+        broken.append(f"target.half_width: {100 * width:.3g} %, at most {wanted:g} %")
+    return broken
+
+
+def deciding(base: Design, side: str, most: float) -> str:
+    """Fields of the base that decide how long, wide or high its arrays are, the one of most effect first; and
+    the rules that the first would break if it alone made room."""
+    measure, parts = SIZES[side], list[str]()
+    size = measure(Layout(base))
+    for path, effect in sorted(_effects(base, measure), key=lambda pair: -pair[1] * paths(base)[pair[0]]):
+        value = paths(base)[path]
+        needed = round(value - (size - most) / effect, 3)
+        broken = broken_rules(with_value(base, path, needed)) if needed > 0.0 else []
+        if not parts and broken:
+            first = "; ".join(f"{f.part}: {f.message}" for f in broken)
+            parts.append(f"{path} {value:g}, at {needed:g} it breaks {first}")
+        else:
+            parts.append(f"{path} {value:g}")
+    return "decided by " + ", ".join(parts)
+
+
+def _effects(base: Design, measure: Callable[[Layout], float]) -> Iterator[tuple[str, float]]:
+    """Fields on which a size hangs, with mm per mm; what the search itself chooses is left out."""
+    searched, size = {s.field for s in SEARCHED}, measure(Layout(base))
+    for path, value in paths(base).items():
+        if isinstance(value, float) and path.count(".") == 1 and path not in searched:
+            with np.errstate(all="ignore"):
+                effect = (measure(Layout(with_value(base, path, value + 0.1))) - size) / 0.1
+            if effect > 0.1:
+                yield path, effect
