@@ -63,7 +63,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         help="with drawing sheets: drawings/PART_REVISION.pdf and .svg, of every part made",
     )
     add_strict(parser)
-    parser.add_argument("--out", metavar="DIR", help="folder to write (default exports/<design>)")
+    parser.add_argument("-o", "--out", metavar="DIR", help="folder to write (default exports/<design>)")
     add_others(parser)
     add_allowance(parser, "relative error of a part's meshed volume, written as stl/PART_REV.stl,", "mesh")
     add_json(parser)

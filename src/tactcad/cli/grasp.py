@@ -62,7 +62,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--within", metavar="P", help="error of the pads' forces that is accepted, of their mean, such as 2%%"
     )
-    parser.add_argument("--out", metavar="FILE.svg", help="draw the pressure under the pads")
+    parser.add_argument("-o", "--out", metavar="FILE.svg", help="draw the pressure under the pads")
     add_json(parser)
 
 

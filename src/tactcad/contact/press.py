@@ -189,7 +189,7 @@ class PadsOnBody:
             # unknown is what a linear body would bear; the pad bears `hard` times as much
             M[block, block] += hard[i] * self.modes.T @ D[i] @ self.modes
         gap = (back + np.where(stopped[:, None], fixed @ self.modes, 0.0)).ravel()
-        f, at = _complementary(M, gap, load, approach, np.repeat(hard, m))
+        f, at = complementary(M, gap, load, approach, np.repeat(hard, m))
         f = hard[:, None] * f.reshape(n, m)
         generalised = f @ self.modes.T  # force and moments of each pad
         motion = np.einsum("nij,nj->ni", D, generalised) + fixed
@@ -208,7 +208,7 @@ class PadsOnBody:
         return result, np.where(stopped, held, 0.0)
 
 
-def _complementary(
+def complementary(
     M: np.ndarray, gap: np.ndarray, load: float | None, approach: float | None, share: np.ndarray
 ) -> tuple[np.ndarray, float]:
     """f >= 0 with M f + gap - approach >= 0 and one of them zero; the approach where the load, the sum of

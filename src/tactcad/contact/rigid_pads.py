@@ -17,7 +17,7 @@ import numpy as np
 from scipy.interpolate import RectBivariateSpline
 
 from .elastic_body import Body, influence
-from .press import _complementary, patches
+from .press import complementary, patches
 
 KNOTS = 21  # of each ratio in the table, 0 to 1; 41 move forces by less than 0.1 %
 ROUNDS = 60  # of Newton's method, at most
@@ -94,7 +94,7 @@ def pad_law(poisson: float, thickness: float, base: str, length: float, width: f
     for i, x in enumerate(t):
         for j, y in enumerate(t[: KNOTS - i - 1]):
             depth = 1 - 1.5 * (x + y)
-            f, _ = _complementary(M, -(x * modes[1] + y * modes[2]), None, depth)
+            f, _ = complementary(M, -(x * modes[1] + y * modes[2]), None, depth, np.ones(one.shape[1]))
             value[:, i, j] = modes @ f
     step = 1 / (KNOTS - 1)
     cells = np.empty((KNOTS - 1, KNOTS - 1, 3, 4, 4))
