@@ -13,9 +13,9 @@ export OPENBLAS_NUM_THREADS := 1
 export PYTHONDONTWRITEBYTECODE :=
 
 help: ## this list
-	@awk -F ':.*## ' '/^[a-z]+:.*## / {printf "  make %-9s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
+	@awk -F ':.*## ' '/^[a-z]+:.*## / {printf "  make %-11s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
 
-environment:
+environment: ## create .venv and install everything at pinned versions: about 3 GB, a few minutes
 	@packaging/environment.sh
 
 export: environment ## write the files of every design in hardware/ to exports/<design>/
@@ -32,7 +32,7 @@ check: environment ## style, types, and every check of every design: all failure
 	$(BIN)/ruff check || status=1; \
 	$(BIN)/ruff format --check src tests benchmarks packaging || status=1; \
 	$(BIN)/mypy || status=1; \
-	$(BIN)/tactcad check $(DESIGNS) --report exports/check || status=1; \
+	$(BIN)/tactcad check $(DESIGNS) --out exports/check || status=1; \
 	exit $$status
 
 golden: environment ## take up every design's geometry in exports/golden/, where no check fails; prints what changed

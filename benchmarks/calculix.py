@@ -13,7 +13,9 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
+from skfem import MeshQuad
 
+from tactcad.contact.elastic_body import Body
 from tactcad.fem.elements import SolidSolution, parabola
 from tactcad.fem.mapped_mesh import PlaneMesh, merged
 from tactcad.fem.space import AcrossSpace, PlaneSpace, line_load
@@ -235,6 +237,36 @@ def _write(
     lines += [f"{n + 1}, 2, {v:.12g}" for n, v in enumerate(force[:, 1]) if v != 0.0]
     lines += ["*NODE PRINT, NSET=ALL", "U", "*END STEP", ""]
     path.write_text("\n".join(lines), "ascii")
+
+
+def punch_force(mesh: MeshQuad, body: Body, radius: float, depth: float, path: Path) -> float:
+    """Force (N) of a rigid round punch, under which the face does not slide, at a depth in a bonded
+    neo-Hookean layer: rings of eight nodes with reduced integration, CAX8R, finite strain."""
+    corners = mesh.p.T[mesh.t.T[:, ::-1]]  # ccx counts against the clock
+    cells = np.concatenate([corners, (corners + np.roll(corners, -1, axis=1)) / 2], axis=1)
+    points, nodes = merged(cells)
+    r, z = points.T
+    lines = ["*NODE, NSET=ALL"]
+    lines += [f"{i}, {x:.12g}, {y:.12g}, 0." for i, (x, y) in enumerate(points, 1)]
+    lines.append("*ELEMENT, TYPE=CAX8R, ELSET=BODY")
+    lines += [f"{i}, " + ", ".join(str(n + 1) for n in cell) for i, cell in enumerate(nodes, 1)]
+    shear, bulk = body.modulus / (2 * (1 + body.poisson)), body.modulus / (3 * (1 - 2 * body.poisson))
+    lines += ["*MATERIAL, NAME=SOFT", "*HYPERELASTIC, NEO HOOKE", f"{shear / 2:.12g}, {2 / bulk:.12g}"]
+    lines += ["*SOLID SECTION, ELSET=BODY, MATERIAL=SOFT", "*BOUNDARY"]
+    under, bottom = np.flatnonzero((z > -1e-9) & (r < radius + 1e-9)), np.flatnonzero(z < z.min() + 1e-9)
+    lines += [f"{n + 1}, 1, 2, 0." for n in bottom]
+    lines += [f"{n + 1}, 1, 1, 0." for n in np.union1d(np.flatnonzero(r < 1e-9), under)]
+    lines += ["*NSET, NSET=PUNCHED", *(f"{n + 1}," for n in under)]
+    lines += ["*STEP, NLGEOM, INC=200", "*STATIC", "0.05, 1., 1e-4, 0.1", "*BOUNDARY"]
+    lines += [f"{n + 1}, 2, 2, {-depth:.12g}" for n in under]
+    lines += ["*NODE PRINT, NSET=PUNCHED, TOTALS=ONLY, FREQUENCY=1000", "RF", "*END STEP", ""]
+    path.write_text("\n".join(lines), "ascii")
+    job = path.with_suffix("")
+    subprocess.run([executable() or "ccx", "-i", job.name], cwd=path.parent, check=True, capture_output=True)
+    last = [line.split() for line in job.with_suffix(".dat").read_text("ascii").splitlines() if line.strip()][
+        -1
+    ]
+    return -180 * float(last[1])  # ccx solves a wedge of two degrees
 
 
 def _displacements(path: Path, shape: tuple[int, int]) -> Array:

@@ -177,7 +177,7 @@ class Touch:
     @property
     def why(self) -> str:
         of_runs = "1 % of scatter is assumed" if self.lab.runs == 1 else ""
-        return "holds for every coupling up to a half-space" if self.limit else of_runs
+        return "even pads, all read: holds for every coupling up to a half-space" if self.limit else of_runs
 
     def share(self, array: Truth) -> np.ndarray:
         """Displacement of a pad by the force on another over that by the same force on itself."""

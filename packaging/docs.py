@@ -17,7 +17,8 @@ from html.parser import HTMLParser
 from pathlib import Path
 from urllib.parse import unquote, urlsplit
 
-from tactcad.cli.main import COMMANDS, parser_of
+from tactcad.cli.main import COMMANDS, overview, parser_of
+from tactcad.cli.parser import UNLISTED
 from tactcad.design.schema import markdown_schema
 
 ROOT = Path(__file__).parents[1]
@@ -59,13 +60,8 @@ def schema_page() -> str:
 
 def commands_page() -> str:
     head = (
-        "# Commands\n\nDESIGN is a path, or the name of a design in `hardware/`. Exit status: 0 done; 1 a "
-        "check failed or "
-        "a request cannot be met; 2 bad input, refused in one line. Every command has `--help`, which shows "
-        "what "
-        "stands here, and `--profile`, which says at the end what was loaded and made, how long it took, "
-        "and how "
-        "much memory.\n"
+        "# Commands\n\nDESIGN is a path, or a name in `hardware/`. `tactcad help` prints this list "
+        f"and `tactcad help COMMAND` what stands below.\n\n```text\n{overview()}\n```\n"
     )
     return "\n".join([head, *(_command(name) for name in COMMANDS)])
 
@@ -73,7 +69,7 @@ def commands_page() -> str:
 def _command(name: str) -> str:
     """A command as its own parser has it: usage, arguments, examples."""
     parser = parser_of(name)
-    shown = [action for action in parser._actions if action.dest not in ("help", "profile")]
+    shown = [action for action in parser._actions if action.help != UNLISTED]
     rows = [
         "| " + _called(action) + " | " + html.escape(action.help or "").replace("|", "\\|") + " |"
         for action in shown

@@ -39,7 +39,7 @@ estimate {file} --model fem-plane --json
 estimate {file} --accuracy 0.5% --json
 size --stiffness 20 --load-arm 4 --design {file} --json
 diff hardware/macro-array.toml {file} --json --html diff-{name}.html
-new new-{name}.toml --from {file} --json
+new new-{name}.toml --from {file}
 schema --json
 validate --json --out validation
 calibrate examples/calibration.csv --json --out calibration.csv

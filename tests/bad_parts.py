@@ -37,6 +37,22 @@ def strength(**changes) -> list[Finding]:
     return check_strength(variant({path.replace("__", "."): value for path, value in changes.items()}))
 
 
+def origin() -> list[Finding]:
+    from variants import HARDWARE
+
+    from tactcad.checks.run import _stale
+    from tactcad.design.load import parse
+
+    text = (HARDWARE / "soft-tissue.toml").read_text("utf-8")
+    return _stale(parse(text.replace("hinge_thickness = 0.15", "hinge_thickness = 0.16"), "soft-tissue"))
+
+
+def fatigue() -> list[Finding]:
+    from tactcad.checks.facing_rows.overload_stop import check_fatigue
+
+    return [*check_fatigue(variant())]
+
+
 def clearance(**changes) -> list[Finding]:
     from tactcad.checks.facing_rows.overload_stop import check_clearance
 
@@ -298,6 +314,13 @@ BAD: dict[str, Bad] = {
         "strength",
         "a gap of 0.2 mm over the 4 mm arm",
         lambda: strength(stop__gaps={"4": 0.2}),
+        "tests/checks/test_strength_check.py",
+    ),
+    "origin": Bad("origins", "soft-tissue with another hinge", origin, "tests/design/test_origins.py"),
+    "fatigue": Bad(
+        "fatigue",
+        "the shipped arms, rated above what they endure",
+        fatigue,
         "tests/checks/test_strength_check.py",
     ),
     "rated-force": Bad(

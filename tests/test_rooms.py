@@ -15,8 +15,8 @@ ROOMS = (
     "contour",
     "mechanics",
     "report",
-    "contact",
     "fem",
+    "contact",
     "parts",
     "scenes",
     "stacks",
@@ -111,7 +111,10 @@ def test_no_room_imports_a_higher_one():
     wrong = []
     for path in MODULES:
         here = room(dotted(path))
-        # the package itself and __main__, which starts the command, know no other room than cli
+        # the package itself and __main__, which starts the command, know no other room than cli; what Python
+        # users call, and its names, stand above all
+        if dotted(path) in ("tactcad", "tactcad.face"):
+            continue
         above = ROOMS[ROOMS.index(here) + 1 :] if here else ROOMS[:-1]
         wrong += [(dotted(path), name) for name in imports_of(path) if room(name) in above]
     assert wrong == []

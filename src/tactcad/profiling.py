@@ -1,4 +1,4 @@
-"""What a run made, how long that took and what it loaded, for `--profile`; and how far its work has come.
+"""What a run made, how long that took and what it loaded, for TACTCAD_PROFILE; and how far its work has come.
 
 Code that makes something expensive (solids, meshes, finite-element solutions, scenes) reports it through
 `making`; without a profile that costs one comparison.

@@ -5,6 +5,8 @@ from __future__ import annotations
 import calculix
 import pytest
 
+from tactcad.contact import large_strain
+from tactcad.contact.elastic_body import Body
 from tactcad.fem.elements import solve_plane
 from tactcad.fem.fem_ladder import converged_plane, converged_solid
 from tactcad.fem.mapped_mesh import plane_mesh
@@ -37,3 +39,13 @@ def test_solid_agrees_with_twenty_node_bricks(two, tmp_path):
     K = calculix.solve_solid(plane_mesh(SHAPES[two], 2), E, NU, B, 1, tmp_path).stiffness
     limit = converged_solid(SHAPES[two], E, NU, B).stiffness
     assert K == pytest.approx(limit, rel=4e-3)  # the mesh's own error, see the plane's at density 2
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("nu, h, depth", [(0.49, 2.0, 0.4), (0.45, 4.0, 0.4), (0.3, 1.0, 0.3)])
+def test_a_deep_punch_agrees_with_hyperelastic_rings(nu, h, depth, tmp_path):
+    """CAX8R on a mesh twice as fine; ours on the shipped one."""
+    body = Body(1.0, nu, h)
+    mesh = large_strain._Rings(body, 1.0).basis.mesh.refined()
+    theirs = calculix.punch_force(mesh, body, 1.0, depth, tmp_path / "punch.inp")
+    assert large_strain.punch(body, 1.0, depth)[1][-1] == pytest.approx(theirs, rel=0.02)

@@ -116,7 +116,8 @@ def test_every_check_runs_on_every_part_and_scene_that_it_is_for(macro, monkeypa
     parts = {p.part_no: p for s in scenes for p in s.parts}
     assert len(scenes) == 5 and len(posed) > 10
     expected = {
-        (name, macro.name) for name in ("strength", "clearance", "rigidity", "assembly", "circuit", "signals")
+        (name, macro.name)
+        for name in ("strength", "fatigue", "clearance", "rigidity", "assembly", "circuit", "signals")
     }
     for number, part in parts.items():
         expected |= {("brep", number), ("step", number), ("mesh", number)}

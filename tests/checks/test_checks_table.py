@@ -34,6 +34,7 @@ def test_every_check_in_the_code_has_its_bad_part():
 # words.
 OF_THE_SHIPPED = {
     "strength",
+    "fatigue",
     "circuit",
     "signals",
     "clearance",
@@ -77,5 +78,7 @@ def test_every_timed_check_has_its_times():
         for folder in ("described", "tactcad.checks.facing_rows", "on_solids")
         for c in declared(folder)
     }
-    timed |= {"build", "scenes left out"} | {name for rig in all_rigs().values() for name, _ in rig.checks}
+    timed |= {"build", "origins", "scenes left out"} | {
+        name for rig in all_rigs().values() for name, _ in rig.checks
+    }
     assert timed - {"configurations"} == set(times) - {"golden"}

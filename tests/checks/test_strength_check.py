@@ -6,8 +6,10 @@ import numpy as np
 import pytest
 from variants import variant
 
-from tactcad.checks.facing_rows.overload_stop import check_strength
+from tactcad.checks.facing_rows.overload_stop import check_fatigue, check_strength
 from tactcad.design.load import names
+from tactcad.design.materials import ALLOYS
+from tactcad.lab.array_estimate import estimate
 from tactcad.mechanics import ladder
 from tactcad.paper import published
 from tactcad.parts.array.hinge_section import hinge_section
@@ -165,3 +167,24 @@ def test_out_of_the_estimator_s_range_is_said():
     )
     findings = check_strength(design)
     assert {f.severity for f in findings} == {"flag"} and "cannot tell" in findings[0].message
+
+
+@pytest.mark.parametrize("name", ["macro-array", "soft-tissue"])
+def test_the_force_that_is_endured_has_goodman_s_factor_one(name):
+    """By the estimate's own stress at that force, and Goodman's line as on paper."""
+    design = load(name)
+    layout, row = Layout(design), ALLOYS[design.material.alloy]
+    for state in overloads(layout):
+        (one,) = estimate(layout, "solid", state.endured, numbers=(state.place.number,))
+        half, surface = one.stress / 2, min(1.0, 4.51 * row.tensile_strength**-0.265)
+        fatigue = design.material.fatigue_strength * surface
+        assert half / fatigue + half / row.tensile_strength == pytest.approx(1.0)
+        assert state.measurable <= state.rated_force
+
+
+def test_a_finite_life_is_flagged_and_gone_at_a_force_that_is_endured():
+    (flag,) = check_fatigue(variant())
+    assert "5e8 cycles are borne up to" in flag.message and flag.severity == "flag"
+    least = min(state.endured for state in overloads(Layout(variant())))
+    assert not [*check_fatigue(variant({"rating.force": 0.99 * least}))]
+    assert [*check_fatigue(variant({"rating.force": 1.01 * least}))]

@@ -165,7 +165,7 @@ def test_help_has_examples(command, capsys):
 
 
 def test_unknown_commands_and_options_exit_2(capsys, snapshot):
-    for arguments in ([], ["explode"], ["export", "--no-such-option"], ["schema", "extra"]):
+    for arguments in (["explode"], ["help", "exprot"], ["export", "--no-such-option"], ["schema", "a", "b"]):
         with pytest.raises(SystemExit) as ended:
             main(arguments)
         assert ended.value.code == 2

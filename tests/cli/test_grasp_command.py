@@ -41,7 +41,9 @@ def test_a_layer_couples_the_pads(capsys):
 
 
 def test_an_inclined_face_presses_the_near_pads_and_leaves_the_far_ones(capsys):
-    level, inclined = (pressed(capsys, "--object", SOFT, "--angle", a)["elements"] for a in ("0,0", "0,4"))
+    level, inclined = (
+        pressed(capsys, "--object", SOFT, "--load", "1", "--angle", a)["elements"] for a in ("0,0", "0,4")
+    )
     assert all(e["touches"] for e in level)
     assert 2 <= sum(e["touches"] for e in inclined) < 10
 
@@ -72,8 +74,11 @@ def test_the_picture_is_written_and_names_every_element(capsys, tmp_path):
         (("--object", SOFT, "--angle", "1"), "two numbers are wanted"),
         (("--object", SOFT, "--angle", "0,80"), "from -30 to 30"),
         (("--object", SOFT, "--angle", "20,20", "--load", "0.01"), "1 of 10 pads"),
-        (("--object", SOFT, "--within", "0.01%"), "no rung is that close"),
-        (("--object", SOFT, "--within", "1%", "--rung", "springs"), "not known"),
+        (("--object", "E=0.5,nu=0.5,thickness=6", "--rung", "fem-object"), "rung layer reaches 0.5"),
+        (("--object", "E=0.5,nu=0.5,thickness=6", "--rung", "large"), "rung layer reaches 0.5"),
+        (("--object", "E=0.5,nu=0.49,thickness=inf", "--rung", "fem-object"), "layer reaches the half-space"),
+        (("--object", "E=0.005,nu=0.49,thickness=6"), "rung large reaches 0.5"),
+        (("--object", "E=0.005,nu=0.49,thickness=6", "--rung", "large"), "no rung reaches that"),
         (("--object", SOFT, "--rung", "springs", "--out", "p.svg"), "no pressure"),
     ],
 )
@@ -81,3 +86,20 @@ def test_what_cannot_be_pressed_is_refused_in_one_line(capsys, options, words):
     assert main(["grasp", *options]) == 2
     said = capsys.readouterr()
     assert words in said.err and said.err.count("\n") == 1 and not said.out
+
+
+def test_the_cheapest_rung_that_keeps_an_error_is_taken(capsys):
+    """Separate springs keep next to nothing; the layer does, and where it is pressed deep, large strain. A
+    rung by name that does not keep what is asked is refused."""
+    for options, rung in (
+        (("--object", "E=2000,nu=0.3,thickness=6", "--within", "95%"), "springs"),
+        (("--object", "E=20,nu=0.3,thickness=6", "--load", "0.5", "--within", "5%"), "layer"),
+        (("--object", "E=0.1,nu=0.3,thickness=6", "--load", "0.5", "--within", "1%"), "large"),
+    ):
+        done = pressed(capsys, *options)
+        assert done["rung"] == rung and done["expected_error"] < 0.95
+    assert main(["grasp", "--object", SOFT, "--within", "1%", "--rung", "springs"]) == 1
+    said = capsys.readouterr()
+    assert "the best of springs" in said.err and said.err.count("\n") == 1 and not said.out
+    assert main(["grasp", "--object", SOFT, "--within", "0.01%"]) == 1
+    assert "no rung" in capsys.readouterr().err

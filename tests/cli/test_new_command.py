@@ -71,15 +71,6 @@ def test_a_design_of_ones_own_is_started_from_by_its_path(folder):
     assert load("two.toml").name == "two"
 
 
-def test_json_says_what_was_written(folder, capsys):
-    main(["new", "my-sensor.toml", "--json"])
-    assert json.loads(capsys.readouterr().out) == {
-        "file": "my-sensor.toml",
-        "name": "my-sensor",
-        "from": "macro-array",
-    }
-
-
 @pytest.mark.parametrize(
     "file, why",
     [

@@ -1,4 +1,4 @@
-"""Only what a scene needs: what `--profile` counts, and that nothing is loaded or made that nobody asked
+"""Only what a scene needs: what TACTCAD_PROFILE counts, and that nothing is loaded or made that nobody asked
 for."""
 
 from __future__ import annotations
@@ -21,10 +21,11 @@ MESHES = {"trimesh", "manifold3d"}
 KERNEL = {name for name, what in HEAVY.items() if what == "CAD kernel"}
 
 
-def run(*arguments, cwd, script="-m"):
+def run(*arguments, cwd, script="-m", **more):
     """A fresh process: its exit status, standard output, and the profile on standard error."""
     environment = {k: v for k, v in os.environ.items() if k in ("PATH", "LD_LIBRARY_PATH", "HOME")}
     environment |= {"PYTHONPATH": str(Path(tactcad.__file__).parents[1]), "TACTCAD_CACHE": str(cwd / "cache")}
+    environment |= more
     command = [sys.executable, "-m", "tactcad"] if script == "-m" else [sys.executable, "-c", script]
     done = subprocess.run(
         [*command, *arguments], cwd=cwd, env=environment, capture_output=True, text=True, check=False
@@ -33,7 +34,7 @@ def run(*arguments, cwd, script="-m"):
 
 
 def profile(*arguments, cwd, status=0):
-    done = run(*arguments, "--profile", "--json", cwd=cwd)
+    done = run(*arguments, "--json", cwd=cwd, TACTCAD_PROFILE="1")
     assert done.returncode == status, done.stderr
     record, _ = json.JSONDecoder().raw_decode(done.stderr[done.stderr.index("{\n") :])
     return record  # behind it stands why a command is refused
@@ -132,7 +133,7 @@ sys.exit(f"loaded {found}" if found else 0)
 @pytest.mark.cad
 @pytest.mark.parametrize("scene", ["array", pytest.param("grasping", marks=pytest.mark.nightly)])
 def test_export_builds_the_scenes_own_parts_each_once_and_solves_nothing(scene, tmp_path):
-    done = run("export", str(DESIGN), "--scene", scene, "--out", "out", "--profile", cwd=tmp_path)
+    done = run("export", str(DESIGN), "--scene", scene, "--out", "out", cwd=tmp_path, TACTCAD_PROFILE="1")
     assert done.returncode == 0, done.stderr
     made = parsed(done.stderr)
     parts = {part.part_no for part in make_scene(variant(base="double-sample"), scene).parts}
@@ -141,14 +142,14 @@ def test_export_builds_the_scenes_own_parts_each_once_and_solves_nothing(scene, 
     assert {name.removesuffix("-drawn") for name in made["solid"]} == parts, "none outside the scene"
     assert set(made["scene"]) == {scene} and "elements" not in made
     assert all(name.startswith("picture of") for name in made.get("mesh", {})), "meshes for pictures alone"
-    again = run("export", str(DESIGN), "--scene", scene, "--out", "out", "--profile", cwd=tmp_path)
+    again = run("export", str(DESIGN), "--scene", scene, "--out", "out", cwd=tmp_path, TACTCAD_PROFILE="1")
     assert parsed(again.stderr) == {} and "none of the heavy ones" in again.stderr
 
 
 @pytest.mark.cad
 @pytest.mark.nightly
 def test_check_builds_and_meshes_every_part_once(tmp_path):
-    done = run("check", str(DESIGN), "--profile", cwd=tmp_path)
+    done = run("check", str(DESIGN), cwd=tmp_path, TACTCAD_PROFILE="1")
     made = parsed(done.stderr)
     design = variant(base="double-sample")
     parts = {part.part_no for name in scene_names(design) for part in make_scene(design, name).parts}
@@ -175,7 +176,7 @@ def parsed(stderr: str) -> dict[str, dict[str, int]]:
 
 
 def test_the_profile_is_printed_when_a_command_fails_too(tmp_path):
-    done = run("estimate", str(DESIGN), "--accuracy", "0.0001%", "--profile", cwd=tmp_path)
+    done = run("estimate", str(DESIGN), "--accuracy", "0.0001%", cwd=tmp_path, TACTCAD_PROFILE="1")
     assert done.returncode == 1 and "profile: " in done.stderr and "no rung is known" in done.stderr
 
 

@@ -35,36 +35,41 @@ EXTRAS = {
 }
 NONE = COMMANDS.keys() - {line.split()[0] for lines in EXTRAS.values() for line in lines} | {"diff"}
 WORK = """
-new new.toml --from A.toml --json --profile
-build A.toml --count 20 --seed 1 --json --profile
+new new.toml --from A.toml
+build A.toml --count 20 --seed 1 --json
 build A.toml --within 10% --in 60
-diff A.toml B.toml --json --html out.html --markdown out.md --fail-on checks --profile
+diff A.toml B.toml --json --html out.html --markdown out.md --out other.html --full --fail-on checks
 diff HEAD . A.toml --their-code
-estimate A.toml --model plane --force 0.1 --json --profile
+estimate A.toml --model plane --force 0.1 --json
 estimate A.toml --accuracy 1% --in 60
 estimate A.toml --within 1%
 estimate A.toml --inspection sheet.csv
 estimate --batch batch.csv --out stiffness.csv
-size --stiffness 10 --load-arm 6 --solve length --design A.toml --hinge-thickness 0.3 --json --profile
+size --stiffness 10 --load-arm 6 --solve length --design A.toml --hinge-thickness 0.3 --json
+size --stiffness 10 --load-arm 6 --with poisson=0.3 --in 60 --json
+size --stiffness 10 --load-arm 6 --within 1%
 size --stiffness 10 --load-arm 6 --hinge-length 1 --fillet-radius 0.2 --arm-height 3 --sides two
 size --stiffness 10 --load-arm 6 --width 3 --youngs-modulus 7e4 --poisson 0.3 --alloy 7075-T6 --force 0.1
 size --stiffness 10 --load-arm 6 --tolerance 0.01 --model beam --body-height 5 --body-length 4
 size --stiffness 10 --load-arm 6 --within 1% --in 1
 calibrate calibration.csv --load-cell 57+-1 --run-scatter 0.01 --drop-outliers --out cal.csv
-calibrate calibration.csv --design macro-array --level 0.9 --within 1% --in 1 --json --profile
-stiffness grasp.csv --calibration cal.csv --reference 8 --level 0.9 --json --profile
-stiffness grasp.csv --calibration cal.csv --design macro-array --coupling 1 --thickness 5 --within 1% --in 1
+calibrate calibration.csv --design macro-array --level 0.9 --within 1% --in 1 --json
+stiffness grasp.csv --calibration cal.csv --reference 8 --level 0.9 --json
+stiffness grasp.csv --calibration cal.csv --design macro-array --coupling 1 --within 1% --in 1
+stiffness grasp.csv --calibration cal.csv --thickness 5+-1 --nu 0.49
+schema --target --json
 grasp macro-array --object E=0.5,nu=0.49,thickness=6 --load 1 --angle 0.5,1 --rung layer --out p.svg
-grasp --object E=0.5,nu=0.49,thickness=6 --within 1% --json --profile
-schema --target --json --profile
+grasp --object E=0.5,nu=0.49,thickness=6 --within 1% --json
 schema --study
+schema element
+completion bash
 """
 LONG = """
-design target.toml --out designed --best --within 10% --in 120 --json --profile
-validate --out report --keep --json --profile --design macro-array --table1 table1.csv
+design target.toml --out designed --best --within 10% --in 120 --json
+validate --out report --keep --json --design macro-array --table1 table1.csv
 validate --out report --discard --table2 table2.csv
 """
-NEVER = {"--help"}
+NEVER = {"--help", "--quiet", "--verbose"}
 
 
 @pytest.fixture(scope="module")

@@ -196,7 +196,7 @@ def test_what_was_to_be_ignored_stays_ignored(bench, work, name):
 def test_helpers_end_with_what_they_help(bench, work, name, group):
     """The processes that draw sheets are gone with the export, whether it alone got the signal or all of them
     did."""
-    arguments = ("export", "A.toml", "--drawings", "--out", "out")
+    arguments = ("export", "A.toml", "--drawings", "--out", "out", "-v")
     with subprocess.Popen(
         [*MODULE, *arguments],
         cwd=work,

@@ -19,8 +19,8 @@ ROOT = Path(__file__).parents[2]
 CALIBRATION, GRASP = ROOT / "hardware/examples/calibration.csv", ROOT / "hardware/examples/grasp.csv"
 
 
-def test_report_has_nine_sections_with_findings_tables_and_pictures(report):
-    assert len(report.sections) == 9
+def test_report_has_ten_sections_with_findings_tables_and_pictures(report):
+    assert len(report.sections) == 10
     for section in report.sections:
         assert section.findings and section.tables and section.figures
 

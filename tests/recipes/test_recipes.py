@@ -321,6 +321,19 @@ def test_a_second_family_takes_five_files(tree):
     ):
         done = tree.run(*command)
         assert done.returncode == 0, (command, done.stderr)
+    script = (
+        "import tactcad as tc; d = tc.load('leaf.toml').with_(length=25.0); e = d.estimate(); print(e)\n"
+        "print(e[0].stiffness, *d.size)\n"
+        "tc.load('leaf.toml').with_(length=4.0)"
+    )
+    own = {"PYTHONPATH": str(tree.src), "TACTCAD_CACHE": str(tree.folder / "cache")}
+    done = subprocess.run(
+        [sys.executable, "-c", script], cwd=tree.folder, env=os.environ | own, capture_output=True, text=True
+    )
+    stiffness, *size = map(float, done.stdout.splitlines()[-1].split())
+    assert stiffness == pytest.approx(72000 * 10 * 1.0**3 / (4 * 25.0**3))
+    assert size == [35.0, 10.0, 9.0]  # 10 mm held on the block of 8 mm, the sheet of 1 mm on it
+    assert "tactcad.design.messages.InputError: leaf.length: rule leaf_is_slender" in done.stderr
     made = tree.run("export", "leaf.toml", "--drawings", "--guide", "--out", "out")
     assert made.returncode == 0, made.stderr
     kinds = {

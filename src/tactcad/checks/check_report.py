@@ -11,6 +11,7 @@ from xml.etree import ElementTree
 
 from tactcad.design.messages import CheckFailure
 from tactcad.parts.array.stiffness_table import Deflection
+from tactcad.parts.language.description import Vector
 from tactcad.parts.language.finding import Finding
 
 
@@ -32,6 +33,7 @@ class Report:
     revision: str = ""
     cases: list[Case] = field(default_factory=list)
     deflections: list[Deflection] = field(default_factory=list)
+    size: Vector | None = None  # mm, of the array; None of a design that is refused
 
     @property
     def findings(self) -> list[Finding]:
@@ -78,6 +80,7 @@ def as_record(report: Report) -> dict[str, Any]:
         "design": report.design,
         "revision": report.revision,
         "passed": not report.failures,
+        "size_mm": report.size,
         "findings": [f.as_record() for f in report.findings],
         "deflections": [asdict(line) for line in report.deflections],
         "runs": report.runs,

@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
+from tactcad.design.load import stale_origins
 from tactcad.design.tree import Design
 from tactcad.parts.language.description import Part
 from tactcad.parts.language.finding import Finding, Severity
-from tactcad.scenes import left_out, make_scene
+from tactcad.scenes import left_out, make_scene, overall_size
 from tactcad.scenes.poses import poses
 from tactcad.solids.build import SolidError, build
 from tactcad.solids.meshing import USUAL, Meshing
@@ -51,7 +52,7 @@ def run_checks(
         Where the shop file cannot be used.
     """
     scenes = [make_scene(design, name) for name in scene_names]
-    report = Report(design.name, design.design.revision)
+    report = Report(design.name, design.design.revision, size=overall_size(design))
     job = Job(design, scene_names, scenes, load_shop(shop_file), meshing, report.deflections)
     checks = ordered((*described(design), *declared("on_solids")))
     of_design = sorted((*checks, *of_rigs(design, scenes)), key=lambda check: check.place)
@@ -63,6 +64,7 @@ def run_checks(
         report.run("build", _built, part, job)
         if part.part_no in job.shapes:
             run_each(report, checks, "part", part, job)
+    report.run("origins", _stale, design)
     report.run("scenes left out", _left_out, design, "fail" if strict else "flag")
     for n, scene in enumerate(scenes, start=len(parts)):
         say(n, total, f"{scene.name}: interference of {len(scene.placements)} placed parts")
@@ -83,6 +85,11 @@ def run_checks(
 def _left_out(design: Design, severity: Severity = "flag") -> list[Finding]:
     """A rig that cannot take this array is flagged with the reason."""
     return [Finding("scene", severity, design.name, (), 0, 0, str(left)) for left in left_out(design)]
+
+
+def _stale(design: Design) -> list[Finding]:
+    """Sources of values that were changed since."""
+    return [Finding("origin", "flag", design.name, (), 0, 0, said) for said in stale_origins(design)]
 
 
 def _built(part: Part, job: Job) -> list[Finding]:

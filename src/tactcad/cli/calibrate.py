@@ -54,7 +54,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--level", type=float, default=0.95, metavar="P", help="level of the intervals (default 0.95)"
     )
     parser.add_argument("--drop-outliers", action="store_true", help="leave named outliers out of the fit")
-    parser.add_argument("--out", metavar="FILE", help="write the calibration as CSV, for `tactcad stiffness`")
+    parser.add_argument(
+        "-o", "--out", metavar="FILE", help="write the calibration as CSV, for `tactcad stiffness`"
+    )
     parser.add_argument("--json", action="store_true", help="print as JSON")
     add_needless_allowance(parser)
 

@@ -1,4 +1,4 @@
-"""tactcad check [DESIGN]... [--scene NAME]... [--shop FILE] [--strict] [--report DIR] [--within P]
+"""tactcad check [DESIGN]... [--scene NAME]... [--shop FILE] [--strict] [--out DIR] [--within P]
 [--in SECONDS] [--json]"""
 
 from __future__ import annotations
@@ -15,13 +15,13 @@ if TYPE_CHECKING:
     from tactcad.design.allowance import Allowance, Picked
     from tactcad.solids.meshing import Meshing
 
-from .parser import add_allowance, add_design, add_json, add_shop, add_strict, allowance
+from .parser import UNLISTED, add_allowance, add_design, add_json, add_shop, add_strict, allowance
 
 EXAMPLES = """\
   tactcad check                           every check of hardware/macro-array.toml
   tactcad check soft-tissue --json        findings, runs and times as JSON
   tactcad check --shop my-shop.toml       with your own shop's limits
-  tactcad check macro-array soft-tissue --report exports/check
+  tactcad check macro-array soft-tissue --out exports/check
                                           both designs; check.json and junit.xml in that folder
   tactcad check --within 0.1%             parts meshed so that each volume is within 0.1 % of the solid's
   tactcad check --in 60                   meshed as finely as 60 s allow; no check is left out
@@ -38,7 +38,13 @@ def configure(parser: argparse.ArgumentParser) -> None:
     )
     add_shop(parser)
     add_strict(parser)
-    parser.add_argument("--report", metavar="DIR", help="write check.json and junit.xml there")
+    parser.add_argument(
+        "--all",
+        action="store_true",
+        help="of a design that is refused: every rule that it breaks, a line each",
+    )
+    parser.add_argument("-o", "--out", metavar="DIR", help="write check.json and junit.xml there")
+    parser.add_argument("--report", dest="out", help=UNLISTED)
     add_allowance(parser, "relative error of a part's meshed volume", "mesh")
     add_json(parser)
 
@@ -48,29 +54,42 @@ def run(args: argparse.Namespace) -> int:
     from tactcad.checks.shop import DEFAULT, load_shop
     from tactcad.solids.meshing import USUAL
 
+    from .streams import coloured
+
+    if args.all and (refused := _every_rule(args.design)):
+        print("\n".join(refused), file=sys.stderr)
+        return 2
     asked = allowance(args)
     shop = Path(args.shop) if args.shop else DEFAULT
-    if args.report:
-        _refuse_overwriting(Path(args.report), [*args.design, shop])
+    if args.out:
+        _refuse_overwriting(Path(args.out), [*args.design, shop])
     load_shop(shop)  # a shop file that cannot be used is refused before the kernel is loaded
     meshing, picked = _picked(args, asked) if asked else (USUAL, None)
     reports = [_checked(source, args, shop, meshing) for source in args.design]
-    if args.report:
-        _write(Path(args.report), {"check.json": json_bytes(reports), "junit.xml": junit_bytes(reports)})
+    if args.out:
+        _write(Path(args.out), {"check.json": json_bytes(reports), "junit.xml": junit_bytes(reports)})
     if args.json:
         records = [as_record(report) | ({"budget": picked.record()} if picked else {}) for report in reports]
         print(json.dumps(records[0] if len(records) == 1 else records, indent=1))
     else:
         for report in reports:
             _print(report)
-        for line in failure_table(reports):
-            print(line)
+        for n, line in enumerate(failure_table(reports)):
+            print(coloured(line, "fail" if n > 1 else "", sys.stdout))
         if picked:
             print(picked.text())
     for report in reports:
         if report.failures:
             print(f"tactcad: {report.design}: {len(report.failures)} failures", file=sys.stderr)
     return 1 if any(report.failures for report in reports) else 0
+
+
+def _every_rule(sources: list[str]) -> list[str]:
+    """A line for each broken rule of each design."""
+    from tactcad.design.load import read
+    from tactcad.parts.rules import broken_rules, refusal
+
+    return [f"tactcad: {source}: {refusal(b)}" for source in sources for b in broken_rules(read(source))]
 
 
 def _picked(args: argparse.Namespace, asked: Allowance) -> tuple[Meshing, Picked]:
@@ -132,7 +151,7 @@ def _refuse_overwriting(folder: Path, sources: list[str | Path]) -> None:
         with suppress(InputError):  # where several designs are checked, a missing one is a failed check
             inputs.append(find(source))
     for name in ("check.json", "junit.xml"):
-        refuse_overwriting(folder / name, *inputs, option="--report")
+        refuse_overwriting(folder / name, *inputs, option="--out")
 
 
 def _write(folder: Path, files: dict[str, bytes]) -> None:
@@ -144,11 +163,16 @@ def _write(folder: Path, files: dict[str, bytes]) -> None:
 
 
 def _print(report: Report) -> None:
-    print(f"{report.design} revision {report.revision}")
+    from tactcad.scenes import stated_size
+
+    from .streams import coloured
+
+    size = f", {stated_size(report.size)} overall" if report.size else ""
+    print(f"{report.design} revision {report.revision}{size}")
     seconds = report.seconds
     for check, runs in report.runs.items():
         print(f"  {check:14} {runs:5} runs {seconds[check]:8.2f} s")
     flags = [f for f in report.findings if f.severity == "flag"]
     for finding in flags:
-        print(f"  {finding}")
+        print(coloured(f"  {finding}", "flag", sys.stdout))
     print(f"  {len(report.failures)} failed, {len(flags)} flagged")

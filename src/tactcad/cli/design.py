@@ -33,7 +33,7 @@ each single field that would make it possible; nothing is written then except wi
 def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("target", metavar="TARGET.toml", help="what is to be felt, with which means")
     parser.add_argument(
-        "--out", metavar="DIR", required=True, help="new or empty folder for design and report"
+        "-o", "--out", metavar="DIR", required=True, help="new or empty folder for design and report"
     )
     parser.add_argument(
         "--best", action="store_true", help="write the best there is where the target is not met, too"

@@ -1,4 +1,4 @@
-"""tactcad diff A B [DESIGN] [--their-code] [--json] [--html|--review|--markdown|--freecad FILE] ..."""
+"""tactcad diff A B [DESIGN] [--their-code] [--json] [--out FILE]... [--review FILE] ..."""
 
 from __future__ import annotations
 
@@ -7,9 +7,11 @@ import json
 import sys
 from dataclasses import asdict
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from .parser import add_json
+from tactcad.design.messages import InputError
+
+from .parser import UNLISTED, add_json
 
 if TYPE_CHECKING:
     from tactcad.export.difference import Change
@@ -18,13 +20,13 @@ if TYPE_CHECKING:
 
 EXAMPLES = """\
   tactcad diff exports/golden/macro-array.json macro-array     what changed since the committed geometry
-  tactcad diff before exports/macro-array --html changes.html  two exports, with their pictures side by side
+  tactcad diff before exports/macro-array --out changes.html  two exports, with their pictures side by side
   tactcad diff macro-array my/design.toml --json               two designs, as JSON
   tactcad diff HEAD~3 HEAD macro-array                         two git revisions of a design
   tactcad diff HEAD . macro-array --review changes.html        what changed since the commit, in 3-D
-  tactcad diff HEAD . macro-array --freecad changes.FCStd      the same in FreeCAD
+  tactcad diff HEAD . macro-array --out changes.FCStd          the same in FreeCAD
   tactcad diff HEAD~3 HEAD macro-array --their-code            the same, each built by the code of its time
-  tactcad diff origin/main HEAD macro-array --markdown changes.md --fail-on checks --fail-on revision
+  tactcad diff origin/main HEAD macro-array --out changes.md --fail-on checks --fail-on revision
                                                                for a pull request
 
 A and B are each a design (a path or a name in hardware/), an export's folder, or a golden file (.json); with
@@ -35,6 +37,23 @@ First stands what each change of the design means by itself, by the present code
 K, rated force, signal, stop gap, yield, mass, cut, parts, sheets, bill, and checks that turned.
 What only one of them tells is left out, and said. The exit status is 0 whether anything changed or not, but
 1 where --fail-on is met."""
+
+
+MOST_CHANGES = 40  # lines of differences without --full; chosen: about a screen
+KINDS = {".html": "html", ".md": "markdown", ".FCStd": "freecad"}  # by a file's ending its option
+
+
+class _ByEnding(argparse.Action):
+    """The option that --out means, by the file's ending."""
+
+    def __call__(
+        self, parser: object, namespace: argparse.Namespace, values: Any, option: object = None
+    ) -> None:
+        if (kind := KINDS.get(Path(values).suffix)) is None:
+            raise InputError(
+                "--out", "not a kind of file that diff writes", value=values, legal=", ".join(KINDS)
+            )
+        setattr(namespace, kind, values)
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -49,23 +68,22 @@ def configure(parser: argparse.ArgumentParser) -> None:
         help="build each revision's design by that revision's own code, which runs as you",
     )
     add_json(parser)
+    parser.add_argument("--full", action="store_true", help="print every difference, however small")
     parser.add_argument(
-        "--html", metavar="FILE", help="also write one offline page with contours laid over each other"
+        "-o",
+        "--out",
+        action=_ByEnding,
+        metavar="FILE",
+        help="also write FILE.html (contours laid over each other), FILE.md (at most 60 lines, for a pull "
+        "request) or FILE.FCStd (for FreeCAD); may be repeated",
     )
     parser.add_argument(
         "--review",
         metavar="FILE",
-        help="also write one offline page that shows it in three dimensions: added, removed and kept "
-        "material in colours, and what each cause names",
+        help="also write one offline page in 3-D: added, removed and kept material in colours",
     )
-    parser.add_argument(
-        "--markdown", metavar="FILE", help="also write a summary of at most 60 lines for a pull request"
-    )
-    parser.add_argument(
-        "--freecad",
-        metavar="FILE",
-        help="also write a document of FreeCAD (.FCStd) with added, removed and kept material in colours",
-    )
+    for option in KINDS.values():
+        parser.add_argument(f"--{option}", help=UNLISTED)
     parser.add_argument(
         "--fail-on",
         action="append",
@@ -102,7 +120,7 @@ def run(args: argparse.Namespace) -> int:
     if args.json:
         print(json.dumps(_record(old, new, changes, meant), indent=1))
     else:
-        _print(old, new, changes, meant)
+        _print(old, new, changes, meant, args.full)
     for kind in met:
         print(f"tactcad: --fail-on {kind} is met", file=sys.stderr)
     return 1 if met else 0
@@ -110,7 +128,6 @@ def run(args: argparse.Namespace) -> int:
 
 def _sides(args: argparse.Namespace) -> tuple[Side, Side]:
     from tactcad.design.files import refuse_overwriting
-    from tactcad.design.messages import InputError
     from tactcad.export.sides import named, read_side
     from tactcad.review.freecad import refuse_no_document
     from tactcad.review.review_page import viewer_library
@@ -185,14 +202,28 @@ def _record(old: Side, new: Side, changes: list[Change], meant: Meaning) -> dict
     }
 
 
-def _print(old: Side, new: Side, changes: list[Change], meant: Meaning) -> None:
+def _seen(change: Change) -> bool:
+    """Whether both values differ as they are printed."""
+    old, new = change.shown()
+    return old != new or change.moved is not None
+
+
+def _rank(change: Change) -> tuple[bool, bool]:
+    """Values and elements first, then contours, then the rest of parts, places and bills."""
+    return change.path[0] in ("parts", "scenes"), change.path[-1] != "contours"
+
+
+def _print(old: Side, new: Side, changes: list[Change], meant: Meaning, full: bool) -> None:
     from tactcad.export.sides import not_compared
     from tactcad.review.summary import lines
 
     for line in lines(meant):
         print(line)
-    for change in changes:
+    told = changes if full else sorted(filter(_seen, changes), key=_rank)
+    for change in told if full else told[:MOST_CHANGES]:
         print(change)
+    if left := len(changes) - (len(told) if full else min(len(told), MOST_CHANGES)):
+        print(f"and {left} more differences of parts, places and bills, or too small to print: --full")
     for text in (*not_compared(old, new), *meant.untold):
         print(f"not compared: {text}")
     if not changes:

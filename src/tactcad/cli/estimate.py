@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import sys
 from dataclasses import asdict, replace
 from typing import TYPE_CHECKING
 
@@ -11,7 +12,7 @@ from tactcad.design.allowance import Allowance, Picked, pick, read_within
 from tactcad.design.messages import InputError
 from tactcad.mechanics.ladder import DEFAULT_RUNG, FINITE_ELEMENTS, FITTED, RUNGS
 
-from .parser import add_allowance, allowance, refuse_named
+from .parser import UNLISTED, add_allowance, allowance, refuse_named
 
 if TYPE_CHECKING:
     from tactcad.design.tree import Design, Tolerance
@@ -63,7 +64,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         help=f"one of {', '.join(RUNGS)} (default {DEFAULT_RUNG}); never falls back to another",
     )
     add_allowance(parser, "error of K, against solid elements refined to their limit,", "rung")
-    parser.add_argument("--accuracy", metavar="P", help="the same as --within P")
+    parser.add_argument("--accuracy", help=UNLISTED)  # --within by its older name
     parser.add_argument(
         "--force", type=float, metavar="N", help="force on each pad (default: the design's rated force)"
     )
@@ -71,7 +72,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--batch", metavar="IN.csv", help="a table of designs, one a line (columns: docs/howto.md)"
     )
-    parser.add_argument("--out", metavar="OUT.csv", help="where --batch writes its table")
+    parser.add_argument("-o", "--out", metavar="OUT.csv", help="where --batch writes its table")
     parser.add_argument(
         "--inspection",
         metavar="FILE",
@@ -101,16 +102,19 @@ def run(args: argparse.Namespace) -> int:
 def plain_estimate(args: argparse.Namespace, asked: Allowance, design: Design) -> int:
     """Of a family with one model: its elements' figures as they are."""
     from tactcad.design.family import family_of
+    from tactcad.scenes import overall_size, stated_size
 
     family = family_of(design)
     for option, given in (("--model", args.model), ("--inspection", args.inspection), ("--within", asked)):
         if given:
             raise InputError(option, "does not take designs of this family", value=family.name)
     rows = [asdict(row) for row in family.estimate.rows(family.layout(design), DEFAULT_RUNG, args.force)]
+    size = overall_size(design)
     if args.json:
-        print(json.dumps({"design": design.name, "family": family.name, "elements": rows}, indent=2))
+        document = {"design": design.name, "family": family.name, "size_mm": size, "elements": rows}
+        print(json.dumps(document, indent=2))
         return 0
-    print(f"{design.name} {design.design.revision}, {design.material.alloy}")
+    print(f"{design.name} {design.design.revision}, {design.material.alloy}, {stated_size(size)} overall")
     for row in rows:
         known = (f"{name} {v:.4g}" for name, v in row.items() if isinstance(v, int | float) and v is not True)
         print(f"  {', '.join(known)}")
@@ -138,7 +142,7 @@ def estimate_design(args: argparse.Namespace, asked: Allowance, design: Design) 
             document |= {"mesh": mesh, "budget": picked.record()}
         print(json.dumps(document, indent=2))
     else:
-        print(_report(design, model, rows, uncut, shares))
+        print(_report(layout, model, rows, uncut, shares))
         if picked:
             print(picked.text())
     return 0
@@ -231,12 +235,16 @@ def _document(
 ) -> dict:
     from tactcad.lab.array_estimate import material_record
     from tactcad.mechanics.accuracy import accuracy_data
+    from tactcad.parts.array.layout import Layout
+    from tactcad.parts.array.stop_gap import overloads
+    from tactcad.scenes import overall_size
 
     document = {
         "design": design.name,
         "revision": design.design.revision,
         "model": model,
         "alloy": design.material.alloy,
+        "size_mm": overall_size(design),
         "force_N": rows[0].force,
         "units": {"length": "mm", "force": "N", "stiffness": "N/mm", "stress": "MPa", "strain": "1"},
         "expected_error": _worst(rows),
@@ -247,22 +255,37 @@ def _document(
             for i, row in enumerate(rows)
         ],
     }
+    document["limits"] = [
+        {"number": s.place.number, "endured_N": s.endured, "stop_N": s.earliest, "measurable_N": s.measurable}
+        for s in overloads(Layout(design))
+        if not s.refused
+    ]
     return document | material_record(design) | ({"uncut": uncut} if uncut else {})
 
 
 def _report(
-    design: Design, model: str, rows: list[ElementEstimate], uncut: dict | None, shares: dict | None
+    layout: Layout, model: str, rows: list[ElementEstimate], uncut: dict | None, shares: dict | None
 ) -> str:
+    from tactcad.design.load import stale_origins
     from tactcad.lab.array_estimate import ELEMENT, material_lines
     from tactcad.mechanics.accuracy import stated
+    from tactcad.parts.array.stop_gap import endurance, overloads, reach
     from tactcad.report.figures import text_table
+    from tactcad.scenes import overall_size, stated_size
 
+    from .streams import coloured
+
+    design = layout.design
     lines = [
         f"{design.name} {design.design.revision}, {design.material.alloy}, rung {model}, "
-        f"{rows[0].force:g} N on each pad",
+        f"{rows[0].force:g} N on each pad, {stated_size(overall_size(design))} overall",
         *text_table(ELEMENT.some(*SHOWN), rows, lambda row: "-" if row.elastic else "invalid"),
     ]
     lines += material_lines(design, [row.stiffness for row in rows])
+    states = [state for state in overloads(layout) if not state.refused]
+    said = [("fatigue", endurance(layout, states)), ("stop", reach(states))]
+    said += [("origin", text) for text in stale_origins(design)]
+    lines += [coloured(f"flag: {name}: {text}", "flag", sys.stdout) for name, text in said if text]
     plastic = [str(row.number) for row in rows if not row.elastic]
     if plastic:
         lines.append(

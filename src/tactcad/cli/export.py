@@ -70,7 +70,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "envelope without meshes to look at",
     )
     add_strict(parser)
-    parser.add_argument("--out", metavar="DIR", help="folder to write (default exports/<design>)")
+    parser.add_argument("-o", "--out", metavar="DIR", help="folder to write (default exports/<design>)")
     add_others(parser)
     add_allowance(parser, "relative error of a part's meshed volume, written as stl/PART_REV.stl,", "mesh")
     add_json(parser)

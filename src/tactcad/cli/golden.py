@@ -1,12 +1,11 @@
-"""tactcad golden [DESIGN]... [--shop FILE]"""
+"""tactcad golden [DESIGN]..."""
 
 from __future__ import annotations
 
 import argparse
 import sys
-from pathlib import Path
 
-from .parser import add_design, add_shop
+from .parser import add_design
 
 EXAMPLES = """\
   tactcad golden                   the golden file of hardware/macro-array.toml
@@ -18,7 +17,6 @@ fails. Other geometry under the same revision letter is refused: give the design
 
 def configure(parser: argparse.ArgumentParser) -> None:
     add_design(parser, several=True)
-    add_shop(parser)
 
 
 def run(args: argparse.Namespace) -> int:
@@ -27,15 +25,14 @@ def run(args: argparse.Namespace) -> int:
     status = 0
     for source in args.design:
         try:
-            _renew(source, args.shop)
+            _renew(source)
         except CheckFailure as error:  # the other designs still have their turn
             print(f"tactcad: {error}", file=sys.stderr)
             status = 1
     return status
 
 
-def _renew(source: str, shop_file: str | None) -> None:
-    from tactcad.checks.shop import DEFAULT, load_shop
+def _renew(source: str) -> None:
     from tactcad.design.files import refuse_overwriting
     from tactcad.design.load import find
     from tactcad.design.messages import InputError
@@ -45,20 +42,18 @@ def _renew(source: str, shop_file: str | None) -> None:
 
     from .streams import progress
 
-    shop = Path(shop_file) if shop_file else DEFAULT
-    load_shop(shop)
     design = load(source)
     path = golden_path(find(source), design)
     if path is None:
         raise InputError(source, "has no golden file", legal="a design in a folder hardware/")
-    refuse_overwriting(path, find(source), shop, option=source)
+    refuse_overwriting(path, find(source), option=source)
     changes = changes_against(path, design)
 
     from tactcad.checks.run import run_checks
 
     for change in changes or ():
         print(f"{design.name}: {change}")
-    report = run_checks(design, scene_names(design), shop, progress(sys.stderr).step)
+    report = run_checks(design, scene_names(design), say=progress(sys.stderr).step)
     for failure in report.failures:
         print(failure, file=sys.stderr)
     accept(design, path, report.failures)

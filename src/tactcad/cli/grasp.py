@@ -23,12 +23,13 @@ EXAMPLES = """\
   tactcad grasp --object E=0.5,nu=0.49,thickness=6,base=frictionless --out pressure.svg
 
 E in MPa, thickness in mm (inf: a half-space); base: bonded (default) or frictionless. Angles in degrees,
-positive where the object's face falls away toward +x (along the arms) and +y (along the rows). Rung layer:
-rigid pads that tilt and lift on a continuous body. Rung springs: a separate spring under every pad, as the
-paper's equations have it."""
+positive where the object's face falls away toward +x (along the arms) and +y (along the rows). Rung layer
+(default): rigid pads that tilt and lift on a continuous body. Rung springs: a separate spring under every
+pad, as the paper's equations have it. Rung fem-object: as layer, the body by solid elements (some minutes).
+Rung large: as layer, corrected for large strain. Errors and ranges: docs/accuracy.md."""
 
 PAPERS_LOAD = 3.235  # N; the paper's axis without weights
-RUNGS = ("springs", "layer")
+RUNGS = ("springs", "layer", "fem-object", "large")
 OBJECT = ("E", "nu", "thickness", "base")
 
 
@@ -54,12 +55,14 @@ def configure(parser: argparse.ArgumentParser) -> None:
         help="inclination of the object's face, degrees (default 0,0)",
     )
     parser.add_argument(
-        "--rung", choices=RUNGS, help="model of the object (default: layer, whose error --within is held to)"
+        "--rung",
+        choices=RUNGS,
+        help="model of the object (default: layer, or the cheapest that keeps --within)",
     )
     parser.add_argument(
-        "--within", metavar="P", help="accuracy of the forces that is asked for, such as 1%%, of a level body"
+        "--within", metavar="P", help="error of the pads' forces that is accepted, of their mean, such as 2%%"
     )
-    parser.add_argument("--out", metavar="FILE.svg", help="draw the pressure under the pads")
+    parser.add_argument("-o", "--out", metavar="FILE.svg", help="draw the pressure under the pads")
     add_json(parser)
 
 
@@ -67,33 +70,18 @@ def run(args: argparse.Namespace) -> int:
     from tactcad.design.allowance import read_within
     from tactcad.design.files import refuse_overwriting, write_whole
     from tactcad.design.load import find
-    from tactcad.lab.pressed import LAYER_ERROR, press_array
+    from tactcad.lab.pressed import press_array
     from tactcad.parts.designs import load
 
-    if args.within is not None:
-        within = read_within(args.within, "--within")
-        if args.rung == "springs":
-            raise InputError(
-                "--within",
-                "is not known of rung springs",
-                value=args.within,
-                legal="--rung layer, or without it",
-            )
-        if within < LAYER_ERROR:
-            raise InputError(
-                "--within",
-                "no rung is that close",
-                value=args.within,
-                legal=f"at least {LAYER_ERROR:.1%} (layer)",
-            )
-    rung, body, angle = args.rung or "layer", read_object(args.object), read_angle(args.angle)
+    within = None if args.within is None else read_within(args.within, "--within")
+    body, angle = read_object(args.object), read_angle(args.angle)
     if args.out:
-        if rung == "springs":
-            raise InputError("--out", "springs have no pressure to draw", legal="--rung layer")
         refuse_overwriting(args.out, find(args.design))
     design = load(args.design)
-    done = press_array(design, body, args.load, angle, rung)
+    done = press_array(design, body, args.load, angle, args.rung, within)
     if args.out:
+        if done.patches is None:
+            raise InputError("--out", "springs have no pressure to draw", legal="another --rung")
         write_whole(args.out, picture(done, design.name).encode())
     print(json.dumps(as_json(done, design.name), indent=2) if args.json else as_text(done))
     return 0
@@ -152,6 +140,7 @@ def as_json(done: PressedArray, design: str) -> object:
             "load": done.load,
             "angle": done.angle,
             "approach": done.approach,
+            "expected_error": done.expected_error,
             "elements": [{"no": e.number} | _without_number(e) for e in done.elements],
             "pairs": done.pairs,
         }
@@ -172,7 +161,8 @@ def as_text(done: PressedArray) -> str:
     lines = [
         f"object: {layer}, E {body.modulus:g} MPa, nu {body.poisson:g}; "
         f"K_obj {done.object_stiffness:.4g} N/mm under a single level pad",
-        f"load {done.load:g} N, inclined {done.angle[0]:g}, {done.angle[1]:g} degrees; rung {done.rung}",
+        f"load {done.load:g} N, inclined {done.angle[0]:g}, {done.angle[1]:g} degrees; rung {done.rung}: "
+        f"forces within {done.expected_error:.2g} of their mean",
         "",
         *text_table(list(ELEMENT.values()), done.elements),
         "",

@@ -24,28 +24,51 @@ from tactcad.profiling import profiled, text
 from tactcad.shutdown import end_on_signals, ignore_signals
 
 from . import streams
-from .parser import Parser
+from .parser import UNLISTED, Parser
 
-COMMANDS = {
-    "new": "write a design file to start from",
-    "design": "a sensor from a target: what is to be felt, to the design that feels it, and how surely",
-    "export": "write the files of a design: STEP, DXF, bill of materials, pictures",
-    "check": "run every check on a design",
-    "build": "build a thousand arrays virtually from parts within their limits, and say what fails",
-    "sweep": "measure many designs, on one machine or a cluster, into one table; stopped, it goes on",
-    "release": "run every check, and write one zip that a shop can quote from",
-    "review": "one offline page: the sensor in 3-D, with limits, findings, estimates and bill part by part",
-    "view": "the same page live: it follows the design file while it is written",
-    "golden": "run every check, show what changed, and write a design's golden geometry",
-    "diff": "what changed between two designs, git revisions, exports or golden files, and what it means",
-    "estimate": "stiffness, strain and strength of a design's elements, or of a table of designs",
-    "size": "the hinge that gives a wanted stiffness, and what cutting tolerance leaves of it",
-    "validate": "hold the models against the paper's Tables 1 and 2, as a report",
-    "calibrate": "force, deflection and signal readings to stiffness and sensitivity, with intervals",
-    "stiffness": "grasp readings and a calibration to the object's stiffness, with intervals",
-    "grasp": "press an array on a soft body: deflection, force and signal of every element",
-    "schema": "print every field of a design file with unit, range, default and meaning",
+GROUPS = {
+    "make": {
+        "new": "write a design file to start from",
+        "design": "find the design that feels a target, and how surely",
+        "export": "write the files of a design: STEP, DXF, bill of materials, pictures",
+        "check": "run every check on a design",
+        "build": "build a thousand arrays virtually from parts within their limits, and say what fails",
+        "release": "run every check, and write one zip that a shop can quote from",
+    },
+    "look": {
+        "review": "write one offline page: the sensor in 3-D, with limits, findings, estimates and bill",
+        "view": "serve the same page live; it follows the design file as you edit",
+        "diff": "show what changed between two designs, git revisions, exports or golden files",
+    },
+    "know": {
+        "estimate": "stiffness, strain and strength of a design's elements, or of a table of designs",
+        "size": "the hinge that gives a wanted stiffness, and what cutting tolerance leaves of it",
+        "grasp": "press an array on a soft body: deflection, force and signal of every element",
+        "calibrate": "force, deflection and signal readings to stiffness and sensitivity, with intervals",
+        "stiffness": "grasp readings and a calibration to the object's stiffness, with intervals",
+        "validate": "compare the models with the paper's Tables 1 and 2, as a report",
+        "sweep": "measure many designs, on one machine or a cluster, into one table",
+        "schema": "print every field of a design file with unit, range, default and meaning",
+    },
+    "keep": {"golden": "run every check, show what changed, and write a design's golden geometry"},
+    "help": {
+        "help": "show this text, or a command's options with examples: tactcad help COMMAND",
+        "completion": "print the completion of commands and options for bash, zsh or fish",
+    },
 }
+COMMANDS = {name: text for group in GROUPS.values() for name, text in group.items() if name != "help"}
+COMMON = """\
+every command takes:
+  -h, --help         its options, with examples
+  -q, --quiet        no progress, results and refusals only
+  -v, --verbose      a line for each piece of work, where output goes to a file or a pipe
+
+exit status: 0 done; 1 a check failed, or a request cannot be met; 2 bad input
+
+variables:
+  TACTCAD_CACHE      folder that keeps what was made (default: .cache in a checkout, else the user's cache)
+  TACTCAD_PROFILE    set: what was loaded and made, how long it took and how much memory, on standard error
+  NO_COLOR           set: no colours on a terminal"""
 
 # Extras without which a command, or one of its options, is refused before any work.
 NEEDS = {
@@ -128,46 +151,55 @@ def _profiled(run: Callable[[argparse.Namespace], int], args: argparse.Namespace
             print(json.dumps(record, indent=1) if as_json else text(record), file=sys.stderr)
 
 
-def parser_of(command: str) -> Parser:
-    """The parser of one of COMMANDS, as its --help and the reference pages show it."""
+def parser_of(command: str, raises: bool = False) -> Parser:
+    """The parser of one of COMMANDS, as its --help and the reference pages show it; `raises` as of Parser."""
     module = importlib.import_module(f"tactcad.cli.{command}")
     parser = Parser(
         prog=f"tactcad {command}",
         description=COMMANDS[command],
-        epilog=f"examples:\n{module.EXAMPLES}",
+        epilog=f"examples:\n{module.EXAMPLES}\n\n-q, -v, exit statuses, variables: tactcad help",
         formatter_class=argparse.RawDescriptionHelpFormatter,
+        add_help=False,
+        raises=raises,
     )
     module.configure(parser)
-    parser.add_argument(
-        "--profile",
-        action="store_true",
-        help="at the end, on standard error: what was loaded, which parts, meshes and finite-element "
-        "solutions were "
-        "made, how often, how long, and how much memory it took (with --json as JSON)",
-    )
+    parser.add_argument("-h", "--help", action="help", help=UNLISTED)
+    loud = parser.add_mutually_exclusive_group()
+    for short, long in (("-q", "--quiet"), ("-v", "--verbose")):
+        loud.add_argument(short, long, action="store_const", const=long, dest="loudness", help=UNLISTED)
     return parser
+
+
+def overview() -> str:
+    """What `tactcad` alone prints: the commands by task, and what they share."""
+    groups = [
+        "\n".join([f"{group}:", *(f"  {name:10} {text}" for name, text in commands.items())])
+        for group, commands in GROUPS.items()
+    ]
+    head = "usage: tactcad COMMAND ...\n\nFrom one text file to a spring-based tactile sensor array."
+    return "\n\n".join([head, *groups, COMMON])
 
 
 def _dispatch(argv: list[str]) -> int:
     if argv and argv[0] in COMMANDS:
         args = parser_of(argv[0]).parse(argv[1:])
+        streams.set_loudness(args.loudness)
         for what, needed in NEEDS.items():
             command, _, option = what.partition(" --")
             if command == argv[0] and (not option or getattr(args, option)):
                 extras.refuse_missing(what, *needed)
         run = importlib.import_module(f"tactcad.cli.{argv[0]}").run
-        return _profiled(run, args) if args.profile else run(args)
-    parser = Parser(
-        prog="tactcad",
-        description="From one text file to a spring-based tactile sensor array.",
-        epilog="commands:\n"
-        + "\n".join(f"  {name:10} {text}" for name, text in COMMANDS.items())
-        + "\n\n`tactcad COMMAND --help` shows a command's options, with examples.",
-        formatter_class=argparse.RawDescriptionHelpFormatter,
+        return _profiled(run, args) if os.environ.get("TACTCAD_PROFILE") else run(args)
+    if argv[:1] == ["help"] and len(argv) == 2 and argv[1] in COMMANDS:
+        parser_of(argv[1]).print_help()
+        return DONE
+    if argv in ([], ["help"], ["-h"], ["--help"]):
+        print(overview())
+        return DONE
+    if argv == ["--version"]:
+        print(f"tactcad {__version__}")
+        return DONE
+    word = argv[1] if argv[0] == "help" else argv[0]
+    Parser(prog="tactcad").error(
+        str(InputError("COMMAND", "unknown", value=word, legal=one_of(word, COMMANDS)))
     )
-    parser.add_argument("--version", action="version", version=f"tactcad {__version__}")
-    parser.add_argument("command", choices=list(COMMANDS), metavar="COMMAND")
-    if not argv:
-        parser.error(str(InputError("COMMAND", "missing", legal=one_of("", COMMANDS))))
-    parser.parse(argv[:1])
-    return BAD_INPUT

@@ -1,11 +1,8 @@
-"""tactcad new FILE [--from DESIGN] [--json]"""
+"""tactcad new FILE [--from DESIGN]"""
 
 from __future__ import annotations
 
 import argparse
-import json
-
-from .parser import add_json
 
 EXAMPLES = """\
   tactcad new my-sensor.toml                      the published array under a name of your own
@@ -26,7 +23,6 @@ def configure(parser: argparse.ArgumentParser) -> None:
         metavar="DESIGN",
         help=f"what to start from: a path, or a name in hardware/ (default {DEFAULT_DESIGN})",
     )
-    add_json(parser)
 
 
 def run(args: argparse.Namespace) -> int:
@@ -43,8 +39,5 @@ def run(args: argparse.Namespace) -> int:
     text = started(args.source, name, date.today())
     refuse_broken(parse(text, args.source))
     write_whole(path, text.encode())
-    if args.json:
-        print(json.dumps({"file": args.file, "name": name, "from": args.source}, indent=1))
-    else:
-        print(f"{args.file}: written, from {args.source}\nnext: tactcad estimate {args.file}")
+    print(f"{args.file}: written, from {args.source}\nnext: tactcad estimate {args.file}")
     return 0

@@ -19,8 +19,9 @@ class Parser(argparse.ArgumentParser):
     word.
     """
 
-    def __init__(self, *args: Any, **kwargs: Any) -> None:
+    def __init__(self, *args: Any, raises: bool = False, **kwargs: Any) -> None:
         super().__init__(*args, **kwargs)
+        self.raises = raises  # InputError in place of ending the program
         self.register("type", float, as_number)
         self.register("type", int, as_whole)
         self._negative_number_matcher = re.compile(r"-\.?\d")  # argparse's takes -1% and -1e-3 for options
@@ -39,8 +40,10 @@ class Parser(argparse.ArgumentParser):
 
     def _refuse_empty(self, action: argparse.Action, value: Any) -> None:
         """Refuse an empty text: it is a mistake in the calling script, never a wish for the default."""
+        if action.nargs == argparse.REMAINDER:  # words that a shell is completing
+            return
         if "" in (value if isinstance(value, list) else [value]):
-            self._refuse(_named(action), "empty", value="", legal=(action.help or "").replace("%%", "%"))
+            self._refuse(_named(action), "empty", value="", legal=_help(action))
 
     def _check_value(self, action: argparse.Action, value: Any) -> None:
         if action.choices is not None and value not in action.choices:
@@ -48,10 +51,15 @@ class Parser(argparse.ArgumentParser):
             self._refuse(_named(action), "unknown", value=value, legal=legal)
 
     def _refuse(self, where: str, what: str, *, value: object = ..., legal: str) -> NoReturn:
-        self.error(str(InputError(where, what, value=value, legal=legal)))
+        refusal = InputError(where, what, value=value, legal=legal)
+        if self.raises:
+            raise refusal
+        self.error(str(refusal))
 
     def error(self, message: str) -> NoReturn:
         """One line, exit status 2."""
+        if self.raises:
+            raise InputError(self.prog, message)
         self.exit(2, f"tactcad: {message}\n")
 
 
@@ -104,8 +112,15 @@ def add_others(
     )
 
 
+UNLISTED = argparse.SUPPRESS  # help of an option that works and that --help does not name
+
+
+def _help(action: argparse.Action) -> str:
+    return "" if action.help in (None, UNLISTED) else str(action.help).replace("%%", "%")
+
+
 def _named(action: argparse.Action) -> str:
-    return "/".join(action.option_strings) or str(action.metavar or action.dest)
+    return action.option_strings[-1] if action.option_strings else str(action.metavar or action.dest)
 
 
 def add_allowance(parser: argparse.ArgumentParser, of: str, chosen: str) -> None:
@@ -128,10 +143,8 @@ def add_allowance(parser: argparse.ArgumentParser, of: str, chosen: str) -> None
 
 def add_needless_allowance(parser: argparse.ArgumentParser) -> None:
     """The two options on a command that answers at once, with nothing to choose: read, and without effect."""
-    for option, dest, metavar in (("--within", "within", "P"), ("--in", "seconds", "SECONDS")):
-        parser.add_argument(
-            option, dest=dest, metavar=metavar, help="as of other commands; this one has nothing to choose"
-        )
+    for option, dest in (("--within", "within"), ("--in", "seconds")):
+        parser.add_argument(option, dest=dest, help=UNLISTED)
 
 
 def allowance(args: argparse.Namespace) -> Allowance:

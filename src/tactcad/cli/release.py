@@ -35,6 +35,7 @@ golden file is compared; where one fails, or an earlier zip is not exactly as ta
 def configure(parser: argparse.ArgumentParser) -> None:
     add_design(parser, several=True)
     parser.add_argument(
+        "-o",
         "--out",
         metavar="DIR",
         default="exports/releases",

@@ -1,4 +1,4 @@
-"""tactcad review [DESIGN|EXPORT] [--scene NAME]... [--drawings] [--out FILE] [--freecad FILE] [--json]"""
+"""tactcad review [DESIGN|EXPORT] [--scene NAME]... [--drawings] [--out FILE] [--json]"""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import sys
 import time
 from pathlib import Path
 
-from .parser import add_json
+from .parser import UNLISTED, add_json
 
 EXAMPLES = """\
   tactcad review                                  review.html of hardware/macro-array.toml, all its scenes
@@ -16,7 +16,7 @@ EXAMPLES = """\
   tactcad review my/design.toml --scene array     one scene only: sooner made
   tactcad review macro-array --drawings           with the drawing sheet of every part made
   tactcad review exports/macro-array              of an export, with the sheets that lie in it
-  tactcad review --freecad macro-array.FCStd      the same for FreeCAD, made by FreeCAD itself
+  tactcad review --out macro-array.FCStd      the same for FreeCAD, made by FreeCAD itself
 
 One file that opens in a browser, without server or network: scenes in three dimensions, with cuts, the
 exploded view by the guide's steps and the rigs' motions; a click on a part shows its number, material,
@@ -38,10 +38,10 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--scene", action="append", metavar="NAME", help="show this scene; may be repeated (default: all)"
     )
     parser.add_argument("--drawings", action="store_true", help="with the drawing sheet of every part made")
-    parser.add_argument("--out", metavar="FILE", help="page (default review.html)")
     parser.add_argument(
-        "--freecad", metavar="FILE", help="FreeCAD's own document (.FCStd); no page then but with --out"
+        "-o", "--out", metavar="FILE", help="page (default review.html), or FreeCAD's document, FILE.FCStd"
     )
+    parser.add_argument("--freecad", help=UNLISTED)  # beside a page
     add_json(parser)
 
 
@@ -57,6 +57,8 @@ def run(args: argparse.Namespace) -> int:
     from .streams import progress
 
     started, say = time.perf_counter(), progress(sys.stderr)
+    if args.out and args.out.endswith(".FCStd") and not args.freecad:
+        args.out, args.freecad = None, args.out
     seen = subject(args.design)
     out = args.out or (None if args.freecad else "review.html")
     macro = str(Path(args.freecad).with_suffix(".FCMacro")) if args.freecad else ""

@@ -8,23 +8,26 @@ import math
 from contextlib import suppress
 from typing import TYPE_CHECKING
 
-from tactcad.design.messages import CheckFailure, InputError
+from tactcad.design.load import DEFAULT_DESIGN
+from tactcad.design.messages import CheckFailure, InputError, one_of
+from tactcad.design.text_values import as_number
 from tactcad.mechanics.ladder import CLOSED_FORMS, DEFAULT_RUNG
 from tactcad.mechanics.section import REQUIRED, HingeSection
 
-from .parser import add_allowance, allowance, refuse_named
+from .parser import UNLISTED, add_allowance, allowance, refuse_named
 
 if TYPE_CHECKING:
     from tactcad.design.tree import Design
 
 EXAMPLES = """\
   tactcad size --stiffness 10 --load-arm 5
-  tactcad size --stiffness 40 --load-arm 3 --sides two --solve length --hinge-thickness 0.3
-  tactcad size --stiffness 2 --load-arm 6 --design soft-tissue --force 0.5 --json
+  tactcad size --stiffness 40 --load-arm 3 --solve length --with sides=two --with hinge_thickness=0.3
+  tactcad size soft-tissue --stiffness 2 --load-arm 6 --force 0.5 --json
 """
 
-# Lengths that have an option of their name; the load arm has its own.
+# Lengths that --with takes besides the load arm, which has its own option.
 LENGTHS = tuple(name for name in REQUIRED if name not in ("load_arm", "poisson", "youngs_modulus"))
+OWN = ("sides", *LENGTHS, "youngs_modulus", "poisson", "alloy")
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -40,17 +43,21 @@ def configure(parser: argparse.ArgumentParser) -> None:
         default="thickness",
         help="what to find: hinge thickness (default) or slot length",
     )
-    parser.add_argument("--sides", choices=("one", "two"), help="slot from one face or from both")
     parser.add_argument(
-        "--design", default="macro-array", help="design that gives all else (default macro-array)"
+        "design", nargs="?", default=DEFAULT_DESIGN, help=f"gives all else (default {DEFAULT_DESIGN})"
     )
-    for name in LENGTHS:
-        parser.add_argument(
-            f"--{name.replace('_', '-')}", type=float, metavar="MM", help="instead of the design's"
-        )
-    parser.add_argument("--youngs-modulus", type=float, metavar="MPA", help="instead of the design's")
-    parser.add_argument("--poisson", type=float, help="instead of the design's")
-    parser.add_argument("--alloy", help="whose strength to use, instead of the design's")
+    parser.add_argument(
+        "--with",
+        dest="changes",
+        action="append",
+        default=[],
+        metavar="NAME=VALUE",
+        help=f"instead of the design's; may be repeated: {', '.join(OWN)}",
+    )
+    parser.add_argument("--design", help=UNLISTED, default=argparse.SUPPRESS)
+    for name in OWN:  # each as an option of its own, as before
+        kind = str if name in ("sides", "alloy") else float
+        parser.add_argument(f"--{name.replace('_', '-')}", type=kind, help=UNLISTED)
     parser.add_argument(
         "--force", type=float, metavar="N", help="force on the pad (default: the design's rated force)"
     )
@@ -71,6 +78,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
+    _take(args)
     for option in ("stiffness", "load_arm", "tolerance", "youngs_modulus", *LENGTHS):
         value = getattr(args, option)
         if value is not None and not 0.0 < value < math.inf:
@@ -103,6 +111,20 @@ def run(args: argparse.Namespace) -> int:
         further = material_lines(design, [answer["stiffness"]]) if own else []
         print("\n".join([_report(answer), *further]))
     return 0
+
+
+def _take(args: argparse.Namespace) -> None:
+    """The values of --with, as if each were an option of its own."""
+    for change in args.changes:
+        name, equals, value = (part.strip() for part in change.partition("="))
+        if not equals or name not in OWN:
+            raise InputError("--with", "unknown", value=change, legal=f"NAME=VALUE, NAME {one_of(name, OWN)}")
+        try:
+            setattr(args, name, value if name in ("sides", "alloy") else as_number(value))
+        except ValueError:
+            raise InputError(f"--with {name}", "not a number", value=value) from None
+    if args.sides not in (None, "one", "two"):
+        raise InputError("sides", "unknown", value=args.sides, legal="one or two")
 
 
 def _answer_within(args: argparse.Namespace, design: Design, parameter: str, within: float) -> dict:

@@ -10,6 +10,7 @@ from .parser import add_needless_allowance, allowance
 EXAMPLES = """\
   tactcad calibrate hardware/examples/calibration.csv --out calibration.csv
   tactcad stiffness hardware/examples/grasp.csv --calibration calibration.csv
+  tactcad stiffness mine.csv --calibration calibration.csv --thickness 6+-0.3 --nu 0.49
   tactcad stiffness mine.csv --calibration calibration.csv --reference 1 --json
 
 FILE is CSV with the columns load, element, signal (N and V, or load_mN, signal_mV), and where there are
@@ -45,18 +46,20 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--coupling",
         type=float,
-        default=1.0,
+        default=None,
         metavar="C",
-        help="the object couples the pads by at most this share of what an elastic half-space does (default "
-        "1; 0: each "
-        "pad on an object of its own); the intervals hold for all up to it",
+        help="take the object as springs that couple the pads by at most this share of what an elastic "
+        "half-space does (0: each pad on an object of its own); without it the object is a layer",
     )
     parser.add_argument(
         "--thickness",
-        type=float,
-        metavar="MM",
-        help="of the object, an incompressible layer on a rigid base (inf: a half-space): its Young's "
-        "modulus is printed too",
+        metavar="H[+-DH]",
+        help="of the object, a layer bonded to a rigid base, with its limits, mm (inf: a half-space): its "
+        "Young's modulus and inclination are told too; without it the intervals hold for all layers, from "
+        "the thinnest allowed to a half-space",
+    )
+    parser.add_argument(
+        "--nu", type=float, default=None, metavar="NU", help="Poisson's ratio of the layer (default 0.49)"
     )
     parser.add_argument("--json", action="store_true", help="print as JSON")
     add_needless_allowance(parser)
@@ -65,36 +68,48 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     from tactcad.design.family import family_of
     from tactcad.design.load import DEFAULT_DESIGN
+    from tactcad.design.messages import InputError
     from tactcad.lab import calibration_file, grasp, pads, readings
     from tactcad.parts.designs import load
 
     from .streams import slow_work
 
     allowance(args)
+    if args.coupling is not None and (args.thickness or args.nu) is not None:
+        raise InputError("--coupling", "takes the object as springs", legal="without --thickness and --nu")
     known = calibration_file.read(args.calibration)
-    results: list[grasp.Grasp] = []
     source = args.design or DEFAULT_DESIGN
     design = load(source)
     family = family_of(design)
     readings_of = family.must("readings", "stiffness --design")
-    unit = None
-    if args.thickness is not None:
-        unit = pads.stiffness_per_modulus(design, args.thickness, "--thickness")
+    layers = []
+    if args.coupling is None:
+        layers = pads.layers(design, args.thickness, args.nu)
+    results: list[grasp.Grasp] = []
     with slow_work(sys.stderr) as tell:
         tell(0, 1, f"reading {args.file}")
         samples = readings.grasps(args.file)
         for g in samples:
             tell(len(results), len(samples), f"sample {g.sample}")
-            results.append(
-                grasp.evaluate(
-                    g,
-                    known,
-                    reference=args.reference,
-                    level=args.level,
-                    coupling=pads.coupling(source, g, args.coupling),
-                    overload_force=readings_of.overload(design),
-                    elements=len(family.layout(design).elements),
-                )
+            shares = pads.coupling(source, g, args.coupling or 0.0)
+            found = grasp.evaluate(
+                g,
+                known,
+                reference=args.reference,
+                level=args.level,
+                coupling=shares,
+                overload_force=readings_of.overload(design),
+                elements=len(family.layout(design).elements),
             )
-    sys.stdout.write((grasp.to_json if args.json else grasp.to_text)(results, args.level, unit))
-    return 0
+            if layers:
+                pads.refuse_strangers(source, g)
+                found = grasp.on_layers(found, g, known, layers, args.level)
+            results.append(found)
+    sys.stdout.write((grasp.to_json if args.json else grasp.to_text)(results, args.level))
+    unbounded = [g.sample for g in results if g.layer and g.layer.modulus and not g.layer.modulus.bounded]
+    if unbounded:
+        print(
+            f"the readings do not bound the modulus of sample {', '.join(map(str, unbounded))}",
+            file=sys.stderr,
+        )
+    return 1 if unbounded else 0

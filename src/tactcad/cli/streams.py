@@ -91,22 +91,57 @@ class Terminal:
 
 
 class Log:
-    """Plain lines, one for every piece of work."""
+    """Plain lines: one for each stage, or for every piece of work (--verbose)."""
 
-    def __init__(self, stream: TextIO) -> None:
-        self.stream = stream
+    def __init__(self, stream: TextIO, every: bool) -> None:
+        self.stream, self.every, self.last = stream, every, (0, 0)
 
     def line(self, text: str) -> None:
         print(text, file=self.stream, flush=True)
 
     def step(self, done: int, total: int, text: str) -> None:
-        if done < total:
+        begins = total != self.last[1] or done < self.last[0]
+        self.last = done, total
+        if done < total and (begins or self.every):
             print(f"[{done + 1}/{total}] {text}", file=self.stream, flush=True)
 
 
-def progress(stream: TextIO) -> Terminal | Log:
-    """The kind of progress that suits the stream."""
-    return Terminal(stream) if stream.isatty() else Log(stream)
+class Silence:
+    """No progress (--quiet); what is a warning is said."""
+
+    def __init__(self, stream: TextIO) -> None:
+        self.stream = stream
+
+    def line(self, text: str) -> None:
+        if text.startswith("warning:"):
+            print(text, file=self.stream, flush=True)
+
+    def step(self, done: int, total: int, text: str) -> None:
+        pass
+
+
+_loudness: list[str] = [""]
+
+
+def set_loudness(option: str | None) -> None:
+    """--quiet, --verbose, or neither."""
+    _loudness[0] = option or ""
+
+
+def progress(stream: TextIO) -> Terminal | Log | Silence:
+    """The kind of progress that suits the stream, and what was asked for."""
+    if _loudness[0] == "--quiet":
+        return Silence(stream)
+    return Terminal(stream) if stream.isatty() else Log(stream, _loudness[0] == "--verbose")
+
+
+COLOURS = {"fail": "31", "flag": "33"}  # red and yellow
+
+
+def coloured(text: str, severity: str, stream: TextIO) -> str:
+    """The text in the colour of a failure or a flag, on a terminal and without NO_COLOR."""
+    plain = os.environ.get("NO_COLOR") or not stream.isatty() or severity not in COLOURS
+    return text if plain else f"\x1b[{COLOURS[severity]}m{text}\x1b[0m"
 
 
 @contextmanager

@@ -37,7 +37,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "study", nargs="+", metavar="STUDY.toml", help="what varies and what is measured; or: plot DIR"
     )
-    parser.add_argument("--out", metavar="DIR", help="folder of this study: new, empty, or begun before")
+    parser.add_argument(
+        "-o", "--out", metavar="DIR", help="folder of this study: new, empty, or begun before"
+    )
     parser.add_argument(
         "--scheduler",
         metavar="ADDRESS",

@@ -1,4 +1,4 @@
-"""tactcad validate [--out DIR] [--json] [--design DESIGN] [--table1 FILE] [--table2 FILE]"""
+"""tactcad validate [DESIGN] [--out DIR] [--json] [--table1 FILE] [--table2 FILE]"""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import argparse
 import sys
 from contextlib import nullcontext
 
-from .parser import add_others
+from .parser import UNLISTED, add_design, add_others
 
 EXAMPLES = """\
   tactcad validate                           the findings, as text
@@ -19,16 +19,11 @@ tactcad wrote it; any other is left as it is, unless --keep or --discard is give
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--out", metavar="DIR", help="write the report into this folder")
+    parser.add_argument("-o", "--out", metavar="DIR", help="write the report into this folder")
     add_others(parser)
     parser.add_argument("--json", action="store_true", help="print the report as JSON on standard output")
-    parser.add_argument(
-        "--design",
-        default="macro-array",
-        metavar="DESIGN",
-        help="the design that is held against the paper: a path, or a name in hardware/ (default "
-        "macro-array)",
-    )
+    add_design(parser)
+    parser.add_argument("--design", help=UNLISTED, default=argparse.SUPPRESS)
     parser.add_argument("--table1", metavar="FILE", help="a CSV file in place of the paper's Table 1")
     parser.add_argument("--table2", metavar="FILE", help="a CSV file in place of the paper's Table 2")
 

@@ -13,6 +13,7 @@ further.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
 from math import inf, radians, tan
@@ -78,9 +79,8 @@ class Pressed:
 
 
 @lru_cache(maxsize=16)
-def patches(length: float, width: float, disc: bool) -> np.ndarray:
+def patches(length: float, width: float, disc: bool, number: int = PATCHES) -> np.ndarray:
     """x, y and sides of one pad's patches about its middle, mm, [4, patch]; a disc's rows have its area."""
-    number = PATCHES
     t = np.linspace(-1, 1, number + 1)
     edges = np.sign(t) * (1 - (1 - np.abs(t)) ** GRADING) / 2
     middle, side = (edges[1:] + edges[:-1]) / 2, np.diff(edges)
@@ -97,20 +97,14 @@ class PadsOnBody:
     Raises
     ------
     InputError
-        A layer thinner than THINNEST.
+        A body that the rung does not reach.
     """
 
-    def __init__(self, pads: Pads, body: Body) -> None:
+    def __init__(self, pads: Pads, body: Body, rung: str = "layer") -> None:
+        """`rung`: "layer", or "fem-object", where solid elements give the body's influence."""
         self.pads, self.body = pads, body
-        least = THINNEST * (pads.length * pads.width) ** 0.5
-        if body.thickness < least:
-            raise InputError(
-                "object thickness",
-                "too thin for this rung",
-                value=body.thickness,
-                legal=f"at least {least:.3g} mm, a quarter of a pad's side",
-            )
         one = patches(pads.length, pads.width, pads.disc)
+        block = (_block_by_elements if rung == "fem-object" else _block_of_layer)(pads, body, one)
         n, m = len(pads.x), one.shape[1]
         self.at = np.empty((4, n, m))
         self.at[0], self.at[1] = pads.x[:, None] + one[0], pads.y[:, None] + one[1]
@@ -118,10 +112,10 @@ class PadsOnBody:
         # pads are alike, so a block of the face's compliance follows from how far apart they are
         apart = np.stack([pads.x[:, None] - pads.x, pads.y[:, None] - pads.y], axis=-1).reshape(-1, 2)
         places, which = np.unique(np.round(apart, 9), axis=0, return_inverse=True)
-        blocks = np.array(
-            [influence(body, (one[0] + dx, one[1] + dy, *one[2:]), tuple(one)) for dx, dy in places]
-        )
+        blocks = np.array([block(dx, dy) for dx, dy in places])
         self.face = blocks[which.ravel()].reshape(n, n, m, m).swapaxes(1, 2).reshape(n * m, n * m)
+        if rung == "fem-object":
+            self.face = (self.face + self.face.T) / 2  # elements that differ from pad to pad
         self.modes = np.stack(
             [np.ones(m), one[0], one[1]]
         )  # sink and slopes to displacement of a patch, [3, patch]
@@ -132,6 +126,7 @@ class PadsOnBody:
         approach: float | None = None,
         angle: tuple[float, float] = (0.0, 0.0),
         modulus: float | None = None,
+        hardened: np.ndarray | None = None,
     ) -> Pressed:
         """Press by a total force (N) or by an approach (mm).
 
@@ -143,6 +138,8 @@ class PadsOnBody:
             Inclination of the face along x and along y, degrees: positive where it falls away toward +x, +y.
         modulus
             Of the body, MPa, instead of its own.
+        hardened
+            Force on each pad over what a linear body would bear at the same depth, [pad]; 1 by default.
 
         Raises
         ------
@@ -161,8 +158,9 @@ class PadsOnBody:
             + self.at[1] * tan(radians(angle[1]))
         )
         stopped = np.zeros(n, bool)
+        hard = np.ones(n) if hardened is None else hardened
         for _ in range(4 * n + 4):
-            result, held = self._with_stops(soft, back, stopped, load, approach)
+            result, held = self._with_stops(soft, hard, back, stopped, load, approach)
             beyond = ~stopped & (result.sink > self.pads.stop * (1 + 1e-12))
             free = stopped & (held < 0)
             if not beyond.any() and not free.any():
@@ -171,7 +169,13 @@ class PadsOnBody:
         raise RuntimeError("stops neither close nor open")
 
     def _with_stops(
-        self, soft: float, back: np.ndarray, stopped: np.ndarray, load: float | None, approach: float | None
+        self,
+        soft: float,
+        hard: np.ndarray,
+        back: np.ndarray,
+        stopped: np.ndarray,
+        load: float | None,
+        approach: float | None,
     ) -> tuple[Pressed, np.ndarray]:
         """Contact with the given pads on their stops, and the force of each stop (N)."""
         n, m = back.shape
@@ -182,10 +186,11 @@ class PadsOnBody:
         M = self.face * soft
         for i in range(n):
             block = slice(i * m, (i + 1) * m)
-            M[block, block] += self.modes.T @ D[i] @ self.modes
+            # unknown is what a linear body would bear; the pad bears `hard` times as much
+            M[block, block] += hard[i] * self.modes.T @ D[i] @ self.modes
         gap = (back + np.where(stopped[:, None], fixed @ self.modes, 0.0)).ravel()
-        f, at = _complementary(M, gap, load, approach)
-        f = f.reshape(n, m)
+        f, at = complementary(M, gap, load, approach, np.repeat(hard, m))
+        f = hard[:, None] * f.reshape(n, m)
         generalised = f @ self.modes.T  # force and moments of each pad
         motion = np.einsum("nij,nj->ni", D, generalised) + fixed
         area = self.at[2] * self.at[3]
@@ -203,10 +208,11 @@ class PadsOnBody:
         return result, np.where(stopped, held, 0.0)
 
 
-def _complementary(
-    M: np.ndarray, gap: np.ndarray, load: float | None, approach: float | None
+def complementary(
+    M: np.ndarray, gap: np.ndarray, load: float | None, approach: float | None, share: np.ndarray
 ) -> tuple[np.ndarray, float]:
-    """f >= 0 with M f + gap - approach >= 0 and one of them zero; the approach where the load is given.
+    """f >= 0 with M f + gap - approach >= 0 and one of them zero; the approach where the load, the sum of
+    share f, is given.
 
     Patches in tension leave, patches that overlap come back, until neither is left; should that go in
     circles, by non-negative least squares.
@@ -219,7 +225,7 @@ def _complementary(
         rows = np.flatnonzero(active)
         factor = cho_factor(M[np.ix_(rows, rows)], lower=True, check_finite=False)
         both = cho_solve(factor, np.column_stack([np.ones(len(rows)), gap[rows]]), check_finite=False)
-        at = (load + both[:, 1].sum()) / both[:, 0].sum() if approach is None else approach
+        at = (load + share[rows] @ both[:, 1]) / (share[rows] @ both[:, 0]) if approach is None else approach
         f = np.zeros(n)
         f[rows] = at * both[:, 0] - both[:, 1]
         over = M[:, rows] @ f[rows] + gap - at  # gap that is left
@@ -227,11 +233,11 @@ def _complementary(
         if (f[rows] >= 0).all() and (over[~active] >= -wrong).all():
             return f, float(at)
         active = np.where(active, f > 0, over < 0)
-    return _by_least_squares(M, gap, load, approach)
+    return _by_least_squares(M, gap, load, approach, share)
 
 
 def _by_least_squares(
-    M: np.ndarray, gap: np.ndarray, load: float | None, approach: float | None
+    M: np.ndarray, gap: np.ndarray, load: float | None, approach: float | None, share: np.ndarray
 ) -> tuple[np.ndarray, float]:
     upper = np.linalg.cholesky(M).T
 
@@ -241,17 +247,34 @@ def _by_least_squares(
     if approach is not None:
         return forces(approach), approach
     low, high = float(gap.min()), float(gap.min()) + 1.0
-    while forces(high).sum() < load:
+    while share @ forces(high) < load:
         high = gap.min() + 2 * (high - gap.min())
     for _ in range(60):
         middle = (low + high) / 2
-        low, high = (middle, high) if forces(middle).sum() < load else (low, middle)
+        low, high = (middle, high) if share @ forces(middle) < load else (low, middle)
     return forces(high), high
 
 
-def pad_stiffness(
-    body: Body, length: float, width: float, disc: bool = False, number: int = PATCHES
-) -> float:
+def _block_of_layer(pads: Pads, body: Body, one: np.ndarray) -> Callable[[float, float], np.ndarray]:
+    least = THINNEST * (pads.length * pads.width) ** 0.5
+    if body.thickness < least:
+        raise InputError(
+            "object thickness",
+            "too thin for this rung",
+            value=body.thickness,
+            legal=f"at least {least:.3g} mm, a quarter of a pad's side",
+        )
+    return lambda dx, dy: influence(body, (one[0] + dx, one[1] + dy, *one[2:]), tuple(one))
+
+
+def _block_by_elements(pads: Pads, body: Body, one: np.ndarray) -> Callable[[float, float], np.ndarray]:
+    from .solid_face import SolidFace  # scikit-fem takes a while to load
+
+    reach = float(np.ptp(pads.x)), float(np.ptp(pads.y))
+    return SolidFace(body, one, (pads.length, pads.width), reach).block
+
+
+def pad_stiffness(body: Body, length: float, width: float, disc: bool = False) -> float:
     """Force on one rigid pad that does not tilt over its displacement, N/mm: K_obj of a body."""
     C = influence(body, tuple(patches(length, width, disc)))
     return float(np.linalg.solve(C, np.ones(len(C))).sum())

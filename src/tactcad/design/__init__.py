@@ -3,4 +3,21 @@ refusal.
 
 In: TOML text, CSV tables. Out: a frozen `Design`, or one line that says what is wrong, where, and what is
 legal.
+
+Called like a function, as `tactcad.design(target)`, it is `tactcad.face.design`: Python has one place for the
+name of a room and of a function.
 """
+
+import sys
+from importlib import import_module
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+
+class _Room(ModuleType):
+    def __call__(self, target: str | Path, **options: Any) -> Any:
+        return import_module("tactcad.face").design(target, **options)
+
+
+sys.modules[__name__].__class__ = _Room

@@ -16,7 +16,7 @@ from .files import read_text
 from .load import MOST_BYTES, find, names, parse
 from .messages import InputError
 from .text_values import parse_toml
-from .tree import Design, Identity
+from .tree import NO_TABLES, Design, Identity
 
 
 def design_text(design: Design, heading: str = "") -> str:
@@ -32,7 +32,7 @@ def design_text(design: Design, heading: str = "") -> str:
     lines = [f"# {line}".rstrip() for line in heading.splitlines()]
     for f in dataclasses.fields(design):
         table = getattr(design, f.name)
-        if f.name == "origin" or table is None:
+        if f.name in NO_TABLES or table is None:
             continue
         lines += ["", f"[{f.name}]", *_values(table)]
         for number, hinge in getattr(table, "override", {}).items():

@@ -17,7 +17,7 @@ from importlib import import_module
 from typing import Any
 
 from .messages import InputError
-from .tree import CommonTables
+from .tree import NO_TABLES, CommonTables
 
 FOLDER = "tactcad.families"  # above all rooms that it names; looked up, so that no lower room imports it
 
@@ -193,11 +193,11 @@ class Family:
 def section_types(spec: type) -> dict[str, type]:
     """Class of every table of a design file, by name: a table that may be left out is `Kind | None`."""
     hints = typing.get_type_hints(spec)
-    kinds = {
-        f.name: (typing.get_args(hints[f.name]) or (hints[f.name],))[0] for f in dataclasses.fields(spec)
+    return {
+        f.name: (typing.get_args(hints[f.name]) or (hints[f.name],))[0]
+        for f in dataclasses.fields(spec)
+        if f.name not in NO_TABLES
     }
-    del kinds["origin"]
-    return kinds
 
 
 def optional_tables(spec: type) -> tuple[str, ...]:

@@ -6,6 +6,7 @@ import dataclasses
 import math
 import re
 import typing
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +16,7 @@ from .files import read_text
 from .materials import completed
 from .messages import InputError, nearest, one_of
 from .text_values import as_number, parse_toml
-from .tree import CommonTables, Design, Element, Hinge, SheetMaterial, Stop
+from .tree import NO_TABLES, CommonTables, Design, Element, Hinge, SheetMaterial, Stop
 
 # A design is a page of text; a larger file is a mistake or an attack, and is refused without parsing.
 MOST_BYTES = 1_000_000
@@ -88,7 +89,7 @@ def from_table(table: dict[str, Any]) -> Design:
     values = {}
     for section in dataclasses.fields(family.spec):
         name = section.name
-        if name == "origin":
+        if name in NO_TABLES:
             continue
         if name not in table and section.default is dataclasses.MISSING:
             raise InputError(name, "missing table", legal=f"a table [{name}]")
@@ -199,9 +200,30 @@ def paths(design: CommonTables) -> dict[str, Any]:
             flat[prefix] = value
 
     for f in dataclasses.fields(design):
-        if f.name != "origin":
+        if f.name not in NO_TABLES:
             add(f.name, getattr(design, f.name))
     return flat
+
+
+@cache
+def _shipped() -> tuple[CommonTables, ...]:
+    """The designs that came with tactcad."""
+    files = sorted(_hardware_folders()[-1].glob("*.toml"))
+    return tuple(parse(read_text(file, MOST_BYTES, "a design file (TOML)"), str(file)) for file in files)
+
+
+def stale_origins(design: CommonTables) -> list[str]:
+    """Origins that a shipped design has of another value, word for word: of a value that was changed since
+    the design was started from it."""
+    values, told = paths(design), []
+    for path, text in design.origin.items():
+        of = [paths(other)[path] for other in _shipped() if other.origin.get(path) == text]
+        if of and values[path] not in of and not path.startswith("design."):
+            told.append(
+                f"origin.{path}: stale, it was written for {of[0]!r} and the value is {values[path]!r}: "
+                "say where that is from"
+            )
+    return told
 
 
 def unknown_field(path: str, known: list[str], schema: str = SCHEMA) -> InputError:

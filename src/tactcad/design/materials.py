@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from .fields import present
-from .messages import InputError, in_brackets, near, one_of
+from .messages import InputError, in_brackets, near
 from .text_values import data_rows
 
 # A value that differs by more than this from the named material's belongs to another material.
@@ -62,6 +62,7 @@ class Alloy:
     modulus_per_kelvin: float | None = None
     standard: str = ""
     temper: str = ""
+    fatigue_cycles: float | None = None  # at which the fatigue strength holds
     spread: Mapping[str, float] = field(default_factory=dict)
 
 
@@ -100,7 +101,13 @@ def _alloy(row: dict[str, str]) -> Alloy:
         name=row["name"],
         **{
             name: float(row[name])
-            for name in (*PROPERTIES, "tensile_strength", "conductivity", "modulus_per_kelvin")
+            for name in (
+                *PROPERTIES,
+                "tensile_strength",
+                "conductivity",
+                "modulus_per_kelvin",
+                "fatigue_cycles",
+            )
         },
         magnetic=row["magnetic"],
         source=row["source"],
@@ -126,10 +133,36 @@ def family(density: float) -> str:
 PLATE_ALLOYS = tuple(name for name, alloy in ALLOYS.items() if family(alloy.density) == "aluminium")
 
 
+# What each is, in words that are looked for; trade names.
+WORDS = {
+    "6061-T6": "aluminium",
+    "2024-T3": "high-strength aluminium, dural",
+    "7075-T6": "high-strength aluminium, ergal",
+    "Ti-6Al-4V-annealed": "titanium, grade 5",
+    "17-4PH-H900": "stainless steel, precipitation-hardened",
+    "1.4310-C1300": "stainless spring steel, 301",
+    "maraging-300-aged": "maraging steel",
+    "C17200-TF00": "beryllium copper",
+}
+
+
+def described() -> str:
+    """The names of the table, each with what it is."""
+    return ", ".join(f"{name} ({WORDS[name]})" if name in WORDS else name for name in ALLOYS)
+
+
+def meant(word: str) -> str:
+    """ "did you mean A or B?" for alloys whose name begins so or that are described so, else the nearest."""
+    wanted = word.casefold()
+    found = [n for n in ALLOYS if n.casefold().startswith(wanted) or wanted in WORDS.get(n, "").casefold()]
+    return f"did you mean {' or '.join(found)}?" if found and wanted else near(word, ALLOYS)
+
+
 def alloy(name: str) -> Alloy:
     """The table's row of that name; raises InputError naming the legal ones."""
     if name not in ALLOYS:
-        raise InputError("material.alloy", "unknown alloy", value=name, legal=one_of(name, ALLOYS))
+        legal = f"one of {described()}{in_brackets(meant(name))}"
+        raise InputError("material.alloy", "unknown alloy", value=name, legal=legal)
     return ALLOYS[name]
 
 
@@ -152,7 +185,7 @@ def completed(name: str, given: Mapping[str, Any]) -> dict[str, Any]:
     row = ALLOYS.get(name)
     if row:
         return {key: getattr(row, key) if value is None else value for key, value in given.items()}
-    labels = f"{', '.join(ALLOYS)}; or a label of its own with {', '.join(PROPERTIES)}"
+    labels = f"{described()}; or a label of its own with {', '.join(PROPERTIES)}"
     for known in ALLOYS:
         if re.search(_spelled(known), name, re.IGNORECASE):
             what = f"holds {known}, a name of the table: a label of its own must not"
@@ -160,7 +193,7 @@ def completed(name: str, given: Mapping[str, Any]) -> dict[str, Any]:
     missing = next((key for key in PROPERTIES if given[key] is None), None)
     if missing:
         what = f"not in the table of materials, and {missing} is not given"
-        raise InputError("material.alloy", what, value=name, legal=labels + in_brackets(near(name, ALLOYS)))
+        raise InputError("material.alloy", what, value=name, legal=labels + in_brackets(meant(name)))
     return dict(given)
 
 

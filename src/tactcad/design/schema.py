@@ -8,6 +8,7 @@ from typing import Any
 
 from .family import Family, all_families, optional_tables
 from .fields import Spec
+from .messages import InputError, one_of
 from .tree import CommonTables, Element, Hinge
 
 _TEXT_ORIGIN = (
@@ -34,8 +35,24 @@ def _default(f: dataclasses.Field) -> str:
     return f"{f.default:g}" if isinstance(f.default, float) else str(f.default)
 
 
-def text_schema() -> str:
-    """Every table with its fields: name, default, legal values, meaning."""
+def _one(table: str) -> tuple[type, bool]:
+    """Class of a table of any family, and whether it may be left out. Raises InputError."""
+    known = {
+        n: (kind, n in optional_tables(f.spec))
+        for f in all_families().values()
+        for n, kind in f.tables.items()
+    }
+    known["element.override"] = (Hinge, True)
+    if table not in known:
+        raise InputError("TABLE", "unknown", value=table, legal=one_of(table, (*known, "target", "study")))
+    return known[table]
+
+
+def text_schema(table: str | None = None) -> str:
+    """Every table, or one, with its fields: name, default, legal values, meaning."""
+    if table is not None:
+        kind, spare = _one(table)
+        return "\n".join(table_text(table, kind, spare)[:-1])
     lines = [
         "Lengths in mm, forces in N, stresses in MPa, density in kg/m3 unless a field says otherwise.",
         "",
@@ -84,8 +101,10 @@ def markdown_schema() -> str:
     return "\n".join([*lines, "## [origin]", "", _TEXT_ORIGIN])
 
 
-def json_schema() -> dict[str, Any]:
-    """JSON Schema (2020-12) of the design file, of whichever family."""
+def json_schema(table: str | None = None) -> dict[str, Any]:
+    """JSON Schema (2020-12) of the design file, of whichever family, or of one table."""
+    if table is not None:
+        return {"$schema": "https://json-schema.org/draft/2020-12/schema", **table_schema(_one(table)[0])}
     files = [_file_schema(family) for family in all_families().values()]
     return {
         "$schema": "https://json-schema.org/draft/2020-12/schema",

@@ -286,6 +286,9 @@ class Rating:
     friction: float = given(Number("", 0, 0.9, "friction between pad and object"), 0.0)
 
 
+NO_TABLES = ("origin", "added")  # fields of a design that hold no values of its own
+
+
 @dataclass(frozen=True)
 class CommonTables:
     """Tables that the design file of every family has (family.py); a family's own class adds its own."""
@@ -293,6 +296,9 @@ class CommonTables:
     design: Identity
     material: SheetMaterial
     origin: dict[str, str] = field(default_factory=dict, kw_only=True)
+    added: tuple[Any, ...] = field(
+        default=(), kw_only=True
+    )  # parts that Python added, scenes.scene.AddedPart
 
     @classmethod
     def completed(cls, tables: dict[str, Any]) -> dict[str, Any]:

@@ -82,6 +82,17 @@ class Sensitivity:
     load_cell_half_width: np.ndarray  # of its limits, N/mm
     path: str = "calibration"
 
+    def of(self, numbers: np.ndarray) -> Sensitivity:
+        """Of these elements, in their order. Raises InputError where one is not in it."""
+        place = {int(n): i for i, n in enumerate(self.element)}
+        for n in numbers:
+            if int(n) not in place:
+                legal = str(self.element.tolist())
+                raise InputError(self.path, f"element {n} of the grasp is not in it", legal=legal)
+        rows = np.array([place[int(n)] for n in numbers])
+        kept = {f.name: getattr(self, f.name)[rows] for f in fields(self) if f.name != "path"}
+        return Sensitivity(**kept, path=self.path)
+
     def at_load_cell_limit(self, sign: float) -> Sensitivity:
         """The calibration that the same readings give with the load cell at its lower (sign -1) or upper (1)
         limit.

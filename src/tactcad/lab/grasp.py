@@ -7,16 +7,18 @@ elements, x = K_obj. A pair gives equation (3), x = (f_r - f_m)/(s_m - s_r), wit
 elements together give the x that makes f + x s most equal: the generalised least squares of the pairs, which
 are correlated because they share a reference element.
 
-Two quantities act on all elements at once and are known within limits only: the stiffness of the
-calibration's load cell, and how far the pads sink under each other's force, from not at all (separate
-springs) to as much as on an elastic half-space. The intervals are evaluated at these limits, and the interval
-given is the smallest that covers all of them.
+The stiffness of the calibration's load cell acts on all elements at once and is known within limits only: the
+intervals are evaluated at these limits, and the interval given is the smallest that covers all of them.
+
+On one body the pads feel each other, tilt and lift, and its face is inclined: `on_layers` evaluates the same
+readings on layers (layer_fit), on one where its thickness is known, else on layers from the thinnest that
+rigid pads take to the half-space, and covers all of them.
 """
 
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import inf, isinf
 from typing import Any
 
@@ -31,10 +33,12 @@ from tactcad.lab.regression import require_level, t_quantile
 from tactcad.report.plain import plain
 
 from .calibration_file import Sensitivity
+from .layer_fit import WILD, LayeredArray, fit
 
 SCHEMA = "tactcad-stiffness-1"
 STRAY = 1e-4  # probability, over all elements, below which an element is reported not to follow the others
 SURELY = 3.0  # standard errors below zero from which on an element's force is said to fall; chosen
+TOUCHES = 1e-3  # of the largest force on a pad, from which on a pad is said to touch
 COUPLED = (0.25, 0.5, 1.0)  # tried shares of the coupling: K_obj need not be most extreme at the full one
 
 
@@ -71,6 +75,23 @@ class Grasp:
     dropped_loads: int
     notes: tuple[str, ...]
     warnings: tuple[str, ...]  # of columns that may be in another unit
+    layer: OnLayer | None = None  # where the object was taken as a layer
+
+
+@dataclass(frozen=True)
+class OnLayer:
+    """What the readings say of a layer.
+
+    modulus    MPa; None where the thickness is not known
+    angle      of its face along x and y, degrees: estimate, low, high of each
+    touching   numbers of the pads that press at the largest load, read or not
+    springs    K_obj by separate springs, for comparison
+    """
+
+    modulus: Interval | None
+    angle: tuple[tuple[float, ...], ...]
+    touching: tuple[int, ...]
+    springs: Interval
 
 
 def evaluate(
@@ -181,6 +202,86 @@ def evaluate(
         dropped,
         tuple(notes),
         tuple(unlikely(what, {load_name: -1, signal_name: 1}, sums, "N", LOAD)),
+    )
+
+
+def on_layers(
+    grasp: Grasp, readings: GraspReadings, calibration: Sensitivity, layers: list[LayeredArray], level: float
+) -> Grasp:
+    """The same readings on layers: K_obj of a single level pad, of all elements and of every pair.
+
+    Parameters
+    ----------
+    grasp
+        Of the same readings, by `evaluate` on separate springs.
+    readings, calibration, level
+        As of `evaluate`.
+    layers
+        One where the thickness is known, else all that the intervals are to cover.
+
+    Raises
+    ------
+    InputError
+        Fewer than two pads that are read touch, or no modulus explains the readings.
+    """
+    number = readings.element
+    known = calibration.of(number)
+    reference = grasp.pairs[0].reference
+    fits = [fit(at, number, readings.load, readings.signal[None], known, level, reference) for at in layers]
+    where = f"{readings.path}: sample {readings.sample}"
+    best = int(np.argmin([f.widened[0] for f in fits]))
+    pressing = fits[best].force[0] > TOUCHES * fits[best].force[0].max()
+    touching = tuple(int(n) for n in layers[best].number[pressing])
+    if len(read := set(touching) & set(number.tolist())) < 2:
+        raise InputError(where, "too few pads touch that are read", value=sorted(read), legal="two at least")
+    if not fits[best].widened[0] < WILD:
+        raise InputError(
+            where,
+            "no modulus explains the readings: elements disagree beyond their calibration",
+            value=f"{fits[best].widened[0]:.3g} times",
+            legal=f"below {WILD:g} times; are loads, units, design and calibration those of this grasp?",
+        )
+    # layers that contradict the readings far more than others do are not among those to be covered
+    fits = [f for f in fits if f.widened[0] < WILD]
+    one = len(layers) == 1
+
+    def over(ends: list[np.ndarray]) -> Interval:
+        middle = [e[0] for e in ends]
+        estimate = 0.0 if min(middle) <= 0 else float(np.exp(np.log(middle).mean()))  # infinite where one is
+        return Interval(estimate, float(min(e[1] for e in ends)), float(max(e[2] for e in ends)))
+
+    place = {int(n): i for i, n in enumerate(number)}
+    pairs = tuple(
+        pair
+        if np.isnan(fits[0].pairs[0, place[pair.measuring], 0])
+        else replace(pair, object=over([f.pairs[0, place[pair.measuring]] for f in fits]))
+        for pair in grasp.pairs
+    )
+    first = fits[best] if one else fits[0]
+    what = "with the load cell's limits" if one else "on any layer, from the thinnest to a half-space"
+    combined = over([f.object_[0] for f in fits])
+    noted = tuple(n for n in grasp.notes if "disagree beyond" not in n and "does not follow" not in n)
+    if one and (widened := float(first.widened[0])) > 1:
+        noted += (
+            f"the elements disagree beyond their calibration (p {first.disagree[0]:.1g}): combined interval "
+            f"widened {widened:.2g} times",
+        )
+    angle = tuple(
+        tuple(float(f([g.angle[0, k, e] for g in fits])) for e, f in ((0, np.mean), (1, np.min), (2, np.max)))
+        for k in (0, 1)
+    )
+    return replace(
+        grasp,
+        pairs=pairs,
+        combined=combined,
+        combined_by_noise=over([f.object_by_noise[0] for f in fits]) if one else grasp.combined_by_noise,
+        combined_by_limits=((what, combined),),
+        noise=float(first.noise[0]),
+        dof=int(first.dof[0]),
+        disagreement_p=float(max(f.disagree[0] for f in fits)),
+        widened=float(min(f.widened[0] for f in fits)),
+        notes=noted,
+        layer=OnLayer(over([first.modulus[0]]) if one else None, angle, touching, grasp.combined),
     )
 
 
@@ -361,9 +462,9 @@ def _row(calibration: Sensitivity, number: int) -> int:
     return int(rows[0])
 
 
-def to_text(samples: list[Grasp], level: float, per_modulus: float | None = None) -> str:
+def to_text(samples: list[Grasp], level: float) -> str:
     """For each sample K_obj of all elements, a table of its pairs, then limits and notes; `level` is that of
-    the intervals, `per_modulus` K_obj for each MPa of the object's modulus."""
+    the intervals."""
     lines = []
     for g in samples:
         c = g.combined
@@ -409,22 +510,36 @@ def to_text(samples: list[Grasp], level: float, per_modulus: float | None = None
             f"K_obj of all elements by noise and calibration alone: {_interval(g.combined_by_noise)} N/mm",
             *(f"  {name}: {_interval(i)} N/mm" for name, i in g.combined_by_limits),
         ]
-        if per_modulus:
-            scaled = Interval(c.estimate / per_modulus, c.low / per_modulus, c.high / per_modulus, c.empty)
-            lines.append(f"Young's modulus {_number(scaled.estimate)} MPa, interval {_interval(scaled)} MPa")
+        lines += _layer_text(g.layer) if g.layer else []
         lines += [*g.notes, ""]
     return "\n".join(lines)
 
 
-def to_json(samples: list[Grasp], level: float, per_modulus: float | None = None) -> str:
+def _layer_text(layer: OnLayer) -> list[str]:
+    lines = [f"separate springs would have said {_interval(layer.springs)} N/mm"]
+    if layer.modulus:
+        m = layer.modulus
+        lines.append(f"Young's modulus {_number(m.estimate)} MPa, interval {_interval(m)} MPa ({m.verdict})")
+        for axis, (estimate, low, high) in zip("xy", layer.angle):
+            lines.append(
+                f"face inclined along {axis} by {estimate:.2f} degrees, interval {low:.2f} to {high:.2f}"
+            )
+    return [*lines, f"pads that touch at the largest load: {', '.join(map(str, layer.touching))}"]
+
+
+def to_json(samples: list[Grasp], level: float) -> str:
     """All fields of every sample as JSON; an end that is not bounded is 'inf'."""
     records: list[Any] = [plain(g) for g in samples]
     for record, g in zip(records, samples):
-        c = g.combined
-        record["combined"]["verdict"] = c.verdict
-        if per_modulus:
-            values = {"estimate": c.estimate, "low": c.low, "high": c.high}
-            record["modulus_MPa"] = plain({name: v / per_modulus for name, v in values.items()})
+        record["combined"]["verdict"] = g.combined.verdict
+        if layer := record.pop("layer"):
+            record |= {"touching": layer["touching"], "springs": layer["springs"]}
+            record["angle"] = {
+                name: [axis[i] for axis in layer["angle"]]
+                for i, name in enumerate(("estimate", "low", "high"))
+            }
+            if g.layer and g.layer.modulus:
+                record["modulus_MPa"] = layer["modulus"] | {"verdict": g.layer.modulus.verdict}
         for pair, p in zip(record["pairs"], g.pairs):
             pair["object"]["verdict"] = p.object.verdict
     data = {"schema": SCHEMA, "level": level, "units": "mm, N, V", "samples": records}

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from functools import lru_cache
-from math import inf
+from math import inf, isinf
 
 import numpy as np
 
-from tactcad.contact.press import Pads
+from tactcad.contact.press import THINNEST, Pads
 from tactcad.design.family import family_of
 from tactcad.design.messages import CheckFailure, InputError
+from tactcad.design.text_values import as_number
 from tactcad.design.tree import Design
+from tactcad.lab.layer_fit import LAYERS, LayeredArray, layer
 from tactcad.lab.readings import GraspReadings
 from tactcad.mechanics import gauge_signal, ladder, readout
 from tactcad.mechanics.sample_coupling import pad_stiffness, shares_between
@@ -20,6 +22,7 @@ from tactcad.parts.array.layout import Layout
 from tactcad.parts.array.stop_gap import stop_gap
 from tactcad.parts.designs import load
 
+SOFT = 0.49  # Poisson's ratio of rubber and tissue as layers: the paper's samples
 INCOMPRESSIBLE = 0.5  # Poisson's ratio of soft tissue and rubber; a half-space's shares do not depend on it
 # Layers thinner than this share of a pad's side cannot give way sideways, so that the even pressure which the
 # relation between modulus and stiffness takes is no longer near what a rigid pad gives; chosen.
@@ -88,18 +91,62 @@ def coupling(source: str, readings: GraspReadings, share: float) -> np.ndarray |
         raise InputError("coupling", "out of range", value=share, legal="from 0 to 1")
     if share == 0:
         return None
+    refuse_strangers(source, readings)
     x, y, number, length, width = _pads(source)
     place = {int(n): i for i, n in enumerate(number)}
+    rows = [place[int(n)] for n in readings.element]
+    return share * shares_between(x[rows], y[rows], length, width, inf, INCOMPRESSIBLE)
+
+
+def refuse_strangers(source: str, readings: GraspReadings) -> None:
+    """Raise InputError where the design has no such element."""
+    number = _pads(source)[2]
     for n in readings.element:
-        if int(n) not in place:
+        if n not in number:
             raise InputError(
                 f"{readings.path}: sample {readings.sample}, element",
                 f"design {source} has no such element, so nobody knows where its pad stands",
                 value=int(n),
                 legal=f"{number.tolist()}, another --design, or --coupling 0",
             )
-    rows = [place[int(n)] for n in readings.element]
-    return share * shares_between(x[rows], y[rows], length, width, inf, INCOMPRESSIBLE)
+
+
+def layers(design: Design, thickness: str | None, poisson: float | None) -> list[LayeredArray]:
+    """The array on the layer that is named, "6" or "6+-0.3" mm (inf: a half-space), else on layers from the
+    thinnest that rigid pads take to the half-space.
+
+    Raises
+    ------
+    InputError
+        Not a thickness; a layer too thin; a Poisson's ratio out of range.
+    CheckFailure
+        An element is out of the estimator's range.
+    """
+    of = family_of(design).must("pads", "stiffness")
+    pads, _ = of.springs(design)
+    number = of.places(design)[2]
+    side = (pads.length * pads.width) ** 0.5
+    pairs = [(h * side, 0.0) for h in LAYERS]
+    if thickness is not None:
+        value, given, limits = thickness.replace("\N{PLUS-MINUS SIGN}", "+-").partition("+-")
+        try:
+            h = as_number(value)
+            half = (
+                as_number(limits.removesuffix("%")) * (h / 100 if limits.endswith("%") else 1)
+                if given
+                else 0.0
+            )
+        except ValueError:
+            legal = "mm with its limits, as in 6+-0.3 or 6+-5%, or inf"
+            raise InputError("--thickness", "not a thickness", value=thickness, legal=legal) from None
+        if not THINNEST * side <= h or not 0 <= half < h or isinf(h) and given:
+            legal = (
+                f"at least {THINNEST * side:.3g} mm (a quarter of a pad's side), limits below it; inf without"
+            )
+            raise InputError("--thickness", "out of range", value=thickness, legal=legal)
+        pairs = [(h, half)]
+    nu = SOFT if poisson is None else poisson
+    return [layer(number, pads, design.tolerance.pad_height, nu, h, half) for h, half in pairs]
 
 
 @lru_cache(maxsize=4)

@@ -10,14 +10,20 @@ import numpy as np
 from tactcad.contact import springs
 from tactcad.contact.elastic_body import Body
 from tactcad.contact.press import PATCHES, Pads, PadsOnBody, Pressed, pad_stiffness
+from tactcad.contact.stated_errors import (
+    CHOSEN_FROM,
+    DEFAULT_RUNG,
+    LINEAR_REACH,
+    REACH,
+    depth_share,
+    stated_error,
+)
 from tactcad.design.family import family_of
-from tactcad.design.messages import InputError
+from tactcad.design.messages import CheckFailure, InputError
 from tactcad.design.tree import CommonTables
 from tactcad.mechanics import lumped
 from tactcad.report.figures import Figure, Figures
 
-# Relative error of the force on a pad, largest of the published punches on layers that tests hold it against.
-LAYER_ERROR = 0.004
 MOST_PATCHES = 14_400  # a hundred pads: a matrix of 1.7 GB
 SAME = 1e-6  # relative difference of stiffness below which two elements are no pair
 LARGEST_ANGLE = 30.0  # degrees; beyond it the inclined face's own sideways motion is no longer small
@@ -80,6 +86,7 @@ class PressedArray:
     elements: tuple[PressedElement, ...]
     pairs: tuple[PressedPair, ...]
     patches: np.ndarray | None  # of the pads' pressure, `Pressed.patches`; None by springs
+    expected_error: float  # stated for the rung: of a pad's force over the mean of those that touch
 
 
 def press_array(
@@ -87,7 +94,8 @@ def press_array(
     body: Body,
     load: float,
     angle: tuple[float, float] = (0.0, 0.0),
-    rung: str = "layer",
+    rung: str | None = None,
+    within: float | None = None,
 ) -> PressedArray:
     """Press an array on an object by a total load.
 
@@ -102,14 +110,16 @@ def press_array(
     angle
         Of the object's face, degrees: positive where it falls away toward +x, +y.
     rung
-        "springs" or "layer".
+        One of `tactcad.contact.stated_errors.RUNGS`; None: DEFAULT_RUNG, or the cheapest that keeps `within`.
+    within
+        Largest error of the forces that is accepted.
 
     Raises
     ------
     InputError
         A load or angle out of range, a layer too thin, fewer than two pads that touch, too many pads.
     CheckFailure
-        An element is out of the estimator's range.
+        An element is out of the estimator's range; no rung, or not the one named, keeps `within`.
     """
     if not 0 < load < inf:
         raise InputError("--load", "out of range", value=load, legal="above 0 N, finite")
@@ -122,7 +132,8 @@ def press_array(
     pads, per_sink = of.springs(design)
     alone = pad_stiffness(body, pads.length, pads.width, pads.disc)
     K = 1 / pads.compliance[:, 0, 0]
-    pressed = (_on_springs if rung == "springs" else _on_layer)(pads, body, alone, load, angle)
+    candidates = (rung,) if rung else CHOSEN_FROM if within else (DEFAULT_RUNG,)
+    rung, pressed, error = _chosen(candidates, within, pads, body, alone, load, angle)
     if (touching := int((pressed.contact > 0).sum())) < 2:
         raise InputError(
             "--angle",
@@ -147,8 +158,9 @@ def press_array(
     reference = max(touch, key=lambda e: e.stiffness)
     softer = [e for e in touch if e.stiffness < reference.stiffness * (1 - SAME)]
     pairs = tuple(_pair(e, reference) for e in softer)
-    shown = pressed.patches if rung == "layer" else None
-    return PressedArray(rung, body, load, angle, pressed.approach, alone, tuple(elements), pairs, shown)
+    shown = None if rung == "springs" else pressed.patches
+    done = (pressed.approach, alone, tuple(elements), pairs, shown, error)
+    return PressedArray(rung, body, load, angle, *done)
 
 
 def _pair(measuring: PressedElement, reference: PressedElement) -> PressedPair:
@@ -157,13 +169,54 @@ def _pair(measuring: PressedElement, reference: PressedElement) -> PressedPair:
     return PressedPair(measuring.number, reference.number, ratio, by_springs)
 
 
-def _on_layer(pads: Pads, body: Body, alone: float, load: float, angle: tuple[float, float]) -> Pressed:
+def _chosen(
+    candidates: tuple[str, ...],
+    within: float | None,
+    pads: Pads,
+    body: Body,
+    alone: float,
+    load: float,
+    angle: tuple[float, float],
+) -> tuple[str, Pressed, float]:
+    """The first candidate that keeps the error, what it pressed, and the error stated for it."""
+    best = inf
+    for rung in candidates:
+        if rung == "springs":
+            pressed = _on_springs(pads, body, alone, load, angle)
+        else:
+            pressed = _on_body(pads, body, load, angle, rung)
+        deep = depth_share(pads, body, pressed.force)
+        if rung != "large" and deep > LINEAR_REACH:
+            if rung != candidates[-1]:
+                continue
+            raise InputError(
+                "--load",
+                f"presses a pad {deep:.2g} of its radius or the thickness deep, too deep for rung {rung}",
+                value=load,
+                legal=f"at most {LINEAR_REACH:g}; rung large reaches {REACH:g}",
+            )
+        error = stated_error(rung, pads, body, pressed.force)
+        if within is None or error <= within:
+            return rung, pressed, error
+        best = min(best, error)
+    raise CheckFailure(
+        f"no rung is stated to keep the forces within {within:.3g}: the best of {', '.join(candidates)} "
+        f"keeps {best:.2g} here"
+    )
+
+
+def _on_body(pads: Pads, body: Body, load: float, angle: tuple[float, float], rung: str) -> Pressed:
     most = MOST_PATCHES // PATCHES**2
     if len(pads.x) > most:
         raise InputError(
-            "--rung layer", "too many pads", value=len(pads.x), legal=f"at most {most}; --rung springs"
+            f"--rung {rung}", "too many pads", value=len(pads.x), legal=f"at most {most}; --rung springs"
         )
-    return PadsOnBody(pads, body).press(load=load, angle=angle)
+    contact = PadsOnBody(pads, body, rung)
+    if rung == "large":
+        from tactcad.contact import large_strain  # scikit-fem takes a while to load
+
+        return large_strain.press(contact, load, angle)
+    return contact.press(load=load, angle=angle)
 
 
 def _on_springs(pads: Pads, body: Body, alone: float, load: float, angle: tuple[float, float]) -> Pressed:

@@ -150,8 +150,8 @@ def coupling(
 def pad_stiffness(modulus: float, length: float, width: float, thickness: float, poisson: float) -> float:
     """Force on one pad over its mean displacement on an elastic layer, N/mm: K_obj of a modulus.
 
-    The pressure is even; on a half-space a rigid pad is some 4 % stiffer (Johnson, Contact Mechanics,
-    section 3.3: mean displacements 0.95 and 0.87 to 0.91 (1 - nu^2) F/(E sqrt A) of squares).
+    The pressure is even; a rigid pad of 2 x 3 mm is 8.8 % stiffer on a half-space, 10.3 % on a layer of
+    10 mm, 11.4 % on 6 mm and 13.1 % on 3 mm (finer patches than contact.press, nu 0.49).
 
     Parameters
     ----------

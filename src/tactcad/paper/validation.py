@@ -11,6 +11,7 @@ from tactcad.paper import (
     gain,
     grasp_figures,
     hinge,
+    inclination,
     inversion,
     reference_element,
     reference_stiffness,
@@ -27,7 +28,7 @@ LEAST_COMMON = 4  # elements of Table 1 that a design must have for meaningful f
 
 
 def validate(data: Published, array: ArrayModel) -> ValidationReport:
-    """All nine sections. Raises InputError when the design has too few of Table 1's elements."""
+    """All ten sections. Raises InputError when the design has too few of Table 1's elements."""
     common = residuals.matched(data, array)[0]
     if len(common) < LEAST_COMMON or data.reference not in common:
         raise InputError(
@@ -49,6 +50,7 @@ def validate(data: Published, array: ArrayModel) -> ValidationReport:
     seven = grasp_figures.figure_7(ratios)
     effects = budget.budget(data, array, ratios)
     inverted = inversion.invert(ratios)
+    inclined = inclination.study(data, array, ratios)
     sections = (
         residuals.page(K, array),
         hinge.page(fit, array),
@@ -59,10 +61,13 @@ def validate(data: Published, array: ArrayModel) -> ValidationReport:
         reference_element.page(reference),
         budget.page(effects),
         inversion.page(inverted),
+        inclination.page(inclined),
     )
     by_key = {s.key: s for s in sections}
     summary = tuple(
-        h for key in ("table2", "reference", "stiffness", "table1", "inversion") for h in by_key[key].headline
+        h
+        for key in ("table2", "inclination", "reference", "stiffness", "table1", "inversion")
+        for h in by_key[key].headline
     )
     return ValidationReport(
         "Held against the paper: a spring-based tactile array",

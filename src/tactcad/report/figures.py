@@ -107,6 +107,7 @@ class Figures(Mapping[str, Figure]):
             raise TypeError(f"{record.__name__} has no number {', '.join(unknown)}")
         if missing := sorted(numbers - set(names) - set(without)):
             raise TypeError(f"{record.__name__}: no figure is declared for {', '.join(missing)}")
+        _DECLARED[record] = self
 
     def __getitem__(self, name: str) -> Figure:
         return self._by_name[name]
@@ -120,6 +121,14 @@ class Figures(Mapping[str, Figure]):
     def some(self, *names: str) -> tuple[Figure, ...]:
         """These figures, in this order."""
         return tuple(self[name] for name in names)
+
+
+_DECLARED: dict[type, Figures] = {}
+
+
+def declared(record: type) -> list[Figure]:
+    """The figures of a kind of record, in the order of tables; none where none are declared."""
+    return [*_DECLARED.get(record, {}).values()]
 
 
 def _numbers(record: type) -> Iterator[str]:

@@ -108,7 +108,7 @@ def meaning(old: Side, new: Side) -> Meaning:
     together = reviewed_effect(before, after, build)
     found = causes(old.table, new.table)
     each = _Each(old.table, new.table, before, after, together)
-    told = [each.of(cause, len(found) == 1) for cause in found]
+    told = each.grouped(found)
     ranked = sorted([*code, *told], key=lambda c: c.weight, reverse=True)
     return Meaning(tuple(ranked), together, True, tuple(_interactions(told, together)))
 
@@ -180,6 +180,22 @@ class _Each:
             except (InputError, CheckFailure) as error:
                 refused = refused or str(error)
         return Consequence(said, cause.kind, "together only", SensorEffect(), refused)
+
+    def grouped(self, found: Sequence[Cause]) -> list[Consequence]:
+        """Of every cause; those that are refused one by one in pairs that are not, or else all together."""
+        one_by_one = [(cause, self.of(cause, len(found) == 1)) for cause in found]
+        told = [c for _, c in one_by_one if c.how != "together only"]
+        stuck = [cause for cause, c in one_by_one if c.how == "together only"]
+        while stuck:
+            pairs = [[stuck[0], other] for other in stuck[1:]]
+            for group in (*pairs, stuck):
+                edits = tuple(edit for cause in group for edit in cause.edits)
+                made = self.of(Cause("value", edits), len(group) == len(found))
+                if made.how != "together only" or group is stuck:
+                    break
+            told.append(made)
+            stuck = [cause for cause in stuck if cause not in group]
+        return told
 
     def _effect(self, old: Reviewed, new: Reviewed) -> SensorEffect:
         """Arrays are built for one cause only where they come out otherwise for all."""

@@ -24,9 +24,10 @@ from tactcad.export.geometry import Record, geometry
 from tactcad.mechanics import readout
 from tactcad.parts.array.hinge_section import design_gauge, design_readout, hinge_section
 from tactcad.parts.array.layout import Layout
-from tactcad.parts.language.description import NOT_MADE, Part
+from tactcad.parts.language.description import NOT_MADE, Part, Vector
 from tactcad.parts.language.finding import Finding
 from tactcad.scenes import left_out, make_scene, scene_names
+from tactcad.scenes.rig import ARRAY
 from tactcad.scenes.scene import Scene
 from tactcad.stacks.virtual_build import LEAST_YIELD, sensor
 
@@ -71,6 +72,7 @@ class SensorState:
     cut_length   of all wire-cut pieces of the array, mm
     made         every part that is made and has a sheet, by number
     scenes       by name: placements and bill of the record of geometry
+    size         of the array as built, mm; None where only a record of geometry is there
     """
 
     elements: Mapping[str, ElementFigures]
@@ -78,6 +80,7 @@ class SensorState:
     cut_length: float
     made: Mapping[str, MadePart]
     scenes: Mapping[str, Record]
+    size: Vector | None = None
 
 
 def recorded_state(record: Record, design: Design | None) -> SensorState:
@@ -143,6 +146,7 @@ class Reviewed:
                 for (name, figures), volts in zip(told.elements.items(), self._signals(len(told.elements)))
             },
             made={number: MadePart(part, (part.body, part.features)) for number, part in made.items()},
+            size=next(scene.size for scene in self.scenes if scene.name == ARRAY),
         )
 
     def _signals(self, count: int) -> list[float | None]:
@@ -236,6 +240,7 @@ class SensorEffect:
     elements_added, elements_removed
                      designators after and before
     mass, cut_length of the array, g and mm; None unchanged
+    size             of the array as built before and after, mm; None unchanged or unknown
     yield_share      share of virtual arrays that meet every requirement; None unchanged or not built
     bill             part number -> pieces before and after, the most that one scene holds
     parts_added, parts_removed
@@ -253,6 +258,7 @@ class SensorEffect:
     elements_removed: tuple[str, ...] = ()
     mass: ChangedFigure | None = None
     cut_length: ChangedFigure | None = None
+    size: tuple[Vector, Vector] | None = None
     yield_share: ChangedFigure | None = None
     bill: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     parts_added: tuple[str, ...] = ()
@@ -312,6 +318,7 @@ def effect(old: SensorState, new: SensorState, pairs: Pairs) -> SensorEffect:
         elements_removed=tuple(a for a, b in pairs if b is None and a is not None),
         mass=_changed(old.mass, new.mass),
         cut_length=_changed(old.cut_length, new.cut_length),
+        size=(old.size, new.size) if old.size and new.size and old.size != new.size else None,
         bill=_bill(old, new),
         parts_added=tuple(added),
         parts_removed=tuple(n for n in old.made if n not in new.made),

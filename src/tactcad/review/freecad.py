@@ -19,7 +19,7 @@ from tactcad import shutdown
 from tactcad.design.family import family_of
 from tactcad.design.files import scratch_folder
 from tactcad.design.messages import CheckFailure, InputError
-from tactcad.design.tree import Design
+from tactcad.design.tree import NO_TABLES, Design
 from tactcad.export.shapes import Shapes
 from tactcad.lab.array_estimate import ELEMENT
 from tactcad.mechanics.ladder import DEFAULT_RUNG
@@ -138,7 +138,7 @@ def parameter_rows(design: Design) -> list[Row]:
     rows: list[Row] = []
     for section in dataclasses.fields(design):
         table = getattr(design, section.name)
-        if section.name == "origin" or table is None:
+        if section.name in NO_TABLES or table is None:
             continue
         rows += _fields(section.name, table, design.origin)
         for number, hinge in getattr(table, "override", {}).items():

@@ -105,7 +105,7 @@ class Panel {
     const d = this.record.design;
     const fit = this.record.array.fit;
     return [section('This design', list([
-      ['Design', d.name], ['Revision', d.revision], ['Date', d.date], ['Author', d.author], ['Organisation', d.organisation],
+      ['Design', d.name], ['Revision', d.revision], ['Date', d.date], ['Author', d.author], ['Organisation', d.organisation], ['Overall size', d.size],
       ['Scenes', this.record.scenes.map((s) => s.name).join(', ')], ['Parts in this scene', `${this.scene.placed.length}`],
       ['Different parts', `${new Set(this.scene.placed.map((p) => p.part_no)).size}`],
       ['Findings', this.record.live ? 'not looked for while live' : `${this.record.findings.filter((f) => f.severity === 'fail').length} failed, `

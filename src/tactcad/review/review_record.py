@@ -13,7 +13,7 @@ from tactcad.design.family import family_of
 from tactcad.design.messages import CheckFailure
 from tactcad.design.tree import Design
 from tactcad.export.shapes import Shapes
-from tactcad.scenes import make_scene
+from tactcad.scenes import make_scene, overall_size, stated_size
 
 from .facts import element_facts, finding_facts, part_facts, scene_facts
 from .mesh_pack import MeshPack, mesh_pack
@@ -54,7 +54,9 @@ def review_record(
     say(total - 1, total, "checks")
     findings = finding_facts(design, scenes, shapes, lambda *_: None)
     strains, block = _strains(design, pack)
-    record = record_head(design) | {
+    head = record_head(design)
+    head["design"]["size"] = stated_size(overall_size(design))
+    record = head | {
         "parts": [
             asdict(part_facts(part, made.variables, lines))
             | {"mesh": pack.table[part.part_no], "box": pack.boxes[part.part_no]}

@@ -10,9 +10,10 @@ from html import escape
 from importlib.util import find_spec
 from pathlib import Path
 from types import ModuleType
+from typing import cast
 
-from tactcad.design.messages import CheckFailure
-from tactcad.design.tree import Design
+from tactcad.design.messages import CheckFailure, InputError
+from tactcad.design.tree import CommonTables, Design
 from tactcad.export.inputs import flattened, nested
 from tactcad.export.sides import compare_sides, design_side
 from tactcad.parts.rules import refuse_broken
@@ -150,9 +151,12 @@ def _listening() -> ModuleType:
 
 def _read(design: str | Path | Design) -> tuple[Design, Mapping[str, str]]:
     """The design, which keeps its rules, and the drawing sheets (SVG by part number) that lie with it."""
-    if isinstance(design, Design):
-        refuse_broken(design)
-        return design, {}
+    if isinstance(design, CommonTables):
+        refuse_broken(cast(Design, design))
+        return cast(Design, design), {}
+    if not isinstance(design, str | Path):
+        legal = "a path, a name in hardware/, or a design; of a scene its name, as show(design, scene)"
+        raise InputError("design", "no design", value=type(design).__name__, legal=legal)
     seen = subject(str(design))
     return seen.design, seen.sheets
 

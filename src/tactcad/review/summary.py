@@ -10,6 +10,7 @@ from typing import Any
 
 from tactcad.export.difference import Change
 from tactcad.export.sides import Side, not_compared
+from tactcad.scenes import stated_size
 
 from .consequences import Consequence, Meaning
 from .effect import FIGURES, ChangedFigure, SensorEffect
@@ -138,6 +139,8 @@ def _words(effect: SensorEffect, title: bool) -> Iterator[str]:
     if title:
         yield "title block of every sheet"
         return
+    if effect.size:
+        yield "overall size: " + " -> ".join(map(stated_size, effect.size))
     yield from (f"now {text}" for text in effect.now)
     yield from (f"no longer {text}" for text in effect.no_longer)
     yield from (f"{name}: {_shortened(names)}" for name, names in _lists(effect) if names)

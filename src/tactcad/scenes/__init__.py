@@ -13,11 +13,12 @@ from typing import TYPE_CHECKING
 from tactcad.design.family import family_of
 from tactcad.design.messages import InputError, one_of
 from tactcad.design.tree import Design
+from tactcad.parts.language.description import Vector
 from tactcad.parts.language.finding import Finding
 from tactcad.parts.rules.rule import misfit
 from tactcad.profiling import making
 
-from .rig import Rig, all_rigs, rig_of
+from .rig import ARRAY, Rig, all_rigs, rig_of
 
 if TYPE_CHECKING:
     from .scene import Pose, Scene
@@ -92,7 +93,18 @@ def make_scene(design: Design, name: str, pose: Pose | None = None) -> Scene:
     InputError
         Where the pose is impossible.
     """
-    from .scene import REST
+    from .scene import REST, with_added
 
     with making("scene", name):
-        return rig_of(design, name).make(design, pose or REST)
+        scene = rig_of(design, name).make(design, pose or REST)
+        return with_added(scene, (added for added in design.added if added.scene == name))
+
+
+def overall_size(design: Design) -> Vector:
+    """Length, width and height (mm) of the array as built: the box around all parts of its scene `array`."""
+    return make_scene(design, ARRAY).size
+
+
+def stated_size(size: Vector) -> str:
+    """As reports state it: "63.0 x 38.2 x 21.6 mm"."""
+    return " x ".join(f"{side:.1f}" for side in size) + " mm"

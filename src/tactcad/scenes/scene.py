@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
+from itertools import product
 from math import floor
 from typing import Literal
 
@@ -169,8 +170,61 @@ class Scene:
         """Every part placed, once, in the order of first placement."""
         return tuple({p.part.part_no: p.part for p in self.placements}.values())
 
+    @property
+    def size(self) -> Vector:
+        """Length, width and height (mm) of the box around all parts, by their descriptions' stock."""
+        corners = [
+            [
+                sum(row[k] * (low, high)[pick[k]][k] for k in range(3)) + p.origin[i]
+                for i, row in enumerate(p.rotation)
+            ]
+            for p in self.placements
+            for low, high in [p.part.body.box]
+            for pick in product((0, 1), repeat=3)
+        ]
+        return vector(round(max(along) - min(along), 6) for along in zip(*corners))
+
     def count(self, part: Part) -> int:
         return sum(p.part.part_no == part.part_no for p in self.placements)
+
+
+@dataclass(frozen=True)
+class AddedPart:
+    """A part that Python put into a scene, beyond what the design places.
+
+    scene    its name
+    placed   the part, under a designator of its own
+    step     title of the step that puts it there: one of the scene's, or a new last one
+    touches  designators of what it is meant to meet
+    """
+
+    scene: str
+    placed: Placement
+    step: str
+    touches: tuple[str, ...] = ()
+
+
+LIFTED = 30.0  # mm that a new step's part comes from above, in the exploded view
+
+
+def with_added(scene: Scene, added: Iterable[AddedPart]) -> Scene:
+    """The scene with these parts, in its contacts and steps too."""
+    for a in added:
+        name, steps = a.placed.designator, list(scene.steps)
+        if a.step in (titles := [step.title for step in steps]):
+            at = titles.index(a.step)
+            steps[at] = replace(steps[at], designators=(*steps[at].designators, name))
+        elif steps:
+            text = f"Put {a.placed.part.name} in place."
+            steps.append(Step(a.step, (name,), (0.0, 0.0, LIFTED), text, unit=steps[-1].unit))
+        meets = tuple(Contact(name, other, "touch") for other in a.touches)
+        scene = replace(
+            scene,
+            placements=(*scene.placements, a.placed),
+            contacts=scene.contacts + meets,
+            steps=tuple(steps),
+        )
+    return scene
 
 
 def at_detail(scene: Scene, detail: str) -> Scene:

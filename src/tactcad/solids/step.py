@@ -10,14 +10,17 @@ from __future__ import annotations
 import hashlib
 from io import BytesIO
 from pathlib import Path
+from typing import Any
 
-from build123d import Solid, import_step
+from build123d import Solid, export_step, import_step
 from OCP.BRep import BRep_Builder
+from OCP.BRepBuilderAPI import BRepBuilderAPI_Transform
 from OCP.BRepTools import BRepTools
 from OCP.IFSelect import IFSelect_RetDone
 from OCP.Interface import Interface_Static
 from OCP.Message import Message
 from OCP.STEPControl import STEPControl_AsIs, STEPControl_Reader, STEPControl_Writer
+from OCP.TopLoc import TopLoc_Location
 from OCP.TopoDS import TopoDS_Shape
 
 from tactcad.design.messages import InputError
@@ -86,6 +89,23 @@ def model_file(path: str | Path) -> ModelFile:
     return ModelFile(str(path), sha256, facts["volume"], (tuple(low), tuple(high)))
 
 
+def kept_model(shape: Any, folder: Path) -> ModelFile:
+    """A build123d solid as a bought part's body: written once as STEP in `folder`, under its content's name.
+
+    Raises InputError where it is not one solid.
+    """
+    solids = list(shape.solids())
+    if len(solids) != 1:
+        raise InputError("part", "not one solid", value=len(solids), legal="a shape of one solid")
+    stream = BytesIO()
+    export_step(solids[0], stream, timestamp="2000-01-01T00:00:00")  # equal bytes for an equal solid
+    data = stream.getvalue()
+    path = folder / f"{hashlib.sha256(data).hexdigest()}.step"
+    folder.mkdir(parents=True, exist_ok=True)
+    path.write_bytes(data)
+    return model_file(path)
+
+
 def _sha256(path: str) -> str:
     if not Path(path).is_file():
         raise InputError(path, "no such STEP file")
@@ -99,7 +119,9 @@ def _only_solid(path: str) -> Solid:
         raise InputError(path, f"cannot be read as STEP: {error}") from None
     if len(solids) != 1:
         raise InputError(path, "not one solid", value=len(solids), legal="a STEP file with one solid")
-    return solids[0]
+    shape = solids[0].wrapped  # its place becomes its geometry: a located solid is written as an assembly
+    base, place = shape.Located(TopLoc_Location()), shape.Location().Transformation()
+    return Solid(BRepBuilderAPI_Transform(base, place, True).Shape())
 
 
 def to_bytes(shape: TopoDS_Shape) -> bytes:

@@ -24,7 +24,7 @@ from tactcad.contour.segment import turned
 from tactcad.design.tree import Design
 from tactcad.parts.array.element import element_number, outline
 from tactcad.parts.array.layout import ElementPlace, Layout
-from tactcad.parts.array.stop_gap import Overload, overloads, stop_gap
+from tactcad.parts.array.stop_gap import Overload, endurance, overloads, stop_gap
 from tactcad.parts.language.finding import Finding, Severity
 from tactcad.parts.rules.pressed_rules import hinge_centre, turns
 
@@ -78,6 +78,16 @@ def _about(layout: Layout, state: Overload) -> list[Finding]:
         )
         _finding("rated-force", "flag", state.rated_force, design.rating.force, message)
     return findings
+
+
+def check_fatigue(design: Design) -> Iterator[Finding]:
+    """A flag where elements bear their rated force for a finite life only."""
+    layout = Layout(design)
+    states = [state for state in overloads(layout) if not state.refused]
+    if said := endurance(layout, states):
+        worst = min(states, key=lambda state: state.endured / state.rated_force)
+        who, number = worst.place.designator, element_number(design, worst.place)
+        yield Finding("fatigue", "flag", who, (), worst.endured, worst.rated_force, said, number)
 
 
 def check_clearance(design: Design) -> list[Finding]:
@@ -200,5 +210,6 @@ def _pressed(check: str, place: ElementPlace, value: float, limit: float, what: 
 
 CHECKS = (
     Check("strength", "design", lambda design, _: check_strength(design), place=10, quick=True),
+    Check("fatigue", "design", lambda design, _: check_fatigue(design), place=15, quick=True),
     Check("clearance", "design", lambda design, _: check_clearance(design), place=20, quick=True),
 )

@@ -94,14 +94,7 @@ def box_corners(box: tuple[Vector, Vector]) -> Iterator[Vector]:
 
 def part_box(part: Part) -> tuple[Vector, Vector]:
     """Least and largest corner of a part in its own frame, mm, exact."""
-    body = part.body
-    if isinstance(body, ModelFile):
-        return body.box
-    if isinstance(body, Extrusion):
-        x0, y0, x1, y1 = body.outer.box
-        return (x0, y0, 0.0), (x1, y1, body.thickness)
-    _, z0, r, z1 = body.profile.box
-    return (-r, -r, z0), (r, r, z1)
+    return part.body.box
 
 
 def box_of(p: Placement) -> Extent:

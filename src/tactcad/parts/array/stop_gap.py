@@ -4,12 +4,14 @@ closed.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from math import floor, hypot, sqrt
 
 import numpy as np
 
+from tactcad.design.materials import ALLOYS
 from tactcad.mechanics import ladder, strain, strength, validity
 from tactcad.mechanics.section import HingeSection
 from tactcad.mechanics.strength import (
@@ -172,6 +174,7 @@ class Overload:
     stress            at the fillet, MPa
     yield_factor      yield strength over that stress
     rated_force       in use, N
+    endured           N at the pad, put on and off, that it bears as often as the fatigue strength holds
     refused           why the estimator refuses the element; then the numbers are NaN
     """
 
@@ -185,7 +188,13 @@ class Overload:
     stress: float
     yield_factor: float
     rated_force: float
+    endured: float
     refused: str = ""
+
+    @property
+    def measurable(self) -> float:
+        """N at the pad up to which it measures: rated, and before its stop can close."""
+        return min(self.rated_force, self.earliest)
 
 
 def overloads(layout: Layout) -> list[Overload]:
@@ -214,6 +223,7 @@ def overloads(layout: Layout) -> list[Overload]:
         "stress": stress,
         "yield_factor": alloy.yield_strength / stress,
         "rated_force": np.minimum(rating.force, yields / rating.yield_factor),
+        "endured": strength.goodman(alloy, alloy.yield_strength / yields),
     }
     by_name = {name: np.broadcast_to(column, s.shape).tolist() for name, column in figures.items()}
     return [
@@ -224,3 +234,37 @@ def overloads(layout: Layout) -> list[Overload]:
         )
         for i, place in enumerate(places)
     ]
+
+
+def endurance(layout: Layout, states: Sequence[Overload]) -> str:
+    """Which elements do not bear their rated force for ever, and what they bear; "" where all do."""
+    tired = [state for state in states if state.endured < state.rated_force]
+    if not tired:
+        return ""
+    row = ALLOYS.get(layout.design.material.alloy)
+    cycles = (
+        f"{row.fatigue_cycles:.0e}".replace("e+0", "e")
+        if row and row.fatigue_cycles
+        else "its fatigue life's"
+    )
+    return (
+        f"finite life at the rated force (Goodman factor below 1); {cycles} cycles are borne up to "
+        + by_force(tired, lambda state: state.endured)
+    )
+
+
+def reach(states: Sequence[Overload]) -> str:
+    """Up to which force each element measures, where a stop may close below the rated one; "" if none may."""
+    if not any(state.earliest < state.rated_force for state in states):
+        return ""
+    return "a stop may close below the rated force; measures up to " + by_force(
+        states, lambda s: s.measurable
+    )
+
+
+def by_force(states: Sequence[Overload], force: Callable[[Overload], float]) -> str:
+    """ "1.2 N (E1, E8), 0.9 N (E4)": elements by force, the largest first."""
+    groups: dict[str, list[str]] = {}
+    for state in sorted(states, key=force, reverse=True):
+        groups.setdefault(f"{force(state):.3g} N", []).append(state.place.designator)
+    return ", ".join(f"{value} ({', '.join(names)})" for value, names in groups.items())

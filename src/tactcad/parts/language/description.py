@@ -56,6 +56,12 @@ class Extrusion:
         return self.outer.area - sum(c.area for c in self.openings)
 
     @property
+    def box(self) -> tuple[Vector, Vector]:
+        """Least and largest corner, mm."""
+        x0, y0, x1, y1 = self.outer.box
+        return (x0, y0, 0.0), (x1, y1, self.thickness)
+
+    @property
     def cut_length(self) -> float:
         """Length of all contours that a wire or a mill has to follow, mm."""
         return self.outer.length + sum(c.length for c in self.openings)
@@ -76,6 +82,12 @@ class Revolution:
     def moment(self) -> Vector:
         """Volume times centre, mm4: 2 pi times the profile's integral of r z."""
         return (0.0, 0.0, 2 * pi * self.profile.product_moment)
+
+    @property
+    def box(self) -> tuple[Vector, Vector]:
+        """Least and largest corner, mm."""
+        _, z0, r, z1 = self.profile.box
+        return (-r, -r, z0), (r, r, z1)
 
 
 @dataclass(frozen=True)

@@ -58,9 +58,13 @@ def refuse_broken(design: Design) -> None:
     if broken:
         first = broken[0]
         others = f" (and {', '.join(b.check for b in broken[1:])})" if broken[1:] else ""
-        raise InputError(
-            first.part,
-            f"rule {first.check}{others}: {first.message}",
-            value=first.value,
-            legal=str(first.limit),
-        )
+        raise refusal(first, others)
+
+
+def refusal(broken: Finding, others: str = "") -> InputError:
+    """A broken rule as the refusal of the field that it names; `others` follows the rule's name."""
+    value = (
+        round(broken.value, 9) if isinstance(broken.value, float) else broken.value
+    )  # not 3.5999999999999996
+    what = f"rule {broken.check}{others}: {broken.message}"
+    return InputError(broken.part, what, value=value, legal=str(broken.limit))

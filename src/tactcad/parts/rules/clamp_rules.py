@@ -244,7 +244,11 @@ def carrier_holes_apart(layout: Layout) -> Iterator[Finding]:
     for path, value, x, _, r in spots:
         if x + r + CARRIER_EDGE > half + SAME:
             what = f"hole at the carrier's edge, {x:g} mm from the middle"
-            yield wrong(path, what, value, f"at most {half - r - CARRIER_EDGE:g} mm from the middle")
+            over = x + r + CARRIER_EDGE - half
+            own = f"at most {value - over:.4g} mm, or " if path == "clamp.carrier_screw_offset" else ""
+            yield wrong(
+                path, what, value, f"{own}clamp.carrier_margin at least {c.carrier_margin + over:.4g} mm"
+            )
     most = layout.end_plate_half - layout.clamp_edge - m.tap_drill / 2 - END_PLATE_WEB
     if layout.carrier_screw_x + m.tap_drill / 2 + END_PLATE_WEB > layout.end_plate_half:
         yield wrong(

@@ -1,0 +1,63 @@
+"""tactcad completion bash|zsh|fish: what the shell asks while a command is typed."""
+
+from __future__ import annotations
+
+import argparse
+
+from .parser import UNLISTED
+
+EXAMPLES = """\
+  eval "$(tactcad completion bash)"              in ~/.bashrc
+  eval "$(tactcad completion zsh)"               in ~/.zshrc, after compinit
+  tactcad completion fish | source               in ~/.config/fish/config.fish"""
+
+SCRIPTS = {
+    "bash": """\
+_tactcad() {
+    local IFS=$'\\n'
+    COMPREPLY=($(tactcad completion words "${COMP_WORDS[@]:1:COMP_CWORD}" 2>/dev/null))
+}
+complete -o default -F _tactcad tactcad""",
+    "zsh": """\
+_tactcad() {
+    local -a found
+    found=(${(f)"$(tactcad completion words "${(@)words[2,CURRENT]}" 2>/dev/null)"})
+    if (( $#found )); then compadd -a found; else _files; fi
+}
+compdef _tactcad tactcad""",
+    "fish": """\
+complete -c tactcad -a '(tactcad completion words (commandline -opc)[2..] (commandline -ct) 2>/dev/null)'""",
+}
+NAMES_DESIGN = ("design", "source", "old", "new")  # arguments that take a design's name
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("shell", choices=(*SCRIPTS, "words"), metavar="SHELL", help="bash, zsh or fish")
+    parser.add_argument("words", nargs=argparse.REMAINDER, help=UNLISTED)  # of the scripts: typed so far
+
+
+def run(args: argparse.Namespace) -> int:
+    print("\n".join(candidates(args.words)) if args.shell == "words" else SCRIPTS[args.shell])
+    return 0
+
+
+def candidates(words: list[str]) -> list[str]:
+    """What the last of these words, of a command that is being typed, may become; none for a file's name."""
+    from tactcad.design.load import names
+
+    from .main import COMMANDS, parser_of
+
+    *before, last = words or [""]
+    if not before or before == ["help"]:
+        return [name for name in (*COMMANDS, "help") if name.startswith(last)]
+    if before[0] not in COMMANDS:
+        return []
+    actions = [a for a in parser_of(before[0])._actions if a.help != UNLISTED]
+    of = next((a for a in actions if before[-1] in a.option_strings and a.nargs != 0), None)
+    if of is None and last.startswith("-"):
+        options = [a.option_strings[-1] for a in actions if a.option_strings]
+        return [option for option in (*options, "--help") if option.startswith(last)]
+    asked = [of] if of else [a for a in actions if not a.option_strings]
+    found = [str(choice) for a in asked for choice in a.choices or ()]
+    found += [name for a in asked if a.dest in NAMES_DESIGN for name in names()]
+    return [word for word in dict.fromkeys(found) if word.startswith(last)]

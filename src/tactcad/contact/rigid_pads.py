@@ -1,0 +1,205 @@
+"""Many presses of rigid pads on one layer: each pad as three numbers, its force and two moments.
+
+A pad alone obeys one law, tabulated once for a layer: forces follow from how deep and how inclined it stands
+in the face, with contact lost where it lifts. By linearity of the body that law is homogeneous (twice the
+depth and slopes, twice the force) and proportional to the modulus, so it is a table of two ratios. Between
+pads, forces and moments move and incline each other's part of the face by a matrix, exact where whole pads
+touch.
+`press` solves every patch instead; tests hold the two against each other.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+from scipy.interpolate import RectBivariateSpline
+
+from .elastic_body import Body, influence
+from .press import complementary, patches
+
+KNOTS = 21  # of each ratio in the table, 0 to 1; 41 move forces by less than 0.1 %
+ROUNDS = 60  # of Newton's method, at most
+COARSE = 6  # patches a side of a pad for what pads do to each other
+CLOSE = 1e-10  # of the largest depth: left of the equations when they count as solved
+
+# values and slopes at both ends of a unit cell to the coefficients of a cubic
+HERMITE = np.array([[1.0, 0, 0, 0], [0, 0, 1, 0], [-3, 3, -2, -1], [2, -2, 1, 1]])
+
+
+@dataclass(frozen=True)
+class PadLaw:
+    """Force and moments of one pad on a layer of 1 MPa; `cells` are a bicubic's coefficients."""
+
+    length: float
+    width: float
+    cells: np.ndarray  # [knot, knot, 3, 4, 4]
+
+    def __call__(self, r: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Force (N) and moments (N mm) for each MPa, and their derivatives.
+
+        Parameters
+        ----------
+        r : ndarray, [..., 3]
+            Depth of the pad's middle in the face, mm, and by how much the depth grows along x and y.
+
+        Returns
+        -------
+        ndarray, [..., 3], and ndarray, [..., 3, 3]
+        """
+        side = np.array([self.length, self.width])
+        sign = np.where(r[..., 1:] < 0, -1.0, 1.0)
+        fall = np.abs(r[..., 1:]) * side  # across the whole pad
+        deepest = r[..., 0] + fall.sum(-1) / 2
+        size = np.maximum(deepest, 0.0) + fall.sum(-1)
+        size = np.where(size > 0, size, 1.0)
+        touches = deepest > 0
+        ratio = np.where(touches[..., None], fall / size[..., None], 0.0)
+        at = ratio * (KNOTS - 1)
+        cell = np.minimum(at.astype(int), KNOTS - 2)
+        u = at - cell
+        coefficients = self.cells[cell[..., 0], cell[..., 1]]
+        power = np.stack([np.ones_like(u), u, u * u, u**3], -1)
+        slope = np.stack([np.zeros_like(u), np.ones_like(u), 2 * u, 3 * u * u], -1) * (KNOTS - 1)
+        along = np.einsum("...fij,...j->...fi", coefficients, power[..., 1, :])
+        across = np.einsum("...fij,...j->...fi", coefficients, slope[..., 1, :])
+        f = np.einsum("...fi,...i->...f", along, power[..., 0, :])
+        d = np.stack(
+            [
+                np.einsum("...fi,...i->...f", along, slope[..., 0, :]),
+                np.einsum("...fi,...i->...f", across, power[..., 0, :]),
+            ],
+            -1,
+        )  # of f by the two ratios
+        # forces = size f(fall/size); by depth, and by each fall, of which size has 3/2 more
+        by_size = f - (d * ratio[..., None, :]).sum(-1)
+        by_fall = 1.5 * by_size[..., None] + d
+        turn = np.concatenate([np.ones_like(sign[..., :1]), sign], -1) * np.concatenate([[1.0], side])
+        forces = size[..., None] * f * turn
+        derivative = np.concatenate([by_size[..., None], by_fall * (sign * side)[..., None, :]], -1)
+        derivative = derivative * turn[..., None]
+        return forces * touches[..., None], derivative * touches[..., None, None]
+
+
+@lru_cache(maxsize=32)
+def pad_law(poisson: float, thickness: float, base: str, length: float, width: float) -> PadLaw:
+    """The law of one rectangular pad, by solving its patches at every knot."""
+    one = patches(length, width, False)
+    M = influence(Body(1.0, poisson, thickness, base), tuple(one))
+    M = (M + M.T) / 2
+    modes = np.stack([np.ones(one.shape[1]), one[0] / length, one[1] / width])
+    t = np.linspace(0, 1, KNOTS)
+    value = np.zeros((3, KNOTS, KNOTS))
+    for i, x in enumerate(t):
+        for j, y in enumerate(t[: KNOTS - i - 1]):
+            depth = 1 - 1.5 * (x + y)
+            f, _ = complementary(M, -(x * modes[1] + y * modes[2]), None, depth, np.ones(one.shape[1]))
+            value[:, i, j] = modes @ f
+    step = 1 / (KNOTS - 1)
+    cells = np.empty((KNOTS - 1, KNOTS - 1, 3, 4, 4))
+    for k, of in enumerate(value):
+        spline = RectBivariateSpline(t, t, of)
+        data = np.array([[spline(t, t, dx=a, dy=b) * step ** (a + b) for b in (0, 1)] for a in (0, 1)])
+        both = [
+            data[a, b, p : KNOTS - 1 + p, q : KNOTS - 1 + q]
+            for a in (0, 1)
+            for p in (0, 1)
+            for b in (0, 1)
+            for q in (0, 1)
+        ]
+        corner = np.array(both).reshape(4, 4, KNOTS - 1, KNOTS - 1)
+        cells[:, :, k] = np.einsum("ia,abxy,jb->xyij", HERMITE, corner, HERMITE)
+    return PadLaw(length, width, cells)
+
+
+class ManyPresses:
+    """Pads that each give way in one manner (a hinge) on one layer, set up once.
+
+    x, y, length, width, move: middles, sides (mm), and sink and slopes of each pad as its middle sinks by 1,
+    [pad, 3]; a pad's spring sees the force and moments that do work in that motion.
+    """
+
+    def __init__(
+        self, x: np.ndarray, y: np.ndarray, length: float, width: float, move: np.ndarray, body: Body
+    ) -> None:
+        n = len(x)
+        self.x, self.y, self.move, self.body = x, y, move, body
+        self.law = pad_law(body.poisson, body.thickness, body.base, length, width)
+        one = patches(length, width, False, COARSE)
+        m = one.shape[1]
+        modes = np.stack([np.ones(m), one[0], one[1]])
+        unit = Body(1.0, body.poisson, body.thickness, body.base)
+        face = np.empty((n, m, n, m))
+        for i in range(n):
+            for j in range(i + 1):
+                block = influence(unit, (one[0] + x[i] - x[j], one[1] + y[i] - y[j], *one[2:]), tuple(one))
+                face[i, :, j], face[j, :, i] = block, block.T
+        full = np.linalg.inv(face.reshape(n * m, n * m)).reshape(n, m, n, m)
+        grip = np.einsum("am,imjk,bk->iajb", modes, full, modes).reshape(3 * n, 3 * n)
+        between = np.linalg.inv(grip).reshape(n, 3, n, 3)
+        between[np.arange(n), :, np.arange(n)] = 0.0  # a pad's own part is its law's
+        self.between = between.reshape(3 * n, 3 * n)
+
+    def system(self, modulus: np.ndarray, stiffness: np.ndarray) -> np.ndarray:
+        """Depth lost for each unit of the law's forces, [..., 3 pad, 3 pad].
+
+        Parameters
+        ----------
+        modulus : ndarray, [...]
+            MPa.
+        stiffness : ndarray, [..., pad]
+            Of the springs, N/mm.
+        """
+        n = len(self.x)
+        own = self.move[:, :, None] * self.move[:, None, :]
+        spring = (modulus[..., None] / stiffness)[..., None, None] * own
+        M = np.broadcast_to(self.between, (*modulus.shape, 3 * n, 3 * n)).copy()
+        for i in range(n):
+            M[..., 3 * i : 3 * i + 3, 3 * i : 3 * i + 3] = spring[..., i, :, :]
+        return M
+
+    def approached(self, approach: np.ndarray, slope: np.ndarray, height: np.ndarray) -> np.ndarray:
+        """Depth of rigid pads in an undisturbed face, [..., pad, 3]: approach [...], slopes of the face
+        [..., 2] and heights [..., pad] as in `press`."""
+        b = np.empty((*height.shape, 3))
+        b[..., 0] = approach[..., None] - height - slope[..., :1] * self.x - slope[..., 1:] * self.y
+        b[..., 1:] = -slope[..., None, :]
+        return b
+
+    def rest(self, M: np.ndarray, b: np.ndarray, start: np.ndarray) -> tuple[np.ndarray, ...]:
+        """Depths that leave the pads at rest, the law's forces there, its derivatives and the equations', by
+        Newton's method: depth + M law(depth) = b."""
+        shape = b.shape
+        n3 = 3 * shape[-2]
+        r, eye = start.copy(), np.eye(n3)
+
+        def state(depth: np.ndarray) -> tuple[np.ndarray, ...]:
+            g, d = self.law(depth)
+            off = b - depth - (M @ g.reshape(*shape[:-2], n3, 1)).reshape(shape)
+            return g, d, off, (off**2).sum((-1, -2))
+
+        g, d, off, size = state(r)
+        close = (CLOSE * np.abs(b).max((-1, -2), initial=1e-9)) ** 2
+        for _ in range(ROUNDS):
+            J = eye + _columns(M, d)
+            if (size <= close).all():
+                return r, g, d, J
+            step = np.linalg.solve(J, off.reshape(*shape[:-2], n3, 1)).reshape(shape)
+            share = np.ones(size.shape)
+            for _ in range(12):
+                tried = state(r + share[..., None, None] * step)
+                worse = (tried[3] > size) & (size > close)
+                if not worse.any():
+                    break
+                share = np.where(worse, share / 2, share)
+            r = r + share[..., None, None] * step
+            g, d, off, size = tried
+        return r, g, d, eye + _columns(M, d)
+
+
+def _columns(M: np.ndarray, d: np.ndarray) -> np.ndarray:
+    """M times the block diagonal of d, [..., 3 pad, 3 pad]."""
+    n = d.shape[-3]
+    parts = M.reshape(*M.shape[:-1], n, 3).swapaxes(-3, -2) @ d
+    return parts.swapaxes(-3, -2).reshape(M.shape)

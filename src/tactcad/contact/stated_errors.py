@@ -1,0 +1,57 @@
+"""The rungs of the object's ladder: what error of the pads' forces each states, and how deep it reaches.
+
+An error is the largest difference of a pad's force over the mean force of the pads that touch.
+`data/errors.json`, written by `benchmarks/object_ladder.py`, holds what was found, with a margin.
+"""
+
+from __future__ import annotations
+
+import json
+from functools import lru_cache
+from math import pi
+from pathlib import Path
+
+import numpy as np
+
+from .elastic_body import Body
+from .press import Pads, pad_stiffness
+
+CHOSEN_FROM = ("springs", "layer", "large")  # in the order of their work
+RUNGS = ("springs", "layer", "fem-object", "large")
+DEFAULT_RUNG = "layer"
+# Of the lesser of a pad's radius and the thickness: past it, a linear rung's error is not measured.
+LINEAR_REACH = 0.3
+REACH = 0.5  # of rung large: deeper, elements fold at the punch's edge
+
+
+@lru_cache(maxsize=1)
+def errors() -> dict:
+    """data/errors.json."""
+    return json.loads((Path(__file__).parent / "data" / "errors.json").read_text("utf-8"))
+
+
+def pad_radius(pads: Pads) -> float:
+    """Of a disc of the pads' area, mm."""
+    return (pads.length * pads.width * (0.25 if pads.disc else 1 / pi)) ** 0.5
+
+
+def depth_share(pads: Pads, body: Body, force: np.ndarray) -> float:
+    """How deep the deepest pad's own force presses it into a linear body, over the lesser of its radius
+    and the thickness."""
+    alone = pad_stiffness(body, pads.length, pads.width, pads.disc)
+    return float(force.max() / alone / min(pad_radius(pads), body.thickness))
+
+
+def stated_error(rung: str, pads: Pads, body: Body, force: np.ndarray) -> float:
+    """Largest error of the pads' forces that is stated for a rung where the pads bear these."""
+    data = errors()
+    strain = 0.0
+    if rung != "large":
+        zone = int(np.searchsorted(data["thickness"], body.thickness / pad_radius(pads), side="right"))
+        strain = float(np.interp(depth_share(pads, body, force), data["depth"], data["strain"][zone]))
+    if rung == "springs":
+        K = float((1 / pads.compliance[:, 0, 0]).max())
+        hardness = K / (K + pad_stiffness(body, pads.length, pads.width, pads.disc))
+        zone = int(np.searchsorted(data["hardness"], hardness))
+        return data["springs"][min(zone, len(data["springs"]) - 1)] + strain
+    return data["layer" if rung == "large" else rung] + strain

@@ -1,0 +1,549 @@
+"""Modulus of a layer from all elements' signals at all loads, with the inclination of its face.
+
+Signal of element i at load t = offset_i + K_v,i sink_i(t). The sinks are those of rigid pads at rest on the
+layer (contact.rigid_pads) at an approach of their own for each load. Free: modulus, both slopes of the face,
+offsets, approaches. Known within limits, and fitted with these as priors: K and K_v by the calibration's
+covariance, heights of the pads, the layer's thickness, and the stiffness of pads that press unread. Readings
+before contact fix the offsets. The load is hardly used: friction and relaxation go into the approaches.
+
+Least squares by Gauss and Newton; noise by what the fit leaves where K and K_v are as good as free. Errors of
+the estimate are followed back to each element, whose own covariance and degrees of freedom then count, as in
+`combine`. An interval is even in ln R of two elements, R = (K_r + x)/(K_m + x), of which equation (3) makes
+K_obj: as Fieller's, it opens where R comes to 1 or to K_r/K_m. A pair's interval is the same fit with the
+modulus under every other pad free, so that they tell their forces and nothing else.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+from math import inf
+
+import numpy as np
+from scipy.special import fdtrc
+
+from tactcad.contact.elastic_body import Body
+from tactcad.contact.press import Pads, pad_stiffness
+from tactcad.contact.rigid_pads import ManyPresses
+from tactcad.lab.combine import DISAGREE, PRIOR_DOF
+from tactcad.lab.regression import KNOWN, t_quantile
+
+from .calibration_file import Sensitivity
+
+UNIFORM = 3**-0.5  # standard deviation over half-width of what lies anywhere within limits
+MODEL = 0.005  # of each element's force by the layer rung: 0.4 % of punches, 0.3 % by the pads' law
+# Standard deviation of ln K of a pad that presses and is not read: equal elements of Table 1 differ by a
+# factor of up to two.
+UNREAD = 0.35
+# Of the largest load, standard deviation of every sum of forces: only keeps the approach in bounds.
+LOAD = 0.1
+STEEP = 0.3  # standard deviation of the face's slopes: 17 degrees, far beyond what is set up
+WILD = 10.0  # times their errors by which elements disagree from which on no modulus explains the readings
+# Thicknesses over a pad's side that are tried where none is known.
+LAYERS = (0.25, 0.35, 0.5, 0.7, 1.0, 1.4, 2.0, 3.0, 5.0, 10.0, inf)
+STEPS = 40
+SETTLED = 0.1  # of a cost in squared standard errors: the estimate is then a third of one from its end
+STAGES = 3  # each finds the noise anew
+# Of the largest change of a signal: error of a reading by the law of pads that lift, against single patches
+# (0.05 % of whole pads, 0.3 % where most have lifted).
+SHAPE = 1e-3
+# Of the weight of the pads' heights in a pair's fit. The readings give heights over the approach; taken as
+# known, their size would tell the approach and so K_obj, by as much as one pair does.
+FREE_HEIGHTS = 0.01
+SAME = 1e-6  # relative difference of stiffness below which two elements are no pair
+LOOSE = 1e-4  # of a prior's weight where it is as good as none
+THICKER = 0.02  # relative step by which the layer's part in the sinks is found
+BATCH = 250  # grasps at once: 0.3 GB
+
+
+@dataclass(frozen=True)
+class LayeredArray:
+    """An array on one layer of 1 MPa, set up for any number of fits; arrays, [pad].
+
+    thickness and its half-width, mm; drawn: stiffness by the design, N/mm; height: standard deviation, mm;
+    unit: K_obj of a single level pad for each MPa, N/mm, and d ln unit/d ln thickness.
+    """
+
+    number: np.ndarray
+    drawn: np.ndarray
+    stop: np.ndarray
+    height: float
+    contact: ManyPresses
+    thicker: ManyPresses | None
+    thickness: float
+    spread: float  # of ln thickness
+    unit: float
+    unit_by_thickness: float
+
+
+def layer(
+    number: np.ndarray, pads: Pads, height: float, poisson: float, thickness: float, half_width: float = 0.0
+) -> LayeredArray:
+    """Set up; `pads` is the family's `Pads`, `height` the tolerance of their heights (plus and minus, mm)."""
+    K = 1 / pads.compliance[:, 0, 0]
+    move = pads.compliance[:, :, 0] * K[:, None]
+    fixed = (pads.x.tobytes(), pads.y.tobytes(), move.tobytes(), pads.length, pads.width)
+    contact = _contact(*fixed, Body(1.0, poisson, thickness))
+    unit = pad_stiffness(contact.body, pads.length, pads.width)
+    spread = half_width / thickness * UNIFORM
+    thicker, steeper = None, 0.0
+    if spread:
+        body = Body(1.0, poisson, thickness * (1 + THICKER))
+        thicker = _contact(*fixed, body)
+        steeper = float(np.log(pad_stiffness(body, pads.length, pads.width) / unit) / np.log1p(THICKER))
+    return LayeredArray(
+        number, K, pads.stop, height * UNIFORM, contact, thicker, thickness, spread, unit, steeper
+    )
+
+
+@lru_cache(maxsize=64)
+def _contact(x: bytes, y: bytes, move: bytes, length: float, width: float, body: Body) -> ManyPresses:
+    return ManyPresses(
+        np.frombuffer(x), np.frombuffer(y), length, width, np.frombuffer(move).reshape(-1, 3), body
+    )
+
+
+@dataclass(frozen=True)
+class LayerFit:
+    """Grasps on one layer; arrays with one entry a grasp first.
+
+    modulus     MPa; low, high: its interval (0 and inf where it is not bounded)
+    object_     K_obj of a single level pad, N/mm, [estimate, low, high]; object_by_noise without the limits
+                of the load cell
+    pairs       K_obj by each element other than the reference alone, [grasp, element, 3]
+    angle       of the face along x and y, degrees, [grasp, 2, 3]
+    force       on each pad at the largest load, N, [grasp, pad]
+    noise       V; dof its degrees of freedom
+    disagree    probability that errors alone make the elements disagree this much; widened: factor on the
+                interval where it is small
+    """
+
+    modulus: np.ndarray
+    object_: np.ndarray
+    object_by_noise: np.ndarray
+    pairs: np.ndarray
+    angle: np.ndarray
+    force: np.ndarray
+    noise: np.ndarray
+    dof: np.ndarray
+    disagree: np.ndarray
+    widened: np.ndarray
+
+
+class _Model:
+    """Signals and forces of many grasps by the parameters, and their derivatives."""
+
+    def __init__(
+        self, at: LayeredArray, rows: np.ndarray, calibration: Sensitivity, load: np.ndarray
+    ) -> None:
+        self.at, self.rows, self.load = at, rows, load
+        self.K = at.drawn.copy()
+        self.K[rows] = calibration.stiffness
+        self.K_v = calibration.signal_per_deflection
+        n, m, t = len(at.number), len(rows), len(load)
+        sizes = {
+            "E": 1,
+            "slope": 2,
+            "offset": m,
+            "approach": t,
+            "height": n,
+            "K": n,
+            "K_v": m,
+            "thickness": 1,
+            "own": m,
+        }
+        ends = np.cumsum([0, *sizes.values()])
+        self.part = {name: slice(a, b) for name, a, b in zip(sizes, ends, ends[1:])}
+        self.size = int(ends[-1])
+
+    def signals(self, q: np.ndarray, start: np.ndarray | None, columns: bool) -> tuple:
+        """Of parameters q [grasp, parameter]: signal [grasp, element, load], total force [grasp, load],
+        depths, forces [grasp, load, pad], and with `columns` the derivatives of the first two."""
+        at, part, rows = self.at, self.part, self.rows
+        G, T, n, m = len(q), len(self.load), len(at.number), len(rows)
+        spread = lambda v: np.repeat(v[:, None], T, 1)  # noqa: E731
+        E = spread(np.exp(q[:, 0]))
+        K = spread(self.K * np.exp(q[:, part["K"]]))
+        K_v = self.K_v * np.exp(q[:, part["K_v"]])
+        contact = at.contact
+        b = contact.approached(
+            q[:, part["approach"]], spread(q[:, part["slope"]]), spread(q[:, part["height"]])
+        )
+        M = contact.system(E, K)
+        r, g, d, J = contact.rest(M, b, b if start is None else start)
+        sink = E[..., None] * np.einsum("gtni,ni->gtn", g, contact.move) / K
+        force = E[..., None] * g[..., 0]
+        signal = q[:, part["offset"], None] + K_v[..., None] * sink[..., rows].swapaxes(1, 2)
+        if not columns:
+            return signal, force.sum(-1), r, force
+        # by approach, slopes, heights, K, own modulus: right-hand sides of J dr
+        right = np.zeros((G, T, n, 3, 3 + 2 * n + m))
+        right[..., 0, 0] = 1.0
+        right[..., 0, 1], right[..., 1, 1] = -contact.x, -1.0
+        right[..., 0, 2], right[..., 2, 2] = -contact.y, -1.0
+        i = np.arange(n)
+        right[:, :, i, 0, 3 + i] = -1.0
+        right[:, :, i, :, 3 + n + i] = (sink[..., None] * contact.move).transpose(2, 0, 1, 3)
+        blocks = M.reshape(G, T, 3 * n, n, 3)
+        right[..., 3 + 2 * n :] = -np.einsum("gtrnk,gtnk->gtrn", blocks, g)[..., rows].reshape(G, T, n, 3, m)
+        if at.thicker is not None:
+            other = at.thicker.rest(at.thicker.system(E, K), b, r)[1]
+            by_thickness = (
+                E[..., None] * (other - g)[..., 0],
+                E[..., None] * np.einsum("gtni,ni->gtn", other - g, contact.move) / K,
+            )
+        dr = np.linalg.solve(J, right.reshape(G, T, 3 * n, -1)).reshape(right.shape)
+        dg = np.einsum("gtnij,gtnjq->gtniq", d, dr)
+        ds = np.einsum("gtniq,ni->gtnq", dg, contact.move) * (E[..., None] / K)[..., None]
+        df = E[..., None, None] * dg[..., 0, :]
+        ds[:, :, i, 3 + n + i] -= sink
+        ds[:, :, rows, 3 + 2 * n + np.arange(m)] += sink[..., rows]
+        df[:, :, rows, 3 + 2 * n + np.arange(m)] += force[..., rows]
+        sums = df.sum(2)
+        A, B = np.zeros((G, m, T, self.size)), np.zeros((G, T, self.size))
+        t, e = np.arange(T), np.arange(m)
+        of = ds[:, :, rows].swapaxes(1, 2) * K_v[:, :, None, None]
+        A[:, :, t, part["approach"].start + t] = of[..., 0]
+        B[:, t, part["approach"].start + t] = sums[..., 0]
+        for name, columns_ in (
+            ("slope", slice(1, 3)),
+            ("height", slice(3, 3 + n)),
+            ("K", slice(3 + n, 3 + 2 * n)),
+            ("own", slice(3 + 2 * n, None)),
+        ):
+            A[..., part[name]], B[..., part[name]] = of[..., columns_], sums[..., columns_]
+        # all springs softer alike is a stiffer body, but for the size of the forces
+        A[..., 0], B[..., 0] = -A[..., part["K"]].sum(-1), force.sum(-1) - B[..., part["K"]].sum(-1)
+        A[:, e, :, part["offset"].start + e] = 1.0
+        A[:, e, :, part["K_v"].start + e] = (signal - q[:, part["offset"], None]).swapaxes(0, 1)
+        if at.thicker is not None:
+            step = np.log1p(THICKER)
+            A[..., part["thickness"].start] = (
+                K_v[..., None] * by_thickness[1][..., rows].swapaxes(1, 2) / step
+            )
+            B[..., part["thickness"].start] = by_thickness[0].sum(-1) / step
+        return signal, force.sum(-1), r, force, A, B
+
+
+def fit(
+    at: LayeredArray,
+    element: np.ndarray,
+    load: np.ndarray,
+    signal: np.ndarray,
+    calibration: Sensitivity,
+    level: float = 0.95,
+    reference: int | None = None,
+) -> LayerFit:
+    """Evaluate grasps that were read alike.
+
+    Parameters
+    ----------
+    at
+        The array on its layer.
+    element
+        Numbers of those read, [element].
+    load
+        N, [load]; where it is zero nothing touches.
+    signal
+        V, [grasp, element, load].
+    calibration
+        Of these elements, in this order.
+    level
+        Of the intervals.
+    reference
+        Number of the element that pairs refer to; by default the stiffest.
+    """
+    parts = [
+        _fit(at, element, load, signal[i : i + BATCH], calibration, level, reference)
+        for i in range(0, len(signal), BATCH)
+    ]
+    return LayerFit(*(np.concatenate([getattr(p, name) for p in parts]) for name in vars(parts[0])))
+
+
+def _fit(
+    at: LayeredArray,
+    element: np.ndarray,
+    load: np.ndarray,
+    signal: np.ndarray,
+    calibration: Sensitivity,
+    level: float,
+    reference: int | None,
+) -> LayerFit:
+    place = {int(n): i for i, n in enumerate(at.number)}
+    rows = np.array([place[int(n)] for n in element])
+    touching = load > 0
+    model = _Model(at, rows, calibration, load[touching])
+    part, size, m = model.part, model.size, len(rows)
+    free = np.arange(part["own"].start)
+    priors = _priors(model, calibration)
+    weigh, loose = priors.weigh, priors.loose
+    before, pressed = signal[:, :, ~touching], signal[:, :, touching]
+    rests, G = before.shape[2], len(signal)
+    unloaded = before.mean(2) if rests else np.zeros((G, m))
+    count = pressed.shape[1] * pressed.shape[2] + m * rests
+    load_weight = 1 / (LOAD * load.max()) ** 2
+    least = np.maximum(SHAPE * np.ptp(signal, axis=2).max(1), 1e-12)
+    noise = least
+
+    def cost_of(i: np.ndarray, q: np.ndarray, state: tuple) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Of grasps i; what is left of signals and of loads."""
+        off, over = pressed[i] - state[0], load[touching] - state[1]
+        zero = before[i] - q[:, part["offset"], None]
+        squares = (off**2).sum((1, 2)) + (zero**2).sum((1, 2))
+        known = np.einsum("gi,ij,gj->g", q, weigh, q) + (over**2).sum(1) * load_weight
+        return squares / noise[i] ** 2 + known, off, over
+
+    def normal(i: np.ndarray, q: np.ndarray, state: tuple) -> tuple[np.ndarray, np.ndarray]:
+        """Matrix without priors, and downhill direction of half the cost."""
+        _, off, over = cost_of(i, q, state)
+        sigma = noise[i]
+        A = state[4].reshape(len(i), -1, size) / sigma[:, None, None]
+        B = state[5] * load_weight**0.5
+        N = A.swapaxes(1, 2) @ A + B.swapaxes(1, 2) @ B
+        down = (A.swapaxes(1, 2) @ (off.reshape(len(i), -1, 1) / sigma[:, None, None]))[..., 0]
+        down += (B.swapaxes(1, 2) @ (over[..., None] * load_weight**0.5))[..., 0]
+        o = np.arange(part["offset"].start, part["offset"].stop)
+        N[:, o, o] += rests / sigma[:, None] ** 2
+        down[:, o] += rests * (unloaded[i] - q[:, part["offset"]]) / sigma[:, None] ** 2
+        return N, down - q @ weigh
+
+    every = np.arange(G)
+    q = _start(model, pressed, before, load[touching])
+    state = model.signals(q, None, True)
+    for _ in range(STAGES):
+        cost = cost_of(every, q, state)[0]
+        damping, at_work = np.full(G, 1e-6), every
+        for _ in range(STEPS):
+            i = at_work
+            now = tuple(a[i] for a in state)
+            N, down = normal(i, q[i], now)
+            N = (N + weigh)[:, free[:, None], free]
+            diagonal = np.einsum("gii->gi", N)
+            N = N + damping[i, None, None] * diagonal[:, None, :] * np.eye(len(free))
+            step = np.zeros((len(i), size))
+            step[:, free] = _solve(N, down[:, free, None])[..., 0]
+            far = np.maximum(np.abs(step[:, 0]) / 0.7, np.abs(step[:, part["slope"]]).max(1) / 0.05)
+            tried_q = q[i] + step / np.maximum(far, 1.0)[:, None]
+            tried = model.signals(tried_q, now[2], True)
+            gain = cost[i] - cost_of(i, tried_q, tried)[0]
+            better = gain >= 0
+            q[i[better]] = tried_q[better]
+            for old, new in zip(state, tried):
+                old[i[better]] = new[better]
+            cost[i[better]] -= gain[better]
+            # a damped step that gains little says nothing of how far the end is
+            done = better & (gain < SETTLED) & (damping[i] < 1e-3) | (damping[i] > 1e3)
+            damping[i] *= np.where(better, 0.1, 10.0)
+            at_work = i[~done]
+            if not len(at_work):
+                break
+        N, down = normal(every, q, state)
+        down_loose = (down + q @ weigh - q @ loose)[:, free]
+        N_loose = (N + loose)[:, free[:, None], free]
+        gain = np.einsum("gi,gi->g", down_loose, _solve(N_loose, down_loose[..., None])[..., 0])
+        quiet = cost - np.einsum("gi,ij,gj->g", q, weigh - loose, q) - gain
+        inverse = _solve(N_loose, np.broadcast_to(np.eye(len(free)), N_loose.shape))
+        spent = len(free) - np.einsum("gij,ji->g", inverse, loose[free[:, None], free])
+        dof = np.maximum(count + len(load[touching]) - spent, 1.0)
+        noise_now = noise * np.maximum(quiet, 1e-18 * count) ** 0.5 / dof**0.5
+        noise, before_ = np.maximum(noise_now, least), noise
+        if (noise < 1.5 * before_).all():
+            break
+    K = model.K[rows]
+    r = int(np.argmax(K)) if reference is None else int(np.flatnonzero(element == reference)[0])
+    last = state[3][:, int(np.argmax(model.load))]
+    return _results(
+        at, model, calibration, q, last, *normal(every, q, state), priors, noise_now, dof, level, r
+    )
+
+
+def _solve(N: np.ndarray, right: np.ndarray) -> np.ndarray:
+    """N of parameters in very different units."""
+    unit = np.einsum("...ii->...i", N) ** -0.5
+    return unit[..., None] * np.linalg.solve(
+        N * unit[..., None] * unit[..., None, :], unit[..., None] * right
+    )
+
+
+@dataclass(frozen=True)
+class _Priors:
+    """Weights of all parameters beforehand (`loose`: with K and K_v as good as free; `others`: without them);
+    places of ln K and ln K_v of each element, their weights, own covariances, and how the load cell's limits
+    shift them."""
+
+    weigh: np.ndarray
+    loose: np.ndarray
+    others: np.ndarray
+    calibrated: np.ndarray
+    of_element: np.ndarray
+    own: np.ndarray
+    shift: list[np.ndarray]
+
+
+def _priors(model: _Model, c: Sensitivity) -> _Priors:
+    part, at, m = model.part, model.at, len(model.rows)
+    others = np.zeros((model.size, model.size))
+    unread = np.setdiff1d(np.arange(len(at.number)), model.rows)
+    for where, deviation in (
+        (np.r_[part["slope"]], STEEP),
+        (np.r_[part["height"]], at.height),
+        (part["K"].start + unread, UNREAD),
+        (np.r_[part["thickness"]], max(at.spread, 1e-6)),
+    ):
+        others[where, where] = deviation**-2
+    k, v = c.stiffness_se / c.stiffness, c.signal_per_deflection_se / np.abs(c.signal_per_deflection)
+    both = c.correlation * k * v * np.sign(c.signal_per_deflection)
+    own = np.moveaxis(np.array([[k * k, both], [both, v * v]]), 2, 0)
+    dof = c.dof[:, None, None]
+    common = (dof * own).sum(0) / dof.sum()
+    model_part = np.diag([MODEL**2, 1e-12])
+    of_element = np.linalg.inv((dof * own + PRIOR_DOF * common) / (dof + PRIOR_DOF) + model_part)
+    calibrated = np.stack([part["K"].start + model.rows, part["K_v"].start + np.arange(m)], -1)
+    weigh, loose = others.copy(), others.copy()
+    for pair, weight in zip(calibrated, of_element):
+        weigh[np.ix_(pair, pair)], loose[np.ix_(pair, pair)] = weight, LOOSE * weight
+    shift = []
+    if (c.load_cell_half_width > 0).any():
+        for other in (c.at_load_cell_limit(-1.0), c.at_load_cell_limit(1.0)):
+            ratios = other.stiffness / c.stiffness, other.signal_per_deflection / c.signal_per_deflection
+            shift.append(np.log(np.stack(ratios, -1)))
+    return _Priors(weigh, loose, others, calibrated, of_element, own + model_part, shift)
+
+
+def _start(model: _Model, pressed: np.ndarray, before: np.ndarray, load: np.ndarray) -> np.ndarray:
+    """Parameters to begin with: equation (1) with coupled pads, linear in 1/E, slopes and approaches."""
+    at, part, rows = model.at, model.part, model.rows
+    G, m, T = pressed.shape
+    q = np.zeros((G, model.size))
+    away = load - load.mean()
+    rise = pressed @ away / max(away @ away, 1e-300)
+    offset = before.mean(2) if before.shape[2] else pressed.mean(2) - rise * load.mean()
+    q[:, part["offset"]] = offset
+    s = (pressed - offset[..., None]) / model.K_v[:, None]
+    s = np.maximum(s, 0.0)
+    n = len(at.number)
+    face = at.contact.between.reshape(n, 3, n, 3)[:, 0, :, 0][np.ix_(rows, rows)].copy()
+    face[np.arange(m), np.arange(m)] = 1 / at.unit
+    phi = np.einsum("ij,gjt->git", face, s * model.K[rows][:, None])
+    touch = s > 0.05 * s.max((1, 2), initial=1e-300)[:, None, None]
+    A = np.zeros((G, m, T, 3 + T))
+    A[..., 0] = phi
+    A[..., 1] = at.contact.x[rows][:, None]
+    A[..., 2] = at.contact.y[rows][:, None]
+    A[:, :, np.arange(T), 3 + np.arange(T)] = -1.0
+    A *= touch[..., None]
+    N = np.einsum("gitp,gitq->gpq", A, A)
+    N[:, np.arange(3 + T), np.arange(3 + T)] *= 1 + 1e-9
+    N[:, np.arange(3 + T), np.arange(3 + T)] += 1e-12 * np.einsum("gii->g", N)[:, None]
+    # slopes only as far as the readings say them
+    N[:, [1, 2], [1, 2]] += (np.ptp(s, axis=(1, 2)) ** 2 * 1e-2 / STEEP**2)[:, None]
+    found = np.linalg.solve(N, -np.einsum("gitp,git->gp", A, s * touch)[..., None])[..., 0]
+    softest = float(np.median(model.K[rows])) / at.unit
+    compliance = np.where(found[:, 0] > 1e-3 / softest, found[:, 0], 1 / softest)
+    q[:, 0] = -np.log(np.minimum(compliance, 1e3 / softest))
+    good = found[:, 0] > 1e-3 / softest
+    q[:, part["slope"]] = np.where(good[:, None], np.clip(found[:, 1:3], -0.2, 0.2), 0.0)
+    least = (s + phi * np.exp(-q[:, 0])[:, None, None]).max(1)
+    q[:, part["approach"]] = np.where(good[:, None], np.maximum(found[:, 3:], 0.2 * least), least)
+    return q
+
+
+def _results(
+    at: LayeredArray,
+    model: _Model,
+    c: Sensitivity,
+    q: np.ndarray,
+    force: np.ndarray,
+    N: np.ndarray,
+    down: np.ndarray,
+    priors: _Priors,
+    noise: np.ndarray,
+    dof: np.ndarray,
+    level: float,
+    r: int,
+) -> LayerFit:
+    part, G, K = model.part, len(q), model.K[model.rows]
+    free = np.arange(part["own"].start)
+
+    def covariance(weigh: np.ndarray, keep: np.ndarray) -> np.ndarray:
+        full = np.zeros((G, model.size, model.size))
+        part_of = (N + weigh)[:, keep[:, None], keep]
+        full[:, keep[:, None], keep] = _solve(part_of, np.broadcast_to(np.eye(len(keep)), part_of.shape))
+        return full
+
+    def errors(
+        row: np.ndarray, variance: np.ndarray, known: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Of a quantity whose covariance with all parameters is `row` [grasp, parameter]: standard error,
+        Student's quantile, and how far the load cell's limits shift it."""
+        pull = np.einsum("eij,gej->gei", priors.of_element, row[:, priors.calibrated])
+        stated = np.einsum("gei,gei->g", pull, row[:, priors.calibrated])
+        actual = np.einsum("gei,eij,gej->ge", pull, priors.own, pull)
+        others = np.einsum("gi,ij,gj->g", row, known, row)
+        by_noise = np.maximum(variance - stated - others, 0.0)
+        total = by_noise + others + actual.sum(1)
+        bottom = by_noise**2 / dof + (actual**2 / c.dof).sum(1)
+        freedom = np.clip(total**2 / np.maximum(bottom, 1e-300), 1.0, KNOWN)
+        moved = np.array([np.einsum("gei,ei->g", pull, s) for s in priors.shift] or [np.zeros(G)])
+        quantile = np.array([t_quantile(level, float(f)) for f in freedom])
+        return total**0.5, quantile, np.abs(moved).max(0)
+
+    full, loose = covariance(priors.weigh, free), covariance(priors.loose, free)
+    # what the priors of K and K_v cost against as many freedoms as they take
+    gone = priors.weigh - priors.loose
+    taken = np.count_nonzero(np.diag(priors.weigh)) - np.einsum("gij,ji->g", loose, priors.loose)
+    uphill = down + q @ gone
+    cost = np.einsum("gi,ij,gj->g", q, gone, q) + np.einsum("gi,gij,gj->g", uphill, loose, uphill)
+    taken = np.maximum(taken, 1e-9)
+    p = fdtrc(taken, max(float(c.dof.sum()), 1.0), np.maximum(cost / taken, 0.0))
+    widened = np.where(p < DISAGREE, np.maximum(cost / taken, 1.0) ** 0.5, 1.0)
+
+    modulus, stiffness = np.zeros((2, model.size))
+    modulus[0] = stiffness[0] = 1.0
+    stiffness[part["thickness"].start] = at.unit_by_thickness
+    soft = float(K.min()) if K.min() < K[r] else float(K.max())
+    none = np.zeros(G)
+    found = []
+    for combination in (modulus, stiffness):
+        row = full @ combination
+        se, t, moved = errors(row, row @ combination, priors.others)
+        x = q @ combination + np.log(at.unit)
+        found.append(_even_in_ratio(x, none, t * se * widened + moved, K[r], soft))
+        by_noise = _even_in_ratio(x, none, t * se, K[r], soft)
+    pairs = np.full((G, len(K), 3), np.nan)
+    for e in range(len(K)):
+        if abs(K[e] / K[r] - 1) > SAME:
+            alone = part["own"].start + np.setdiff1d(np.arange(len(K)), [e, r])
+            weigh = priors.weigh.copy()
+            weigh[alone, alone] = LOOSE
+            weigh[part["height"], part["height"]] *= FREE_HEIGHTS
+            known = priors.others.copy()
+            known[part["height"], part["height"]] *= FREE_HEIGHTS
+            by_pair = covariance(weigh, np.r_[free, alone])
+            row = by_pair @ stiffness
+            se, t, moved = errors(row, row @ stiffness, known)
+            away = np.einsum("gi,gi->g", row, down + q @ (priors.weigh - weigh))
+            pairs[:, e] = _even_in_ratio(q @ stiffness + np.log(at.unit), away, t * se + moved, K[r], K[e])
+    angle = np.empty((G, 2, 3))
+    for k, i in enumerate(range(part["slope"].start, part["slope"].stop)):
+        se, t, moved = errors(full[:, i], full[:, i, i], priors.others)
+        half = t * se * widened + moved
+        angle[:, k] = np.degrees(np.arctan(np.stack([q[:, i], q[:, i] - half, q[:, i] + half], -1)))
+    return LayerFit(found[0] / at.unit, found[1], by_noise, pairs, angle, force, noise, dof, p, widened)
+
+
+def _even_in_ratio(
+    ln_x: np.ndarray, away: np.ndarray, half: np.ndarray, K_r: float, K_m: float
+) -> np.ndarray:
+    """K_obj and its interval, [grasp, 3], from ln K_obj, a step away from it and a half-width, all taken to
+    ln R of two elements, where errors are even."""
+    K_r, K_m, x = max(K_r, K_m), min(K_r, K_m), np.exp(ln_x)
+    steep = x * (K_r - K_m) / ((K_r + x) * (K_m + x))
+    middle = np.log1p((K_r - K_m) / (K_m + x)) - steep * away
+
+    def object_(ln_R: np.ndarray) -> np.ndarray:
+        R = np.exp(np.clip(ln_R, 1e-15, np.log(K_r / K_m)))
+        value = (K_r - R * K_m) / (R - 1)
+        return np.where(ln_R <= 1e-15, inf, np.maximum(value, 0.0))
+
+    return np.stack([object_(middle), object_(middle + steep * half), object_(middle - steep * half)], -1)

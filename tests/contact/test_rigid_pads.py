@@ -1,0 +1,58 @@
+"""Pads as three numbers against every patch solved, on layers and at angles where pads lift."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import inf, radians, tan
+
+import numpy as np
+import pytest
+
+from tactcad.contact.elastic_body import Body, influence
+from tactcad.contact.press import PadsOnBody, _complementary, pad_stiffness, patches
+from tactcad.contact.rigid_pads import ManyPresses, pad_law
+from tactcad.lab.pads import springs_of
+from tactcad.parts.designs import load
+
+
+def array():
+    pads, _ = springs_of(load("macro-array"))
+    pads = replace(pads, stop=np.full(len(pads.x), inf))
+    K = 1 / pads.compliance[:, 0, 0]
+    return pads, K, pads.compliance[:, :, 0] * K[:, None]
+
+
+@pytest.mark.parametrize("thickness", [1.0, 6.0, inf])
+def test_presses_are_those_of_single_patches(thickness):
+    """Within 0.3 % of the largest sink, whole pads or edges; 10 pads, 3 to 10 N."""
+    pads, K, move = array()
+    body = Body(1.0, 0.49, thickness)
+    single = PadsOnBody(pads, body)
+    many = ManyPresses(pads.x, pads.y, pads.length, pads.width, move, body)
+    lifted = 0
+    for E, angle, N in ((0.1, (0.0, 0.0), 3.0), (0.3, (0.5, 1.0), 3.0), (1.0, (-2.0, 5.0), 10.0)):
+        exact = single.press(load=N, angle=angle, modulus=E)
+        lifted += int((exact.contact < 1).sum())
+        slope = np.array([[tan(radians(a)) for a in angle]])
+        b = many.approached(np.array([exact.approach]), slope, pads.height[None])
+        g = many.rest(many.system(np.array([E]), K[None]), b, b)[1][0]
+        sink = E * (g * many.move).sum(-1) / K
+        assert np.abs(sink - exact.sink).max() < 3e-3 * exact.sink.max()
+        assert E * g[:, 0].sum() == pytest.approx(N, rel=2e-3)
+    assert lifted > 4
+
+
+def test_a_pads_law_is_its_patches_and_its_derivative_a_difference():
+    law, one = pad_law(0.49, 6.0, "bonded", 2.0, 3.0), patches(2.0, 3.0, False)
+    M = influence(Body(1.0, 0.49, 6.0), tuple(one))
+    level = law(np.array([1.0, 0.0, 0.0]))[0]
+    assert level == pytest.approx([pad_stiffness(Body(1.0, 0.49, 6.0), 2.0, 3.0), 0, 0], rel=1e-6, abs=1e-9)
+    rng = np.random.default_rng(1)
+    for _ in range(20):
+        r = np.array([1.0, *rng.normal(0, 0.6, 2)])
+        f, _ = _complementary(M, -(r[1] * one[0] + r[2] * one[1]), None, r[0])
+        g, d = law(r)
+        assert g == pytest.approx([f.sum(), f @ one[0], f @ one[1]], abs=5e-3 * f.sum())
+        assert law(3 * r)[0] == pytest.approx(3 * g)
+        numeric = np.array([(law(r + 1e-6 * e)[0] - law(r - 1e-6 * e)[0]) / 2e-6 for e in np.eye(3)]).T
+        assert d == pytest.approx(numeric, rel=1e-5, abs=1e-5)

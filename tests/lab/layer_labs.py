@@ -1,0 +1,134 @@
+"""Labs that press an array on a layer, by code of the tests' own: Love's closed form for a rectangle of even
+pressure, the layer's part by an integral over waves, and a contact loop on single patches."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.interpolate import interp1d
+from scipy.special import j0
+
+from tactcad.lab.calibration_file import Sensitivity
+
+LOAD = np.concatenate([[0.0], 3.235 + 0.980665 * np.arange(8)])  # N: before contact, then the paper's
+NOISE = 2e-4  # V
+EACH = 0.01  # scatter of a run's K and K_v, relative
+RUNS = 3
+
+
+def love(x, y, a, b):
+    """Sink of the half-space's face at x, y for a pressure of 1 over a x b: times pi E*; Love 1929."""
+    total = 0.0
+    for u in (x + a / 2, -(x - a / 2)):
+        for v in (y + b / 2, -(y - b / 2)):
+            r = np.hypot(u, v)
+            total = total + u * np.log((v + r) / np.abs(u)) + v * np.log((u + r) / np.abs(v))
+    return total
+
+
+def layer_part(nu, h):
+    """What a bonded layer of thickness h takes from 1/r, as a function of r: by the trapezium rule."""
+    c = np.linspace(1e-6, 40, 8001)
+    m = 3 - 4 * nu
+    e2, e4 = np.exp(-2 * c), np.exp(-4 * c)
+    top = m * (1 - e4) / 2 - 2 * c * e2
+    phi = top / (m * (1 + e4) / 2 + (2 * c**2 + 5 - 12 * nu + 8 * nu**2) * e2)
+    r = np.linspace(0, 32, 641)
+    value = np.array([np.trapezoid((phi - 1) * j0(c * at / h), c) for at in r]) / h
+    return interp1d(r, value, kind="cubic")
+
+
+class Bench:
+    """An array on a layer, patch by patch; E* = E/(1 - nu^2)."""
+
+    def __init__(self, x, y, length, width, lever, nu, h, across=6, along=8):
+        def cut(side, n):
+            edge = -np.cos(np.linspace(0, np.pi, n + 1)) * side / 2
+            return (edge[1:] + edge[:-1]) / 2, np.diff(edge)
+
+        (px, a), (py, b) = cut(length, across), cut(width, along)
+        X, Y = (v.ravel() for v in np.meshgrid(px, py))
+        A, B = (v.ravel() for v in np.meshgrid(a, b))
+        self.n, self.m = len(x), len(X)
+        self.area = np.tile(A * B, self.n)
+        self.px, self.py = (x[:, None] + X).ravel(), (y[:, None] + Y).ravel()
+        dx, dy = self.px[:, None] - self.px, self.py[:, None] - self.py
+        A, B = np.tile(A, self.n), np.tile(B, self.n)
+        g = 12**-0.5  # mean over each patch by 2 x 2 Gauss points
+        C = (
+            sum(
+                love(dx + s * g * A[:, None], dy + t * g * B[:, None], A, B) for s in (-1, 1) for t in (-1, 1)
+            )
+            / 4
+        )
+        if np.isfinite(h):
+            C = C + layer_part(nu, h)(np.hypot(dx, dy)) * self.area
+        self.C = C * (1 - nu**2) / np.pi  # of a pressure, E = 1
+        self.arm = 1 + (X[None] / lever[:, None])  # what a pad's patches sink where its middle sinks by 1
+
+    def sinks(self, E, K, height, slope, load):
+        """Of every pad's middle under each load, mm."""
+        back = np.repeat(height, self.m) + slope[0] * self.px + slope[1] * self.py
+        M = self.C / E
+        for i in range(self.n):
+            s = slice(i * self.m, (i + 1) * self.m)
+            M[s, s] += np.outer(self.arm[i], self.arm[i] * self.area[s]) / K[i]
+        out = []
+        on = np.ones(len(back), bool)
+        for total in load:
+            if total == 0:
+                out.append(np.zeros(self.n))
+                continue
+            for _ in range(60):
+                rows = np.flatnonzero(on)
+                one, off = np.linalg.solve(
+                    M[np.ix_(rows, rows)], np.stack([np.ones(len(rows)), back[rows]], 1)
+                ).T
+                w = self.area[rows]
+                at = (total + off @ w) / (one @ w)
+                p = np.zeros(len(back))
+                p[rows] = at * one - off
+                gap = M[:, rows] @ p[rows] + back - at
+                now = np.where(on, p > 0, gap < 0)
+                if (now == on).all():
+                    break
+                on = now
+            moment = (p * self.area).reshape(self.n, self.m) * self.arm
+            out.append(moment.sum(1) / K)
+        return np.array(out).T
+
+
+@dataclass(frozen=True)
+class Array:
+    """What the tests take from a design: places, levers and stiffnesses of its elements as drawn."""
+
+    number: np.ndarray
+    x: np.ndarray
+    y: np.ndarray
+    length: float
+    width: float
+    lever: np.ndarray
+    K: np.ndarray
+    K_v: np.ndarray
+
+
+def calibration(array, K, K_v, rng, runs=RUNS, each=EACH):
+    """What a lab finds of the true K and K_v by as many runs."""
+    k = K * (1 + each * rng.standard_normal((runs, len(K))))
+    v = K_v * (1 + each * rng.standard_normal((runs, len(K))))
+    se = [a.std(0, ddof=1) / runs**0.5 for a in (k, v)]
+    dk, dv = k - k.mean(0), v - v.mean(0)
+    correlation = (dk * dv).sum(0) / np.sqrt((dk**2).sum(0) * (dv**2).sum(0))
+    full = np.full(len(K), 1.0)
+    return Sensitivity(
+        array.number,
+        k.mean(0),
+        se[0],
+        v.mean(0),
+        se[1],
+        correlation,
+        full * (runs - 1),
+        57.04 * full,
+        0 * full,
+    )
