@@ -65,7 +65,7 @@ schema element
 completion bash
 """
 LONG = """
-design target.toml --out designed --best --within 10% --in 120 --json
+design target.toml --out designed --best --within 10% --in 5 --json
 validate --out report --keep --json --design macro-array --table1 table1.csv
 validate --out report --discard --table2 table2.csv
 """

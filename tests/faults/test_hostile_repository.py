@@ -35,7 +35,7 @@ export small --scene array --drawings --guide; review exports/macro-array
 check small; review small --scene array; build small --count 50
 golden small; release small --sample
 sweep study.toml --out swept; sweep plot swept
-design target.toml --out made --in 120
+design target.toml --out made --in 3
 validate --out validated; new mine.toml --from soft-tissue; estimate mine.toml"""
 # What git runs if it heeds them; PLACE is the folder around the clone.
 SETTINGS = """\
