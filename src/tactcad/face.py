@@ -114,6 +114,8 @@ class Reply(Sequence[Any]):
 
 
 def _plain(record: Any) -> dict[str, Any]:
+    if isinstance(record, LoadedDesign):
+        return {"design": record.name, "size, mm": " x ".join(f"{side:.4g}" for side in record.size)}
     return asdict(record) if is_dataclass(record) and not isinstance(record, type) else dict(record)
 
 
@@ -497,10 +499,12 @@ def design(target: str | Path, **options: Any) -> Reply:
     """
     with tempfile.TemporaryDirectory() as folder:
         out = Path(folder) / "found"
-        whole = _command("design", target, out=out, best=True, **options)
+        whole = _command("design", target, out=out, **{"best": True} | options)
         file = out / "design.toml"
-        found = (load(file),) if file.exists() else ()
-    return Reply(f"target {whole['name']}: {'met' if whole['met'] else 'not met'}", found, whole)
+        text = file.read_text("utf-8") if file.exists() else ""
+        found = (LoadedDesign(parse_toml(text, str(file)), whole["name"], text=text),) if text else ()
+    met = {True: "met", False: "not met", None: "the best to be had, no half-width was asked"}[whole["met"]]
+    return Reply(f"target {whole['name']}: {met}", found, whole)
 
 
 @_in_our_words
