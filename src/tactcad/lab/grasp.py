@@ -18,6 +18,7 @@ rigid pads take to the half-space, and covers all of them.
 from __future__ import annotations
 
 import json
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from math import inf, isinf
 from typing import Any
@@ -227,23 +228,31 @@ def on_layers(
     number = readings.element
     known = calibration.of(number)
     reference = grasp.pairs[0].reference
-    fits = [fit(at, number, readings.load, readings.signal[None], known, level, reference) for at in layers]
     where = f"{readings.path}: sample {readings.sample}"
-    best = int(np.argmin([f.widened[0] for f in fits]))
-    pressing = fits[best].force[0] > TOUCHES * fits[best].force[0].max()
-    touching = tuple(int(n) for n in layers[best].number[pressing])
-    if len(read := set(touching) & set(number.tolist())) < 2:
-        raise InputError(where, "too few pads touch that are read", value=sorted(read), legal="two at least")
-    if not fits[best].widened[0] < WILD:
+    explained, one = [], len(layers) == 1
+    for at in layers:
+        with suppress(np.linalg.LinAlgError):  # of readings in a wrong unit, say
+            found = fit(at, number, readings.load, readings.signal[None], known, level, reference)
+            pressing = found.force[0] > TOUCHES * found.force[0].max()
+            touching = tuple(int(n) for n in at.number[pressing])
+            read = sorted(set(touching) & set(number.tolist()))
+            if one and len(read) < 2:
+                raise InputError(where, "too few pads touch that are read", value=read, legal="two at least")
+            if found.widened[0] < WILD and len(read) > 1:  # layers that contradict the readings do not count
+                explained.append((found, touching))
+    if not explained and one:
         raise InputError(
             where,
-            "no modulus explains the readings: elements disagree beyond their calibration",
-            value=f"{fits[best].widened[0]:.3g} times",
-            legal=f"below {WILD:g} times; are loads, units, design and calibration those of this grasp?",
+            "no modulus explains the readings",
+            legal=f"elements that agree within {WILD:g} times their calibration's errors; are loads, units, "
+            "design and calibration those of this grasp?",
         )
-    # layers that contradict the readings far more than others do are not among those to be covered
-    fits = [f for f in fits if f.widened[0] < WILD]
-    one = len(layers) == 1
+    if not explained:
+        note = "no layer explains the readings: K_obj and its intervals are those of separate springs"
+        return replace(grasp, notes=(*grasp.notes, note))
+    fits = [f for f, _ in explained]
+    best = int(np.argmin([f.widened[0] for f in fits]))
+    touching = explained[best][1]
 
     def over(ends: list[np.ndarray]) -> Interval:
         middle = [e[0] for e in ends]

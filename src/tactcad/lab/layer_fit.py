@@ -253,10 +253,11 @@ def fit(
     reference
         Number of the element that pairs refer to; by default the stiffest.
     """
-    parts = [
-        _fit(at, element, load, signal[i : i + BATCH], calibration, level, reference)
-        for i in range(0, len(signal), BATCH)
-    ]
+    with np.errstate(all="ignore"):  # readings that nothing explains run out of the numbers' range
+        parts = [
+            _fit(at, element, load, signal[i : i + BATCH], calibration, level, reference)
+            for i in range(0, len(signal), BATCH)
+        ]
     return LayerFit(*(np.concatenate([getattr(p, name) for p in parts]) for name in vars(parts[0])))
 
 
