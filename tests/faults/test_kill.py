@@ -76,7 +76,7 @@ def test_killed_at_fifty_random_moments(bench, tmp_path):
 def test_killed_while_helpers_draw(bench, work):
     """The processes that draw sheets end with the export that was killed."""
     env = environment(work)
-    arguments = ("export", "A.toml", "--drawings", "--out", "exports/out")
+    arguments = ("export", "A.toml", "--drawings", "-v", "--out", "exports/out")
     with subprocess.Popen(
         [*MODULE, *arguments], cwd=work, env=env, stderr=subprocess.PIPE, text=True
     ) as export:

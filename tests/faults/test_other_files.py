@@ -264,11 +264,10 @@ NEAR = {
 }
 FAR = {
     "zzz": "one of new, design, export, check",
-    "": "one of new, design, export, check",
     "estimate --model zzz": "one of short, beam",
     "estimate zzz": "or one of ",
     "export A.toml --scene zzz": "one of array",
-    "schema extra": "see `tactcad schema --help`",
+    "schema extra": "one of design, material, sheet",
     "export --out": "expected one argument",
     "estimate --force x": "invalid float value: 'x'",
     "estimate --force nan": "from 1e-06 to 10000 N",

@@ -22,7 +22,6 @@ FILES = {
     "check, shop": "check A.toml --shop IN --report OUT/..",
     "release, design": "release IN --sample --out OUT/..",
     "release, shop": "release A.toml --sample --shop IN --out OUT/..",
-    "golden, shop": "golden hardware/A.toml --shop IN",
     "review": "review IN --out OUT",
 }
 FOLDERS = {

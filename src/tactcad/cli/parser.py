@@ -36,6 +36,10 @@ class Parser(argparse.ArgumentParser):
             self._refuse(unknown[0], "unknown argument", legal=hint or f"see `{self.prog} --help`")
         for action in self._actions:
             self._refuse_empty(action, getattr(parsed, action.dest, None))
+            if action.dest.endswith(BY_NAME):  # argparse drops what a left-out positional shares
+                given = vars(parsed).pop(action.dest, None)
+                if given is not None:
+                    setattr(parsed, action.dest.removesuffix(BY_NAME), given)
         return parsed
 
     def _refuse_empty(self, action: argparse.Action, value: Any) -> None:
@@ -112,6 +116,7 @@ def add_others(
     )
 
 
+BY_NAME = "_by_name"  # ending of an option's dest that stands for a positional
 UNLISTED = argparse.SUPPRESS  # help of an option that works and that --help does not name
 
 

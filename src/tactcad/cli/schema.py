@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import json
 
-from .parser import UNLISTED
+from .parser import BY_NAME, UNLISTED
 
 EXAMPLES = """\
   tactcad schema              every field of a design file, table by table
@@ -18,7 +18,9 @@ EXAMPLES = """\
 def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("table", nargs="?", metavar="TABLE", help="one table; or `target`, `study`")
     for other in ("target", "study"):
-        parser.add_argument(f"--{other}", action="store_const", const=other, dest="table", help=UNLISTED)
+        parser.add_argument(
+            f"--{other}", action="store_const", const=other, dest=f"table{BY_NAME}", help=UNLISTED
+        )
     parser.add_argument("--json", action="store_true", help="print JSON Schema")
 
 

@@ -14,7 +14,7 @@ from tactcad.design.text_values import as_number
 from tactcad.mechanics.ladder import CLOSED_FORMS, DEFAULT_RUNG
 from tactcad.mechanics.section import REQUIRED, HingeSection
 
-from .parser import UNLISTED, add_allowance, allowance, refuse_named
+from .parser import BY_NAME, UNLISTED, add_allowance, allowance, refuse_named
 
 if TYPE_CHECKING:
     from tactcad.design.tree import Design
@@ -54,7 +54,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         metavar="NAME=VALUE",
         help=f"instead of the design's; may be repeated: {', '.join(OWN)}",
     )
-    parser.add_argument("--design", help=UNLISTED, default=argparse.SUPPRESS)
+    parser.add_argument("--design", dest=f"design{BY_NAME}", help=UNLISTED)
     for name in OWN:  # each as an option of its own, as before
         kind = str if name in ("sides", "alloy") else float
         parser.add_argument(f"--{name.replace('_', '-')}", type=kind, help=UNLISTED)

@@ -6,7 +6,7 @@ import argparse
 import sys
 from contextlib import nullcontext
 
-from .parser import UNLISTED, add_design, add_others
+from .parser import BY_NAME, UNLISTED, add_design, add_others
 
 EXAMPLES = """\
   tactcad validate                           the findings, as text
@@ -23,7 +23,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add_others(parser)
     parser.add_argument("--json", action="store_true", help="print the report as JSON on standard output")
     add_design(parser)
-    parser.add_argument("--design", help=UNLISTED, default=argparse.SUPPRESS)
+    parser.add_argument("--design", dest=f"design{BY_NAME}", help=UNLISTED)
     parser.add_argument("--table1", metavar="FILE", help="a CSV file in place of the paper's Table 1")
     parser.add_argument("--table2", metavar="FILE", help="a CSV file in place of the paper's Table 2")
 

@@ -230,7 +230,7 @@ def on_layers(
     reference = grasp.pairs[0].reference
     where = f"{readings.path}: sample {readings.sample}"
     explained, one = [], len(layers) == 1
-    for at in layers:
+    for at in layers if one or not grasp.warnings else ():  # in another unit, no layer explains them
         with suppress(np.linalg.LinAlgError):  # of readings in a wrong unit, say
             found = fit(at, number, readings.load, readings.signal[None], known, level, reference)
             pressing = found.force[0] > TOUCHES * found.force[0].max()
@@ -238,7 +238,8 @@ def on_layers(
             read = sorted(set(touching) & set(number.tolist()))
             if one and len(read) < 2:
                 raise InputError(where, "too few pads touch that are read", value=read, legal="two at least")
-            if found.widened[0] < WILD and len(read) > 1:  # layers that contradict the readings do not count
+            sound = np.isfinite(found.dof[0]) and found.widened[0] < WILD
+            if sound and len(read) > 1:  # layers that contradict the readings do not count
                 explained.append((found, touching))
     if not explained and one:
         raise InputError(
