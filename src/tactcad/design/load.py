@@ -7,6 +7,7 @@ import math
 import re
 import typing
 from functools import cache
+from json import dumps
 from pathlib import Path
 from typing import Any
 
@@ -220,7 +221,7 @@ def stale_origins(design: CommonTables) -> list[str]:
         of = [paths(other)[path] for other in _shipped() if other.origin.get(path) == text]
         if of and values[path] not in of and not path.startswith("design."):
             told.append(
-                f"origin.{path}: stale, it was written for {of[0]!r} and the value is {values[path]!r}: "
+                f"origin.{path}: stale, it was written for {dumps(of[0])} and the value is {dumps(values[path])}: "
                 "say where that is from"
             )
     return told
