@@ -221,8 +221,8 @@ def stale_origins(design: CommonTables) -> list[str]:
         of = [paths(other)[path] for other in _shipped() if other.origin.get(path) == text]
         if of and values[path] not in of and not path.startswith("design."):
             told.append(
-                f"origin.{path}: stale, it was written for {dumps(of[0])} and the value is {dumps(values[path])}: "
-                "say where that is from"
+                f"origin.{path}: stale, it was written for {dumps(of[0])} and the value is "
+                f"{dumps(values[path])}: say where that is from"
             )
     return told
 
