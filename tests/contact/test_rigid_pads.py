@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from tactcad.contact.elastic_body import Body, influence
-from tactcad.contact.press import PadsOnBody, _complementary, pad_stiffness, patches
+from tactcad.contact.press import PadsOnBody, complementary, pad_stiffness, patches
 from tactcad.contact.rigid_pads import ManyPresses, pad_law
 from tactcad.lab.pads import springs_of
 from tactcad.parts.designs import load
@@ -50,7 +50,7 @@ def test_a_pads_law_is_its_patches_and_its_derivative_a_difference():
     rng = np.random.default_rng(1)
     for _ in range(20):
         r = np.array([1.0, *rng.normal(0, 0.6, 2)])
-        f, _ = _complementary(M, -(r[1] * one[0] + r[2] * one[1]), None, r[0])
+        f, _ = complementary(M, -(r[1] * one[0] + r[2] * one[1]), None, r[0], np.ones(len(M)))
         g, d = law(r)
         assert g == pytest.approx([f.sum(), f @ one[0], f @ one[1]], abs=5e-3 * f.sum())
         assert law(3 * r)[0] == pytest.approx(3 * g)
