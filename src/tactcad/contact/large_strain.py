@@ -21,11 +21,12 @@ from tactcad.design.messages import InputError
 
 from .elastic_body import Body
 from .press import PadsOnBody, Pressed, pad_stiffness
-from .solid_face import FAR_SIDE, LARGEST_POISSON, lines_over_pad, outward
+from .solid_face import LARGEST_POISSON, lines_over_pad, outward
 from .stated_errors import REACH, pad_radius
 
 ACROSS, EDGE = 8, 1.0
 DEEPEST = 30.0  # radii: of thicker bodies this much is meshed
+FREE_SIDE = 5.0  # thicknesses from the punch to the free side; it sticks to its base, so 5 are enough
 THINNEST = 0.44  # of the radius: thinner layers were not tried
 STEP = 0.02  # of the lesser of radius and thickness, in depth
 SETTLED = 1e-9  # of the depth: Newton's last correction
@@ -38,7 +39,7 @@ class _Rings:
 
     def __init__(self, body: Body, radius: float) -> None:
         h = min(body.thickness, DEEPEST * radius)
-        lines = lines_over_pad(radius, radius + FAR_SIDE * h, ACROSS, EDGE)
+        lines = lines_over_pad(radius, radius + FREE_SIDE * h, ACROSS, EDGE)
         z = np.concatenate([[0.0], outward(0.0, lines[ACROSS] - lines[ACROSS - 1], h)])
         basis = self.basis = Basis(MeshQuad.init_tensor(lines, -z[::-1]), ElementQuad2(), intorder=5)
         self.mu, self.kappa = (

@@ -22,9 +22,8 @@ HALVES = 4  # elements under half a side of a pad: no fewer unknowns than patche
 # Power toward the edges of the pad; at 3, elements in the middle hold more patches than they tell apart.
 GRADED = 2.5
 GROWTH = 2.0  # of an element's side over the one before, outward from the pad's edges and down from the face
-FAR_SIDE = (
-    8.0  # thicknesses from the last pad to the free side; at 5, pads on a slipping layer move 0.2 % too far
-)
+# Thicknesses from the last pad to the free side; at 5, pads on a slipping layer move 0.2 % too far.
+FAR_SIDE = 8.0
 THICKEST = 20.0  # pad sides: beyond, the far side would have to lie further off than elements reach cheaply
 THINNEST = 0.25  # of a pad's side: thinner layers want more patches
 LARGEST_POISSON = 0.4999
