@@ -9,7 +9,8 @@ import pytest
 
 from tactcad.export.dxf import check_dxf, dxf_bytes, read_dxf
 from tactcad.parts.designs import load
-from tactcad.parts.language.description import Hole, cut_section
+from tactcad.parts.language.description import Hole
+from tactcad.parts.language.stock import cut_section
 from tactcad.scenes import make_scene, scene_names
 from tactcad.solids.build import build
 

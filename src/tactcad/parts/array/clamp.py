@@ -25,7 +25,7 @@ from ..language.metric import (
     tapped_through,
 )
 from ..language.part_materials import MAGNETIC_STAINLESS, held_for_grinding
-from ..language.plate import BREAK_EDGES, FRAME, PLACE, plate
+from ..language.plate import ANODISED, BREAK_EDGES, FRAME, PLACE, plate
 from .layout import Layout
 
 # Least plate under a screw's head, and least grip of a dowel in each end plate, in mm: chosen, one
@@ -188,7 +188,7 @@ def end_plate(layout: Layout, head: bool) -> Part:
         Extrusion(outer, depth),
         features,
         colour=PLATE_COLOUR,
-        finish="Ra 1.6, clear anodised after machining; dowel holes masked",
+        finish=f"{ANODISED}; dowel holes masked",
         notes=(
             BREAK_EDGES,
             *(() if head else (_dowels_stand(layout, c),)),

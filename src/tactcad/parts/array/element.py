@@ -226,14 +226,15 @@ def rear_corners(layout: Layout, face: float) -> list[Corner]:
     ]
 
 
-def mounting_holes(layout: Layout) -> tuple[Contour, ...]:
-    """Screw and dowel holes through elements, blanks and spacers, wire-cut; dowel holes at mid-tolerance."""
+def mounting_holes(layout: Layout, dowel: float | None = None) -> tuple[Contour, ...]:
+    """Screw and dowel holes through elements, blanks and spacers, wire-cut; dowel holes (mm) at mid-tolerance
+    of the slide fit where nothing else is given."""
     from ..language.metric import METRIC
 
     design = layout.design
     z = design.holes.height
-    # Slide-fit dowel hole as cut and modelled, mm: the middle of its limits.
-    dowel = round(design.holes.dowel_hole + design.holes.dowel_hole_upper / 2, 6)
+    if dowel is None:
+        dowel = round(design.holes.dowel_hole + design.holes.dowel_hole_upper / 2, 6)
     screws = [circle((x, z), METRIC[design.clamp.screw].clearance, "screw_hole") for x in layout.screw_x]
     dowels = [circle((x, z), dowel, "dowel_hole") for x in layout.dowel_x]
     return tuple(sorted(screws + dowels, key=lambda c: c.box[0]))
@@ -434,6 +435,10 @@ def least_passes(tolerance: float) -> str:
     return next((words for words, key in _ENOUGH if tolerance >= WIRE_TOLERANCE[key]), "four passes")
 
 
+# Spacer's dowel hole over the dowel, mm; chosen: nothing stands by it, and one pass of the wire holds it.
+LOOSE = 0.1
+
+
 def thickness_by_sheet(design: Design) -> str:
     """What every spacer measures, in words."""
     return f"{design.array.pitch:g} less what the elements' sheet measures, +-{SPACER_TOLERANCE:g}"
@@ -455,11 +460,15 @@ def spacer(layout: Layout) -> Part:
         process="wire-cut",
         material=material,
         body=Extrusion(
-            rectangle(layout.clamp_edge, z0, layout.rear_end, z1), layout.spacer, mounting_holes(layout)
+            rectangle(layout.clamp_edge, z0, layout.rear_end, z1),
+            layout.spacer,
+            mounting_holes(layout, float(d.clamp.dowel) + LOOSE),
         ),
         colour="#9aa4ae",
         notes=(
+            "ordered once the elements' sheet is measured; all from one sheet",
             f"burr-free; picked from rolled sheet that measures so, or ground {held_for_grinding(material)}",
+            "wire-cut as packs: one pass holds outline and holes",
             f"thickness as drawn where the elements' sheet measures {d.sheet.thickness:g}; else "
             f"{thickness_by_sheet(d)}; the whole stack {layout.stack:g} +-{STACK:g}",
         ),
@@ -468,7 +477,6 @@ def spacer(layout: Layout) -> Part:
                 within("thickness", layout.spacer, SPACER_TOLERANCE, between=FACES),
                 remark=thickness_by_sheet(d),
             ),
-            dowel_hole_limits(d),
         ),
         geometric=(screw_places("A"),),
         datums=(DatumFeature("A", "dowel_hole"),),

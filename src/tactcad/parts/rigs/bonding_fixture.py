@@ -35,7 +35,7 @@ from ..bought.standard_parts import LEAST_PLAY, dowel_diameter, dowel_lengths, d
 from ..language.description import Extrusion, Hole, Material, Part, Purchase
 from ..language.fits import general
 from ..language.limits import FACES, DatumFeature, Geometric, within
-from ..language.part_materials import RUBBER, STAINLESS, plate_material
+from ..language.part_materials import RUBBER, STAINLESS_PLATE, plate_material
 from ..language.plate import BREAK_EDGES, PLACE, RIG_COLOUR, THICKNESS
 from .frame import STANDARD_GRAVITY
 
@@ -269,7 +269,7 @@ class BondingLayout:
     @cached_property
     def bar_material(self) -> Material:
         """Steel, or the plates' alloy where a bar of steel would be too thin to run on its pins."""
-        return STAINLESS if self._height_of(STAINLESS) >= GUIDED else plate_material(self.design)
+        return STAINLESS_PLATE if self._height_of(STAINLESS_PLATE) >= GUIDED else plate_material(self.design)
 
     @property
     def bar_height(self) -> float:
@@ -359,7 +359,7 @@ def bonding_nest(rig: BondingLayout) -> Part:
         part_no=f"{rig.design.name}-bonding-nest{kind_suffix(rig)}",
         name="Bonding fixture, nest",
         process="wire-cut",
-        material=STAINLESS,
+        material=STAINLESS_PLATE,
         body=Extrusion(outer, rig.width),
         features=tuple(
             Hole(

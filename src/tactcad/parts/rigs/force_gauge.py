@@ -12,7 +12,7 @@ from ..bought.standard_parts import dowel_diameter, dowel_limits
 from ..language.description import Extrusion, Feature, Hole, Part, Pocket, Purchase
 from ..language.limits import within
 from ..language.metric import METRIC, corners, sunk, tapped
-from ..language.part_materials import ALUMINIUM, STAINLESS
+from ..language.part_materials import ALUMINIUM, STAINLESS, STAINLESS_PLATE
 from ..language.plate import plate
 from .frame import GAUGE_SHAFT, GAUGE_SIZE, PLATE, PLATE_SCREW, STAGE_HOLE, TIP, TIP_LAND
 from .stand import StandLayout
@@ -193,7 +193,7 @@ def roller_tip(rig: StandLayout) -> Part:
         part_no=f"{rig.design.name}-tip-roller",
         name="Tip, roller holder",
         process="wire-cut",
-        material=STAINLESS,
+        material=STAINLESS_PLATE,
         body=Extrusion(rounded_polygon(corners), 10.0),
         features=(shaft_thread((0.0, TIP, 5.0), (0, -1, 0)),),
         colour="#565d66",

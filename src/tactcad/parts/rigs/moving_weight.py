@@ -10,7 +10,7 @@ from tactcad.contour import Contour, circle, rectangle
 
 from ..language.description import Extrusion, Feature, Part, Purchase
 from ..language.metric import METRIC, corners, sunk, tapped_blind, tapped_depth
-from ..language.part_materials import CARBON_STEEL, PLAIN_STEEL, plate_material
+from ..language.part_materials import CARBON_STEEL, PLAIN_STEEL, bar_material
 from ..language.plate import plate
 from .frame import BAR_FRONT, BAR_WIDTH, BEHIND_BAR, FOOT, PIN, PLATFORM, carrier_pattern, under_carrier_screw
 from .linear_guide import GuideLayout
@@ -133,7 +133,7 @@ def pin(rig: GuideLayout, under: float = 0.0) -> Part:
         part_no=f"{rig.design.name}-weight-pin",
         name="Weight pin",
         process="turned",
-        material=plate_material(rig.design),
+        material=bar_material(rig.design),
         body=Extrusion(circle((0, 0), PIN), height),
         features=(tapped_blind("foot", "M4", (0, 0, 0), (0, 0, 1)),),
         colour="#9aa4ae",
