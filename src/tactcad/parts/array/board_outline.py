@@ -1,13 +1,13 @@
 """A read-out board as what carries it sees it: outline, holes, where the leads come in, how high it is.
 
-      W = width
-    +-------------------------------+  y = height
-    | o     ::::::::::::::::      o |     leads come in over this edge
-    |       lead connector          |
-    |                               |
-    | o     ::::::: to the card   o |
-    +-------------------------------+  y = 0
-    x = 0
+  W = width
++-------------------------------+  y = height
+| o     ::::::::::::::::      o |     leads come in over this edge
+|       lead connector          |
+|                               |
+| o     ::::::: to the card   o |
++-------------------------------+  y = 0
+x = 0
 """
 
 from __future__ import annotations
@@ -23,7 +23,9 @@ Place = tuple[float, float]
 THICKNESS = 1.6  # mm; chosen: what every board house has in stock
 PITCH = 2.54  # of the headers' pins, mm
 HOLE, AT_CORNER = 3.2, 4.0  # mm: a hole for M3 (ISO 273, medium 3.4, fine 3.2), from both edges of its corner
-LEADS_FROM_EDGE = 4.0  # mm, the lead connector's pins from the upper edge; chosen: the ties' holes beside them
+LEADS_FROM_EDGE = (
+    4.0  # mm, the lead connector's pins from the upper edge; chosen: the ties' holes beside them
+)
 HIGHEST = 8.5  # mm, pin headers: insulator 2.54 and pins of 6; the foil resistors are 8.3
 PIN_LENGTH = 1.4  # mm that soldered pins reach below the board; chosen: pins of 3 mm through 1.6 mm
 WIDTH, HEIGHT = 80.0, 85.0  # mm; chosen: what the routed board takes
