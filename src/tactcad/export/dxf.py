@@ -96,7 +96,7 @@ def layered_dxf(
         drawing = ezdxf.new("R2000")
         drawing.header["$INSUNITS"] = MILLIMETRES
         drawing.header["$MEASUREMENT"] = METRIC
-        for colour, (layer, drawn) in enumerate(reversed(layers.items()), start=8 - len(layers)):
+        for colour, (layer, drawn) in enumerate(layers.items(), start=8 - len(layers)):
             drawing.layers.add(layer, color=colour)
             for contour in drawn:
                 _add(drawing, contour, layer)

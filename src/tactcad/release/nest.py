@@ -179,7 +179,7 @@ def nest_dxf(nest: Nest) -> bytes:
     """The nest as DXF: SHEET its outline, CUT the contours as nominal, START the start holes, TAB what is
     cut last."""
     box = (0.0, 0.0, nest.width, nest.height)
-    layers = {
+    layers: dict[str, Sequence[Contour | Line]] = {
         "SHEET": [rectangle(*box)],
         "START": nest.starts,
         "CUT": [c for p in nest.pieces for c in p.contours],

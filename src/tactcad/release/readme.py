@@ -14,6 +14,7 @@ from tactcad.checks.shop import Shop
 from tactcad.design.family import family_of
 from tactcad.design.materials import ELECTROLYSIS, family
 from tactcad.drawing.engine.extent import part_box
+from tactcad.drawing.engine.paper import GENERAL_TOLERANCES
 from tactcad.export import inspection
 from tactcad.export import strength_table as strength
 from tactcad.export.formats import part_formats
@@ -170,7 +171,7 @@ def keys(contents: ReleaseContents, parts: Sequence[Part]) -> list[str]:
     return lines and [*lines, ""] + paragraph(
         f"Part numbers here and below without {contents.design.name}-. Measure these on every element and "
         f"record them in {inspection.NAME}, by the element's number (E1, E2, ...: mark the "
-        "boxes, not the parts). The drawings' title block has the tolerances of all else."
+        f"boxes, not the parts). Every other dimension: {' '.join(GENERAL_TOLERANCES).replace('±', '+-')}."
     )
 
 
