@@ -146,6 +146,7 @@ def _stages(b: Builder, rig: StandLayout, dx: float, dy: float) -> str:
             ),
         )
         below = high
+    b.group(None)
     return below
 
 

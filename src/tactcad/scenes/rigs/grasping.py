@@ -116,7 +116,6 @@ def grasping(design: Design, pose: Pose = REST) -> Scene:
         "under the carriage again, and take the plate away.",
         tools=("flat plate, as thick as the sample", SHIMS),
         order=[*_latched(False), Move(axis, up, (STILL,)), Move(axis, STILL, (up,)), *_latched(True)],
-        elements=True,
         needs=(
             Need((lid, "CA1"), "the array is lowered on the lid"),
             Need(("SA1",), "a plate lies there", away=True),
