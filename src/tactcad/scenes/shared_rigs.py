@@ -72,8 +72,7 @@ def place_cart(b: Builder, rig: CartLayout, roll: float) -> str:
     plate = b.place("CT", rigs.cart_plate(rig), (roll, 0, c.clearance))
     shim, wheel = rigs.axle_shim(rig), bearing(c.bearing)
     side, outer = c.width / 2, c.width / 2 + c.shim + bear.B
-    away = {"bench": True, "at": BESIDE}
-    b.step("Cart plate", (0, 0, 25), "Lay the cart plate ready, holder's threads up.", **away)
+    b.step("Cart plate", (0, 0, 25), "Lay the cart plate ready, holder's threads up.", bench=True, at=BESIDE)
     for sy, which in ((-1, "front"), (1, "back")):
         xs, z = [roll + sx * c.wheel_base / 2 for sx in (-1, 1)], rig.axle_z
 
@@ -109,7 +108,8 @@ def place_cart(b: Builder, rig: CartLayout, roll: float) -> str:
             ),
             order=order,
             fan=2,
-            **away,
+            bench=True,
+            at=BESIDE,
             tools=("surface plate, grade 1 or better", f"feelers, {LOOSE_WHEEL * 1e3:g} um"),
         )
     h, (length, under) = rig.holder_screw, present(rig.holder_fixing)
@@ -125,7 +125,8 @@ def place_cart(b: Builder, rig: CartLayout, roll: float) -> str:
         (0, 0, 60),
         "Grease the O-ring with a trace of silicone grease and lay it in the body's groove.",
         fan=1,
-        **away,
+        bench=True,
+        at=BESIDE,
     )
     fitting = b.place(
         "HF", rigs.hose_fitting(), (roll, -rig.holder_side / 2, top - rig.port_depth), AGAINST_Y
@@ -135,7 +136,8 @@ def place_cart(b: Builder, rig: CartLayout, roll: float) -> str:
         "Hose fitting",
         (0, -40, 45),
         "Screw the hose fitting in by hand and a quarter turn more; its washer seals.",
-        **away,
+        bench=True,
+        at=BESIDE,
     )
     lid = b.place("HL", rigs.holder_lid(rig), (roll, 0, top))
     b.meet(body, lid)
@@ -150,7 +152,8 @@ def place_cart(b: Builder, rig: CartLayout, roll: float) -> str:
         "the pump shut off, the vacuum must not fall by more than a tenth in a minute. The hose hangs slack "
         "in a loop: it may not pull the cart.",
         fan=1,
-        **away,
+        bench=True,
+        at=BESIDE,
     )
     b.supplies += supplies("vacuum", {}, vacuum=rig.holder.vacuum)
     b.group(None)

@@ -185,8 +185,8 @@ class _Trial:
             hand = manifold3d.Manifold.cube(list(high - low)).translate(list(low))
             if not any(self._meets(hand, low, high, n, moment.standing[n]) for n in names):
                 return
-        room = f"{2 * THICK:g} mm across and {WIDE:g} wide, on the last {GRIP:g} mm of it"
-        yield _found("fingers", step, name, f"no room for fingertips, {room}")
+        envelope = f"{2 * THICK:g} mm across and {WIDE:g} wide, on the last {GRIP:g} mm of it"
+        yield _found("fingers", step, name, f"no room for fingertips, {envelope}")
 
     def _meets(
         self, hand: manifold3d.Manifold, low: np.ndarray, high: np.ndarray, name: str, at: Vector
