@@ -83,7 +83,7 @@ def test_a_pin_wants_its_length_before_its_hole():
 @pytest.mark.parametrize(
     ("steps", "said"),
     [
-        ((step("SC1"), step("T1")), "T1 is not there yet"),
+        ((step("SC1"), step("T1")), "goes into T1, which is not there yet"),
         ((step("P1", needs=(Need(("T1",), "measured on it"),)), step("T1")), "is not there yet: measured"),
         ((step("T1"), step("P1", needs=(Need(("T1",), "its place", away=True),))), "is there already"),
         ((step("P1", order=(Move(("P1",), (0, 0, 30.0), ((0, 0, 5.0),)),)),), "is left 5 mm off"),

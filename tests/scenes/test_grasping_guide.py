@@ -45,6 +45,7 @@ def test_latch_and_stop_are_there_before_they_are_used():
     }
     rail = order.index("Guide rail")
     assert "ES1" in steps["Guide rail"][1] and "LP1" in steps["Guide rail"][1]
+    assert first["latch"] == first["end stop"] == rail
     # the carriage is held while something is screwed on it, and no sample lies yet where the flat plate does
     text = steps["Bar on the carriage"][0]
     assert text.index("set the latch under it") < text.index("screw it on the carriage")

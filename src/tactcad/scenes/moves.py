@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import json
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from tactcad.parts.language.description import Part, Vector, vector
@@ -231,13 +231,13 @@ def settles(scene: Scene, number: int) -> tuple[tuple[str, ...], tuple[str, ...]
     placed = {p.designator: p for p in scene.placements}
     there = {d for s in scene.steps[: number + 1] for d in s.designators}
     new = set(step.designators)
-    ready = [{p.designator for p in s.placements} for s in scene.ready]
+    ready = {d for s in scene.steps for d in s.ready}
     screwed: dict[tuple[str, str], list[str]] = {}
     laid: dict[tuple[str, str], list[str]] = {}
     sets: list[str] = []
     for c in scene.contacts:
         pair = {c.first, c.second}
-        if not (pair & new and pair <= there) or any(pair <= inside for inside in ready):
+        if not (pair & new and pair <= there) or pair <= ready:
             continue
         screw = next((n for n in sorted(pair) if placed[n].part.kind in FASTENERS), None)
         if c.kind == "thread" and screw:
@@ -251,7 +251,7 @@ def settles(scene: Scene, number: int) -> tuple[tuple[str, ...], tuple[str, ...]
             screwed.setdefault((next(iter(sorted(heads)), screw), into), []).append(screw)
         elif c.kind == "press":
             sets.append(f"{c.first} in {c.second}: all")
-        elif not screw:
+        elif not screw and not pair & ready:
             a, b = (c.first, c.second) if c.first in new else (c.second, c.first)
             for n in _normals(box(placed[a]), box(placed[b]))[:1]:
                 axis = "xyz"[max(range(3), key=lambda i: abs(n[i]))]
@@ -269,23 +269,16 @@ def settles(scene: Scene, number: int) -> tuple[tuple[str, ...], tuple[str, ...]
     return step.sets or tuple(sets), step.leaves or tuple(leaves)
 
 
-def needs(scene: Scene, number: int) -> tuple[Need, ...]:
-    """What a step cannot be done without: what it says, and of every screw and pin the part that it goes
-    into."""
-    step, found = scene.steps[number], list(scene.steps[number].needs)
-    own = set(step.designators) - step.ready
-    placed = {p.designator: p for p in scene.placements}
+def entering(scene: Scene) -> Iterator[tuple[str, str]]:
+    """Screws and pins, each with the part that it goes into."""
+    kinds = {p.designator: p.part.kind for p in scene.placements}
     for c in scene.contacts:
-        for name, other in ((c.first, c.second), (c.second, c.first)):
-            goes_in = (
-                c.kind == "thread"
-                and placed[name].part.kind in FASTENERS
-                or c.kind == "press"
-                and name == c.first
-            )
-            if name in own and goes_in:
-                found.append(Need((other,), f"{name} goes into it"))
-    return tuple(found)
+        if c.kind == "press":
+            yield c.first, c.second
+        elif c.kind == "thread":
+            for name, host in ((c.first, c.second), (c.second, c.first)):
+                if kinds[name] in FASTENERS:
+                    yield name, host
 
 
 FRAME = (
@@ -298,9 +291,11 @@ FRAME = (
 
 def guide_json(scene: Scene) -> bytes:
     """guide/SCENE.json."""
-    steps = []
+    steps, into = [], list(entering(scene))
     for number, (step, moves) in enumerate(zip(scene.steps, step_moves(scene))):
         sets, leaves = settles(scene, number)
+        own = set(step.designators) - step.ready
+        needed = [*step.needs, *(Need((host,), f"{name} goes into it") for name, host in into if name in own)]
         steps.append(
             {
                 "title": step.title,
@@ -318,8 +313,7 @@ def guide_json(scene: Scene) -> bytes:
                 "sets": list(sets),
                 "leaves": list(leaves),
                 "needs": [
-                    {"parts": list(need.what), "there": not need.away, "why": need.why}
-                    for need in needs(scene, number)
+                    {"parts": list(need.what), "there": not need.away, "why": need.why} for need in needed
                 ],
                 "bench": step.bench,
             }

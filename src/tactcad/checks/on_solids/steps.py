@@ -1,9 +1,9 @@
 """Whether the assembly's steps can be carried out: every move is made with the solids, past all that
 stands there by then, and every step finds what it needs.
 
-A pair is tried at places along each leg that are no further apart than a third of both parts' lengths
-along it, and at most STRIDE, on meshes: what is cut by more than FILM is in the way. What a screw or a pin
-shares with its hole at its place it may share on the way.
+A pair is tried on meshes at PLACES or more of each leg, no further apart than a third of both parts'
+lengths along it: what is cut by more than FILM is in the way. What a screw or a pin shares with its hole at
+its place it may share on the way.
 """
 
 from __future__ import annotations
@@ -19,14 +19,14 @@ from OCP.TopoDS import TopoDS_Shape
 from tactcad.parts.language.description import Vector
 from tactcad.parts.language.finding import Finding
 from tactcad.parts.language.metric import METRIC
-from tactcad.scenes.moves import Moment, moments, needs
+from tactcad.scenes.moves import Moment, entering, moments
 from tactcad.scenes.scene import HAND, STILL, Placement, Scene, Step
 from tactcad.solids.changed import closed
 from tactcad.solids.triangles import triangles
 
 from ..check import Check
 
-STRIDE = 4.0  # mm
+PLACES = 9  # on a leg, at least, from where the boxes of a pair meet to where they part; chosen
 FILM = 0.05  # mm3: what chords of two curved faces, 0.002 mm off, may share over a pin's length
 CHORD, TURN = 0.02, 0.1  # mm, rad: of the meshes
 # Two fingertips that hold a pin: each so thick and so wide (mm), over so much of its end. Chosen: half of an
@@ -47,6 +47,10 @@ class _Trial:
         self.scene, self.shapes, self.known = scene, shapes, known
         self.placed = {p.designator: p for p in scene.placements}
         self.kind = {frozenset((c.first, c.second)): c.kind for c in scene.contacts}
+        self.goes_into: dict[str, list[str]] = {}
+        for name, host in entering(scene):
+            self.goes_into.setdefault(name, []).append(host)
+        self.boxes: dict[str, np.ndarray] = {}
 
     def findings(self) -> Iterator[Finding]:
         at: dict[str, Vector] = {}
@@ -58,13 +62,12 @@ class _Trial:
                 done += 1
             step, move = self.scene.steps[moment.step], moment.move
             there |= set(move.designators)
-            for need in needs(self.scene, moment.step)[len(step.needs) :]:
-                if need.why.split()[0] in move.designators and not set(need.what) <= there:
-                    yield _found(
-                        "order", step, move.designators[0], f"{need.what[0]} is not there yet: {need.why}"
-                    )
+            for name in move.designators:
+                for need in self.goes_into.get(name, ()):
+                    if name in step.designators and name not in step.ready and need not in there:
+                        yield from _order(step, name, f"goes into {need}, which is not there yet")
             if any(name in at and at[name] != move.start for name in move.designators):
-                yield _found("order", step, move.designators[0], "does not start where it was left")
+                yield from _order(step, move.designators[0], "does not start where it was left")
             yield from self._moved(step, moment)
             if move.by == HAND and len(move.designators) == 1 and move.designators[0] in at:
                 yield from self._held(step, moment)
@@ -73,9 +76,7 @@ class _Trial:
             yield from self._needed(n, there)
         for name, offset in at.items():
             if offset != STILL:
-                yield _found(
-                    "order", self.scene.steps[-1], name, f"is left {np.linalg.norm(offset):.3g} mm off"
-                )
+                yield from _order(self.scene.steps[-1], name, f"is left {np.linalg.norm(offset):.3g} mm off")
 
     def _needed(self, number: int, there: set[str]) -> Iterator[Finding]:
         step = self.scene.steps[number]
@@ -83,7 +84,7 @@ class _Trial:
             wrong = [n for n in need.what if n in self.placed and (n in there) == need.away]
             if wrong:
                 how = "is there already" if need.away else "is not there yet"
-                yield _found("order", step, wrong[0], f"{how}: {need.why}")
+                yield from _order(step, wrong[0], f"{how}: {need.why}")
 
     def _mesh(self, p: Placement) -> manifold3d.Manifold:
         """Turned, not moved."""
@@ -94,8 +95,10 @@ class _Trial:
         return self.known[key]
 
     def _box(self, p: Placement) -> np.ndarray:
-        ends = np.reshape(self._mesh(p).bounding_box(), (2, 3))
-        return ends + np.array(p.origin)
+        if p.designator not in self.boxes:
+            ends = np.reshape(self._mesh(p).bounding_box(), (2, 3))
+            self.boxes[p.designator] = ends + np.array(p.origin)
+        return self.boxes[p.designator]
 
     def _moved(self, step: Step, moment: Moment) -> Iterator[Finding]:
         names = list(moment.standing)
@@ -119,8 +122,9 @@ class _Trial:
 
     def _in_the_way(self, step: Step, name: str, other: str, cut: float, off: float) -> Finding:
         a, b = self.placed[name].part.part_no, self.placed[other].part.part_no
-        message = f"{name} ({a}) cuts {cut:.3g} mm3 into {other} ({b}), {off:.3g} mm before its place"
-        return _found("insertion", step, name, message, cut, FILM)
+        where = f"{off:.3g} mm before its place"
+        message = f"step '{step.title}': {name} ({a}) cuts {cut:.3g} mm3 into {other} ({b}), {where}"
+        return Finding("insertion", "fail", name, (), cut, FILM, message)
 
     def _cut(self, name: str, other: str, start: np.ndarray, end: np.ndarray) -> tuple[float, float] | None:
         """Largest volume that both share on the leg beyond what they may, mm3, and how far from the leg's
@@ -151,15 +155,18 @@ class _Trial:
         way = end - start
         length = float(np.linalg.norm(way))
         reach = sum(float((b[1] - b[0]) @ np.abs(way)) / length for b in boxes)
+        # the stretch on which their boxes meet: low <= start + t way <= high along every axis
+        low, high = boxes[1][0] - boxes[0][1] - apart - start, boxes[1][1] - boxes[0][0] - apart - start
+        moving_along = np.abs(way) > 0
+        ends = np.sort(np.stack([low, high])[:, moving_along] / way[moving_along], axis=0)
+        t0, t1 = max(0.0, ends[0].max()), min(1.0, ends[1].min())
+        if t0 > t1 or np.any((low > 0) | (high < 0), where=~moving_along):
+            return None
         worst = (0.0, 0.0)
-        for t in np.linspace(0.0, 1.0, 1 + ceil(length / min(STRIDE, reach / 3))):
-            at = apart + start + t * way
-            low, high = np.maximum(boxes[0][0] + at, boxes[1][0]), np.minimum(boxes[0][1] + at, boxes[1][1])
-            if np.any(high - low <= 1e-6) or np.prod(high - low) <= allowed:
-                continue
-            cut = (moving.translate(list(at)) ^ standing).volume()
+        for t in np.linspace(t0, t1, max(PLACES, 1 + ceil(3 * length * (t1 - t0) / reach))):
+            cut = (moving.translate(list(apart + start + t * way)) ^ standing).volume()
             if cut - allowed > worst[0]:
-                worst = (cut - allowed, length * (1.0 - t))
+                worst = (cut - allowed, length * (1.0 - float(t)))
         return worst if worst[0] > 0.0 else None
 
     def _held(self, step: Step, moment: Moment) -> Iterator[Finding]:
@@ -185,8 +192,11 @@ class _Trial:
             hand = manifold3d.Manifold.cube(list(high - low)).translate(list(low))
             if not any(self._meets(hand, low, high, n, moment.standing[n]) for n in names):
                 return
-        envelope = f"{2 * THICK:g} mm across and {WIDE:g} wide, on the last {GRIP:g} mm of it"
-        yield _found("fingers", step, name, f"no room for fingertips, {envelope}")
+        message = (
+            f"step '{step.title}': {name}: no room for fingertips, {2 * THICK:g} mm across and {WIDE:g} "
+            f"wide, on its last {GRIP:g} mm"
+        )
+        yield Finding("fingers", "fail", name, (), 0.0, GRIP, message)
 
     def _meets(
         self, hand: manifold3d.Manifold, low: np.ndarray, high: np.ndarray, name: str, at: Vector
@@ -199,11 +209,8 @@ class _Trial:
         return (hand ^ there).volume() > FILM
 
 
-def _found(
-    check: str, step: Step, part: str, message: str, value: float = 0.0, limit: float = 0.0
-) -> Finding:
-    said = f"step '{step.title}': {part}: {message}"
-    return Finding(check, "fail", part, (), value, limit, said)
+def _order(step: Step, part: str, what: str) -> Iterator[Finding]:
+    yield Finding("order", "fail", part, (), 0, 0, f"step '{step.title}': {part} {what}")
 
 
 CHECKS = (
