@@ -127,6 +127,9 @@ def test_a_scene_takes_three_files(tree):
         assert refused.returncode == 1 and said in refused.stdout + refused.stderr
 
 
+ALL_RIGS = "from tactcad.scenes.rig import all_rigs; all_rigs(Design)"
+
+
 @pytest.mark.parametrize(
     ("text", "said"),
     [
@@ -142,7 +145,7 @@ def test_a_scene_takes_three_files(tree):
 def test_an_incomplete_rig_is_refused_at_import(tree, text, said):
     tree.write("scenes/rigs/lacking.py", text)
     done = subprocess.run(
-        [sys.executable, "-c", "from tactcad.scenes.rig import all_rigs; all_rigs()"],
+        [sys.executable, "-c", f"from tactcad.design.tree import Design; {ALL_RIGS}"],
         env=os.environ | {"PYTHONPATH": str(tree.src)},
         capture_output=True,
         text=True,
