@@ -11,7 +11,7 @@ from json import dumps
 from pathlib import Path
 from typing import Any
 
-from .family import all_families, family_with, section_types
+from .family import all_families, family_with
 from .fields import Number, shown_text
 from .files import read_text
 from .materials import completed
@@ -106,7 +106,6 @@ def from_table(table: dict[str, Any]) -> CommonTables:
 
 SCHEMA = "tactcad schema"  # prints every field
 OTHER_FILES = {"target": "a target is for `tactcad design`", "study": "a study is for `tactcad sweep`"}
-SECTION_TYPES = section_types(CommonTables)  # of facing rows
 
 
 def read_table(kind: type, table: dict[str, Any], path: str) -> Any:
