@@ -244,7 +244,7 @@ def part_facts(part: Part, variables: dict[str, DimensionLimits], lines: Sequenc
     part
         Its description.
     variables, lines
-        Of the assembled sensor, as `assembly.virtual_build.Sensor` has them: what depends on the part.
+        Of the assembled sensor, as `stacks.virtual_build.Sensor` has them: what depends on the part.
     """
     return PartFacts(
         part_no=part.part_no,
@@ -288,8 +288,7 @@ def _feature(name: str, piece: Piece) -> FeatureFact:
 
 def _of_element(v: DimensionLimits, part: Part) -> tuple[tuple[str, str], ...]:
     """The limit of an element that a variable is of: it names no part, being the same of every length."""
-    is_element = {"pad_face", "stop_land"} <= part.feature_names
-    found = is_element and v.element in {c.name for c in part.characteristics}
+    found = part.kind == "element" and v.element in {c.name for c in part.characteristics}
     return ((part.part_no, v.element),) if found else ()
 
 
