@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from tactcad.design.materials import ALLOYS
-from tactcad.design.tree import Design
+from tactcad.design.tree import CommonTables
 
 from .description import Material
 
@@ -23,17 +23,17 @@ MAGNETIC_STAINLESS = Material("X46Cr13 (1.4034)", 7700, "annealed (+A)", "EN 100
 STRETCHED = {"-T6": "-T651", "-T3": "-T351"}
 
 
-def plate_material(design: Design) -> Material:
-    """End plates, carrier and the rigs' plates: the alloy of [clamp] plate_alloy."""
+def plate_material(design: CommonTables) -> Material:
+    """End plates, carrier and the rigs' plates: the design's `plate_alloy`."""
     alloy = bar_material(design)
     stem, temper = alloy.name[:-3], alloy.name[-3:]
-    standard = ALLOYS[design.clamp.plate_alloy].standard
+    standard = ALLOYS[design.plate_alloy].standard
     return replace(alloy, name=stem + STRETCHED.get(temper, temper), standard=standard)
 
 
-def bar_material(design: Design) -> Material:
+def bar_material(design: CommonTables) -> Material:
     """What is turned of the plates' alloy: extruded bar."""
-    alloy = ALLOYS[design.clamp.plate_alloy]
+    alloy = ALLOYS[design.plate_alloy]
     standard = alloy.standard.replace("EN 485-2", "EN 755-2")
     return Material(alloy.name, alloy.density, standard=standard, magnetic=alloy.magnetic or "")
 
