@@ -12,8 +12,9 @@ from typing import Any
 from .materials import ALLOYS, LOT_SPREAD, sheet_tolerance
 from .tree import Array, Element, Sheet, SheetMaterial
 
-# The published set-up, mm and N; the cart is chosen around its sample.
-SIDE, LENGTH, WIDTH, WHEEL_BASE, VACUUM, RINGS = 32.0, 70.0, 50.0, 50.0, 26.0, 3
+# The published set-up, mm and N; the cart is chosen around its sample, so wide that its wheels roll beside
+# the stages' threads.
+SIDE, LENGTH, WIDTH, WHEEL_BASE, VACUUM, RINGS = 32.0, 70.0, 54.0, 50.0, 26.0, 3
 MOVING, STACK = 3.235, 21.0  # paper: what moves with the array, N; its stack of sheets and spacers
 PER_STACK = 0.05  # N for a mm of stack more; chosen: twice what aluminium weighs, trimmed by the ballast
 RUBBER = 6.0  # of the sample beyond the pads; chosen: what the published array has beyond the ends of a row

@@ -52,6 +52,8 @@ def element(layout: Layout, place: ElementPlace, gap: float | None = None) -> Pa
     passes = least_passes(design.tolerance.hinge_thickness)
     outer = outline(layout, place.arm, place.hinge, gap)
     number = element_number(design, place)
+    edges = {s.name for s in outer}
+    pad, ledge = (_standing(f, edges) for f in ("pad_face", "ledge"))
     return Part(
         part_no=number,
         name=f"Sensing element, arm {shortest(place.arm)}",
@@ -67,8 +69,11 @@ def element(layout: Layout, place: ElementPlace, gap: float | None = None) -> Pa
             *material_notes(design),
             *unrated,
         ),
-        characteristics=_limits(layout, place, gap, {s.name for s in outer}),
-        geometric=(screw_places("A", "B"),),
+        characteristics=_limits(layout, place, gap, edges),
+        geometric=(
+            screw_places("B", "A"),
+            Geometric("pad's and ledge's lean", "parallelism", LEAN, (pad, ledge), ("A",)),
+        ),
         datums=(DatumFeature("A", "flat_face"), DatumFeature("B", "dowel_hole")),
         spares=spare_elements(sum(element_number(design, p) == number for p in layout.elements)),
         kind="element",
@@ -80,6 +85,7 @@ def screw_places(*datums: str) -> Geometric:
     return Geometric("screw holes", "position", PLACE, ("screw_hole",), datums, True)
 
 
+LEAN = 0.005  # mm, of pad and ledge against the flat face; chosen: one contour, four passes of the wire
 # The load arm is the arm less half the pad: its tolerance is shared so that the two give just that.
 ARM_SHARE, PAD_SHARE = 0.8, 0.4
 PAD_HEIGHT = "pad height over the dowel hole's centre"
