@@ -1,5 +1,5 @@
 """Limits that assembling and using the parts need, on every shipped design: flat clamp faces, heads below
-their face, wheels beside threads, a roller that lies straight on its pad, and sheets that say nothing finer than they limit."""
+their face, wheels beside threads, a roller straight on its pad, and sheets as fine as their limits."""
 
 from __future__ import annotations
 

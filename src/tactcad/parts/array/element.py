@@ -441,6 +441,7 @@ def least_passes(tolerance: float) -> str:
     return next((words for words, key in _ENOUGH if tolerance >= WIRE_TOLERANCE[key]), "four passes")
 
 
+MEASURED = "measured:"  # begins the origin of a value that follows from an inspection sheet
 # Spacer's dowel hole over the dowel, mm; chosen: nothing stands by it, and one pass of the wire holds it.
 LOOSE = 0.1
 
@@ -460,6 +461,16 @@ def spacer(layout: Layout) -> Part:
     d = layout.design
     z0, z1 = layout.spacer_z
     material = sheet_material(d)
+    known = d.origin.get("array.spacer", "")
+    measured = known if known.startswith(MEASURED) else ""
+    if measured:
+        by_sheet: tuple[str, ...] = (f"thickness {measured}",)
+    else:
+        by_sheet = (
+            "ordered once the elements' sheet is measured",
+            f"thickness as drawn where the elements' sheet measures {d.sheet.thickness:g}; else "
+            f"{thickness_by_sheet(d)}",
+        )
     return Part(
         part_no=f"{d.name}-spacer",
         name="Spacer",
@@ -472,16 +483,16 @@ def spacer(layout: Layout) -> Part:
         ),
         colour="#9aa4ae",
         notes=(
-            "ordered once the elements' sheet is measured; all from one sheet",
+            *by_sheet,
+            "all from one sheet",
             f"burr-free; picked from rolled sheet that measures so, or ground {held_for_grinding(material)}",
             "wire-cut as packs: one pass holds outline and holes",
-            f"thickness as drawn where the elements' sheet measures {d.sheet.thickness:g}; else "
-            f"{thickness_by_sheet(d)}; the whole stack {layout.stack:g} +-{STACK:g}",
+            f"the whole stack {layout.stack:g} +-{STACK:g}",
         ),
         characteristics=(
             replace(
                 within("thickness", layout.spacer, SPACER_TOLERANCE, between=FACES),
-                remark=thickness_by_sheet(d),
+                remark="" if measured else thickness_by_sheet(d),
             ),
         ),
         geometric=(screw_places("A"),),
