@@ -22,6 +22,7 @@ from tactcad.parts.array.hinge_section import thickness_elasticity
 from tactcad.parts.array.layout import Layout
 from tactcad.parts.bought.electronic_parts import BOARD
 from tactcad.parts.language.description import Characteristic, Part
+from tactcad.parts.language.finding import grouped
 from tactcad.scenes.rig import ARRAY
 
 from .archive import MANIFEST
@@ -240,7 +241,7 @@ def wire_questions(contents: ReleaseContents) -> list[str]:
 def _flags(contents: ReleaseContents) -> list[str]:
     if not contents.flags:
         return ["Nothing.", ""]
-    return numbered(list(dict.fromkeys(f.said for f in contents.flags)))
+    return numbered(grouped(contents.flags))
 
 
 PACKAGE_FOLDERS = {

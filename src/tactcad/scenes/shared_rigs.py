@@ -13,7 +13,7 @@ from tactcad.parts.bought.standard_parts import STAGES, bearing
 from tactcad.parts.language.description import Vector, vector
 from tactcad.parts.language.metric import METRIC
 from tactcad.parts.rigs.cart import LOOSE_WHEEL, CartLayout
-from tactcad.parts.rigs.force_gauge import GAUGE_SCREW_X, GAUGE_SCREW_Z, GAUGE_THREADS
+from tactcad.parts.rigs.force_gauge import GAUGE_SCREW_X, GAUGE_SCREW_Z, GAUGE_THREADS, roller_length
 from tactcad.parts.rigs.frame import (
     BASE,
     GAUGE_SHAFT,
@@ -275,7 +275,7 @@ def place_force_axis(
     if roller:
         r = standard_parts.dowel_diameter(present(rig.design.calibration).roller) / 2
         tip = b.place("TI", rigs.roller_tip(rig), (0, 5.0, tip_z), AGAINST_Y)
-        length = roller_length(rig)
+        length = roller_length(rig.array)
         contact = b.place(
             "RO",
             standard_parts.dowel(present(rig.design.calibration).roller, length),
@@ -324,10 +324,3 @@ def driven(
         moves += [(name,) for on, name in fixings if on == side]
         here = there
     return [*moves, Move((moving,), here, (STILL,), by)]
-
-
-def roller_length(rig: StandLayout) -> float:
-    """Shortest standard pin that covers the pad; rule roller_clears_neighbours keeps it off the others."""
-    wide = rig.design.sheet.thickness
-    lengths = standard_parts.dowel_lengths(present(rig.design.calibration).roller)
-    return next((n for n in lengths if n >= wide), lengths[-1])

@@ -42,6 +42,7 @@ from .frame import STANDARD_GRAVITY
 # The tongue's width and the height of its tip over the rest, plus and minus mm; chosen: three passes of the
 # wire hold 0.01, four 0.005.
 TONGUE, TIP = 0.005, 0.02
+TONGUE_PLACE = 0.05  # mm, from the pins' datum, plus and minus; chosen: pins only keep elements upright
 # Element over the nest's floor in front, mm; chosen: crumbs of adhesive do not lift it.
 FLOOR_GAP = 0.5
 # Rear body over its rest where the leaf lies on the tongue, beside what general tolerances take; chosen: so
@@ -350,6 +351,9 @@ def bonding_nest(rig: BondingLayout) -> Part:
         within(TONGUE_WIDTH, width, TONGUE, True, ("tongue_front", "tongue_back")),
         within(TIP_OVER_REST, round(rig.rest - rig.floor, 9), TIP, between=("rest", tip)),
         pressed(rig.pin_d),
+        within(
+            "tongue_back", round(rig.nest_x[1] - width / 2, 9), TONGUE_PLACE, between=("back", "tongue_back")
+        ),
     ]
     if tip == "tongue_tip":  # a full round's width defines it
         r = rig.tongue_radius
