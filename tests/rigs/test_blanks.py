@@ -19,7 +19,7 @@ from tactcad.parts.language.stock import cut_section, stock_of
 from tactcad.scenes import make_scene, scene_names
 from tactcad.solids.build import build
 
-DESIGNS = [path.stem for path in sorted(Path("hardware").glob("*.toml"))]
+DESIGNS = [p.stem for p in sorted(Path("hardware").glob("*.toml")) if "row_arms" in p.read_text()]
 # mm, plus and minus: of rolled plate, written down again from EN 485-3 and EN 10051 as issued to a shop
 ROLLED = {8: 0.35, 10: 0.45, 12: 0.50, 15: 0.50, 20: 0.60, 25: 0.65, 30: 0.65, 5: 0.32}
 

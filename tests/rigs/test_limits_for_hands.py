@@ -19,7 +19,7 @@ from tactcad.parts.language.metric import METRIC
 from tactcad.parts.rigs.cart import cart_layout
 from tactcad.scenes import make_scene, scene_names
 
-DESIGNS = [path.stem for path in sorted(Path("hardware").glob("*.toml"))]
+DESIGNS = [p.stem for p in sorted(Path("hardware").glob("*.toml")) if "row_arms" in p.read_text()]
 MADE = ("wire-cut", "milled", "turned", "ground")
 
 

@@ -149,7 +149,7 @@ def _front_view(
     )
 
 
-SMALL, DETAIL_ROOM = 1.2, (60.0, 50.0)  # mm: what is less has a detail; of paper that the detail may take
+SMALL, DETAIL_ROOM = 1.0, (60.0, 50.0)  # mm: what is less has a detail; of paper that the detail may take
 AROUND_SMALL = 0.8  # of their extent that a detail shows around them
 
 
@@ -162,7 +162,9 @@ def _with_detail(front: View, sketch: Sketch) -> list[View]:
 
     linears = [s for s in front.linears if limited(s.dimension)]
     callouts = [c for c in front.callouts if c.spans and any(map(limited, c.dimensions))]
-    spots = [p for s in linears for p in (s.p, s.q)] + [at for c in callouts for at, _ in c.targets]
+    spots = [p for s in linears for p in (s.p, s.q)] + [
+        (at[0] + way * r, at[1] + way * r) for c in callouts for at, r in c.targets for way in (-1, 1)
+    ]
     if not spots:
         return [front]
     (u0, v0, u1, v1) = bounds(spots)

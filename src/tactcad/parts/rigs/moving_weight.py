@@ -12,7 +12,7 @@ from ..language.description import Extrusion, Feature, Hole, Part, Purchase
 from ..language.limits import FACES, DatumFeature, Geometric
 from ..language.metric import METRIC, corners, sunk, tapped_blind, tapped_depth
 from ..language.part_materials import CARBON_STEEL, PLAIN_STEEL, bar_material
-from ..language.plate import FRAME_DATUMS, plate
+from ..language.plate import FRAME, FRAME_DATUMS, PLACE, plate
 from .frame import BAR_FRONT, BAR_WIDTH, BEHIND_BAR, FOOT, PIN, PLATFORM, carrier_pattern, under_carrier_screw
 from .linear_guide import LATCH, LATCH_AIR, STOP_PIN, GuideLayout, latch_on_bar
 
@@ -51,6 +51,7 @@ def bar(rig: GuideLayout) -> Part:
         geometric=(
             Geometric("ends' squareness", "perpendicularity", 0.02, ("lower edge", "upper edge"), ("A",)),
             Geometric("flatness", "flatness", 0.02, (FACES[1],)),
+            Geometric("latch hole", "position", PLACE, ("latch",), FRAME, True),
         ),
         datums=(DatumFeature("A", FACES[1]), *FRAME_DATUMS[1:]),
     )
