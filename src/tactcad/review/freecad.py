@@ -39,9 +39,9 @@ ESTIMATES = (
     ELEMENT["number"].said(heading="element"),
     *ELEMENT.some("arm", "load_arm", "stiffness", "expected_error", "stiffness_ratio", "force"),
     ELEMENT["deflection"].said(unit="mm", scale=1.0),
-    ELEMENT["gauge_strain"].said(heading="gauge strain", unit="microstrain"),
+    ELEMENT["gauge_strain"].said(unit="microstrain"),
     ELEMENT["stress"],
-    ELEMENT["rated_force"].said(heading="rated force"),
+    ELEMENT["rated_force"],
     ELEMENT["rated_deflection"].said(heading="rated deflection", unit="mm", scale=1.0),
 )
 
