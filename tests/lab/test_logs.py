@@ -16,7 +16,7 @@ from tactcad.lab import calibration, grasp, log_readings, readings, regression
 from tactcad.lab.calibration_file import Sensitivity
 from tactcad.lab.combine import combine
 from tactcad.lab.load_cell import LoadCell
-from tactcad.lab.log_files import Log, read_log
+from tactcad.lab.log_files import LabLog, read_log
 from tactcad.lab.log_map import read_map
 
 EXAMPLES = HARDWARE / "examples"
@@ -32,8 +32,8 @@ def mapped(folder, lab, kind, time="Time", more=""):
     return read_map(folder / f"{kind}.toml")
 
 
-def in_memory(lab: labs.Lab) -> Log:
-    return Log("log", {"Time": lab.time, **lab.columns}, None, np.arange(1, len(lab.time) + 1))
+def in_memory(lab: labs.Lab) -> LabLog:
+    return LabLog("log", {"Time": lab.time, **lab.columns}, None, np.arange(1, len(lab.time) + 1))
 
 
 @pytest.mark.parametrize("name", labs.FORMATS)
@@ -79,7 +79,9 @@ def test_the_mean_is_over_whole_periods_of_the_mains(tmp_path):
     t = np.arange(4056) / 1000.0
     load = np.minimum(t // 0.507, 7)
     hum = 0.01 * np.sin(2 * np.pi * 50 * t)
-    log = Log("log", {"Time": t, "load": load, "ai1": hum + load, "ai2": hum - load}, None, np.arange(len(t)))
+    log = LabLog(
+        "log", {"Time": t, "load": load, "ai1": hum + load, "ai2": hum - load}, None, np.arange(len(t))
+    )
     text = '[log]\nkind = "grasp"\ntime = "Time"\nmains = 50\n[channels]\nai1 = 1\nai2 = 2\n'
     text += '[steps]\nby = "marks"\n'
     (tmp_path / "m.toml").write_text(text + 'column = "load"\n[load]\ncolumn = "load"\n')

@@ -31,7 +31,7 @@ SAME_TIME = 1e-9  # s
 
 
 @dataclass(frozen=True)
-class Log:
+class LabLog:
     """A log's columns by name, each of equal length: numbers, or texts (marks). `time`: s from the first row,
     where the file itself says it; `line`: of each row in the file, or its number."""
 
@@ -44,7 +44,7 @@ class Log:
         return f"{self.path}:{self.line[row]}" + (f": {column}" if column else "")
 
 
-def read_log(path: str | Path) -> Log:
+def read_log(path: str | Path) -> LabLog:
     """Read a log; the format goes by the file's ending, all else than .lvm and .tdms is CSV.
 
     Raises
@@ -100,7 +100,7 @@ def _dialect(path: str, lines: Sequence[str]) -> tuple[str, bool]:
     return best
 
 
-def _csv(path: str, text: str) -> Log:
+def _csv(path: str, text: str) -> LabLog:
     numbered = [
         (n, line)
         for n, line in enumerate(text.splitlines(), 1)
@@ -112,7 +112,7 @@ def _csv(path: str, text: str) -> Log:
     return _table(path, numbered, separator, comma)
 
 
-def _table(path: str, numbered: list[tuple[int, str]], separator: str, comma: bool) -> Log:
+def _table(path: str, numbered: list[tuple[int, str]], separator: str, comma: bool) -> LabLog:
     """The table in numbered lines: names, a line of units at most, rows."""
     read = _value(comma)
     width = max(len(_cells(line, separator)) for _, line in numbered[len(numbered) // 2 :][:LOOKED_AT])
@@ -148,7 +148,7 @@ def _table(path: str, numbered: list[tuple[int, str]], separator: str, comma: bo
         rows.append(cells)
         lines.append(n)
     columns = {name: _column(cells, read) for name, cells in zip(names, zip(*rows)) if name}
-    return Log(path, columns, None, np.array(lines))
+    return LabLog(path, columns, None, np.array(lines))
 
 
 def _names(cells: Sequence[str], path: str, line: int) -> list[str]:
@@ -191,7 +191,7 @@ def _seconds(text: str) -> float | None:
 END = "***End_of_Header***"
 
 
-def _lvm(path: str, text: str) -> Log:
+def _lvm(path: str, text: str) -> LabLog:
     """LabVIEW's measurement file: a header of names and values, then segments, each with one of its own."""
     lines = [line.rstrip("\r") for line in text.split("\n")]
     if not lines[0].startswith("LabVIEW Measurement"):
@@ -212,7 +212,7 @@ def _lvm(path: str, text: str) -> Log:
     layout = whole.get("X_Columns", ["One"])[0].strip()
     if layout == "Multi":
         raise InputError(path, "X_Columns Multi: a time column for each channel", legal="One or No")
-    parts: list[tuple[Log, dict[str, list[str]]]] = []
+    parts: list[tuple[LabLog, dict[str, list[str]]]] = []
     while (start := next((i for i in range(at, len(lines)) if lines[i].strip()), None)) is not None:
         own, at = header(start)
         stop = next((i for i in range(at + 1, len(lines)) if not lines[i].strip()), len(lines))
@@ -239,10 +239,12 @@ def _lvm(path: str, text: str) -> Log:
         if name not in ("X_Value", "Comment")
         or (name == "Comment" and parts[0][0].columns[name].dtype.kind == "U")
     }
-    return Log(path, columns, np.concatenate(times), np.concatenate([log.line for log, _ in parts]))
+    return LabLog(path, columns, np.concatenate(times), np.concatenate([log.line for log, _ in parts]))
 
 
-def _lvm_time(log: Log, own: dict[str, list[str]], layout: str, read: Callable[[str], float]) -> np.ndarray:
+def _lvm_time(
+    log: LabLog, own: dict[str, list[str]], layout: str, read: Callable[[str], float]
+) -> np.ndarray:
     if layout != "No" and "X_Value" in log.columns:
         return log.columns["X_Value"]
     step = read(own.get("Delta_X", ["1"])[0])
@@ -256,7 +258,7 @@ def _lvm_start(own: dict[str, list[str]]) -> float:
     return date(*map(int, re.split(r"[/.-]", day))).toordinal() * 86400.0 + clock
 
 
-def _tdms(path: str | Path) -> Log:
+def _tdms(path: str | Path) -> LabLog:
     refuse_missing(str(path), "logs")
     from io import BytesIO
 
@@ -279,7 +281,7 @@ def _tdms(path: str | Path) -> Log:
             what = f"{len(values)} rows, {found[0][1]} has {len(found[0][2])}"
             raise InputError(f"{path}: {shown}", what, legal="channels of equal length")
         columns[shown] = _plain(values)
-    return Log(str(path), columns, _tdms_time([c for *_, c in found]), np.arange(1, len(found[0][2]) + 1))
+    return LabLog(str(path), columns, _tdms_time([c for *_, c in found]), np.arange(1, len(found[0][2]) + 1))
 
 
 def _plain(values: np.ndarray) -> np.ndarray:

@@ -96,7 +96,7 @@ class Channel:
 
 
 @dataclass(frozen=True)
-class Quantity:
+class MappedQuantity:
     """[element], [run], [sample], [displacement], [force], [load]: a value a step, from a column or a
     list."""
 
@@ -132,7 +132,7 @@ class LogMap:
     signal: SignalTable
     steps: StepsTable
     channels: Mapping[str, Channel]
-    quantities: Mapping[str, Quantity]
+    quantities: Mapping[str, MappedQuantity]
 
 
 TABLES = {"log": LogTable, "signal": SignalTable, "steps": StepsTable}
@@ -167,7 +167,7 @@ def read_map(path: str | Path) -> LogMap:
         if name not in (*NEEDED[kind], *OPTIONAL[kind]):
             legal = ", ".join((*NEEDED[kind], *OPTIONAL[kind]))
             raise InputError(f"{where}: {name}", f"is nothing that a {kind} has", legal=legal)
-    quantities = {n: read_table(Quantity, table[n], n) for n in QUANTITIES if n in table}
+    quantities = {n: read_table(MappedQuantity, table[n], n) for n in QUANTITIES if n in table}
     for name, q in quantities.items():
         if (q.column is None) == (q.values is None):
             raise InputError(f"{where}: {name}", "is to come from one of two", legal="column, or values")
@@ -206,4 +206,4 @@ def map_text() -> str:
     """Every table of a mapping file with its fields, for help."""
     lines = [line for name, kind in TABLES.items() for line in table_text(name, kind, name == "signal")]
     lines += table_text("channels.COLUMN", Channel, True)
-    return "\n".join([*lines, *table_text("load", Quantity, True)])
+    return "\n".join([*lines, *table_text("load", MappedQuantity, True)])

@@ -21,8 +21,8 @@ from tactcad.lab import readings
 from tactcad.lab.column_units import VOLTAGES
 from tactcad.report.plain import plain
 
-from .log_files import Log
-from .log_map import NEEDED, SECONDS, LogMap, Quantity
+from .log_files import LabLog
+from .log_map import NEEDED, SECONDS, LogMap, MappedQuantity
 
 GAP = 3.0  # times the longest usual interval from which on rows are missing; chosen
 USUAL = 0.98  # share of the intervals that are usual: bursts of up to fifty samples have one pause each
@@ -37,7 +37,7 @@ SWAPPED = 5.0
 
 
 @dataclass(frozen=True)
-class Step:
+class LogStep:
     """Rows first to last of the log; time s, their mean; values: of every quantity, mm, N or number."""
 
     first: int
@@ -64,10 +64,10 @@ class Taken:
     """
 
     kind: str
-    log: Log
+    log: LabLog
     time: np.ndarray
     drive: np.ndarray | None
-    steps: tuple[Step, ...]
+    steps: tuple[LogStep, ...]
     columns: Mapping[int, str]
     volts: Mapping[int, np.ndarray]
     left_out: Mapping[int, str]
@@ -82,7 +82,7 @@ class Taken:
         return Table(self.log.path, ",", start + 1, header, lines[start + 1 :], numbers)
 
 
-def take(log: Log, by: LogMap) -> Taken:
+def take(log: LabLog, by: LogMap) -> Taken:
     """The readings that a log holds.
 
     Raises
@@ -100,7 +100,7 @@ def take(log: Log, by: LogMap) -> Taken:
     _refuse_doubled(log, volts, columns, used)
     values = {name: _values(log, by, name, q, spans) for name, q in by.quantities.items()}
     steps = tuple(
-        Step(a, b, float(time[a : b + 1].mean()), {name: float(v[i]) for name, v in values.items()})
+        LogStep(a, b, float(time[a : b + 1].mean()), {name: float(v[i]) for name, v in values.items()})
         for i, (a, b) in enumerate(spans)
     )
     left_out = {
@@ -128,12 +128,12 @@ def take(log: Log, by: LogMap) -> Taken:
     return Taken(by.log.kind, log, time, drive, steps, columns, kept, left_out, noise, table)
 
 
-def _pressed(kind: str, steps: tuple[Step, ...], element: int) -> tuple[Step, ...]:
+def _pressed(kind: str, steps: tuple[LogStep, ...], element: int) -> tuple[LogStep, ...]:
     """Steps in which an element of a calibration is pressed; none of a grasp."""
     return tuple(s for s in steps if kind == "calibration" and s.values["element"] == element)
 
 
-def _numbers(log: Log, name: str, by: LogMap) -> np.ndarray:
+def _numbers(log: LabLog, name: str, by: LogMap) -> np.ndarray:
     if name not in log.columns:
         raise InputError(f"{log.path}", f"has no column {name!r}", legal=one_of(name, log.columns))
     values = log.columns[name]
@@ -142,7 +142,7 @@ def _numbers(log: Log, name: str, by: LogMap) -> np.ndarray:
     return values
 
 
-def _time(log: Log, by: LogMap) -> np.ndarray:
+def _time(log: LabLog, by: LogMap) -> np.ndarray:
     """Seconds from the first row."""
     if by.log.time is not None:
         time = _numbers(log, by.log.time, by) * SECONDS[by.log.time_unit]
@@ -162,13 +162,13 @@ def _time(log: Log, by: LogMap) -> np.ndarray:
     return time - time[0]
 
 
-def _volts(log: Log, name: str, by: LogMap) -> np.ndarray:
+def _volts(log: LabLog, name: str, by: LogMap) -> np.ndarray:
     own = by.channels[name]
     raw = _numbers(log, name, by) * VOLTAGES[by.signal.unit]
     return raw * by.signal.factor * own.factor + own.offset
 
 
-def _spans(log: Log, by: LogMap, time: np.ndarray, drive: np.ndarray | None) -> list[tuple[int, int]]:
+def _spans(log: LabLog, by: LogMap, time: np.ndarray, drive: np.ndarray | None) -> list[tuple[int, int]]:
     """First and last row of every step, without what settles, cut to whole periods of the mains."""
     rule = by.steps
     if rule.by == "times":
@@ -242,7 +242,7 @@ def _trimmed(drive: np.ndarray, a: int, b: int) -> tuple[int, int]:
     return (a + int(still[0]), a + int(still[-1])) if len(still) else (a, b)
 
 
-def _marked(log: Log, column: str, by: LogMap) -> list[tuple[int, int]]:
+def _marked(log: LabLog, column: str, by: LogMap) -> list[tuple[int, int]]:
     if column not in log.columns:
         raise InputError(log.path, f"has no column {column!r}", legal=one_of(column, log.columns))
     marks = log.columns[column]
@@ -254,7 +254,9 @@ def _marked(log: Log, column: str, by: LogMap) -> list[tuple[int, int]]:
     return found
 
 
-def _values(log: Log, by: LogMap, name: str, q: Quantity, spans: list[tuple[int, int]]) -> np.ndarray:
+def _values(
+    log: LabLog, by: LogMap, name: str, q: MappedQuantity, spans: list[tuple[int, int]]
+) -> np.ndarray:
     scale = q.scale(name, by.path)
     if q.values is not None:
         cycle = np.repeat(np.array(q.values), q.each)
@@ -280,14 +282,14 @@ def _values(log: Log, by: LogMap, name: str, q: Quantity, spans: list[tuple[int,
     return whole
 
 
-def _scaled(found: np.ndarray, q: Quantity, scale: float) -> np.ndarray:
+def _scaled(found: np.ndarray, q: MappedQuantity, scale: float) -> np.ndarray:
     """To mm or N; what is below q.least is zero."""
     own = found + q.offset
     return np.where(np.abs(own) < q.least, 0.0, own) * scale
 
 
 def _refuse_doubled(
-    log: Log, volts: Mapping[int, np.ndarray], columns: Mapping[int, str], used: np.ndarray
+    log: LabLog, volts: Mapping[int, np.ndarray], columns: Mapping[int, str], used: np.ndarray
 ) -> None:
     seen: dict[bytes, int] = {}
     for n, v in volts.items():
@@ -300,7 +302,7 @@ def _refuse_doubled(
             raise InputError(f"{log.path}: {columns[n]}", what, legal="a channel of its own for each element")
 
 
-def _silent(v: np.ndarray, steps: tuple[Step, ...], by: LogMap) -> str:
+def _silent(v: np.ndarray, steps: tuple[LogStep, ...], by: LogMap) -> str:
     """Why a channel tells nothing; "" where it does."""
     own = np.concatenate([v[s.rows] for s in steps])
     if np.isnan(own).all() or not np.nanmax(own) - np.nanmin(own):
@@ -319,7 +321,7 @@ def _silent(v: np.ndarray, steps: tuple[Step, ...], by: LogMap) -> str:
 
 
 def _refuse_swapped(
-    log: Log, steps: tuple[Step, ...], kept: Mapping[int, np.ndarray], columns: Mapping[int, str]
+    log: LabLog, steps: tuple[LogStep, ...], kept: Mapping[int, np.ndarray], columns: Mapping[int, str]
 ) -> None:
     """Refuse a calibration in which another channel answers to an element's being pressed."""
     for n in sorted({int(s.values["element"]) for s in steps} & set(kept)):
@@ -335,7 +337,11 @@ def _refuse_swapped(
 
 
 def _written(
-    by: LogMap, steps: tuple[Step, ...], kept: Mapping[int, np.ndarray], log: Log, left_out: Mapping[int, str]
+    by: LogMap,
+    steps: tuple[LogStep, ...],
+    kept: Mapping[int, np.ndarray],
+    log: LabLog,
+    left_out: Mapping[int, str],
 ) -> str:
     calibration = by.log.kind == "calibration"
     lines = [f"# {by.log.kind} readings from {log.path} by {by.path}: means of {len(steps)} steps"]
