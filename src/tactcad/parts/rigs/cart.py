@@ -120,10 +120,10 @@ class CartLayout:
         fits."""
         most = round(self.holder.lid_thickness - METRIC["M3"].head_height - SUNK, 9)
         for length in CAP_SCREW_LENGTHS["M3"]:
-            engaged = round(length - self.holder_body - most, 9)
+            under = round(min(most, length - self.holder_body - engagement("M3")), 9)
             deepest = min(self.cart.thickness, TAP_REACH * METRIC["M3"].d)
-            if engagement("M3") <= engaged <= deepest and most >= 2.0:
-                return length, round(most, 9)
+            if under >= 2.0 and length - self.holder_body - under <= deepest + 1e-9:
+                return length, under
         return None
 
     @property
