@@ -113,6 +113,30 @@ def pad_law(poisson: float, thickness: float, base: str, length: float, width: f
     return PadLaw(length, width, cells)
 
 
+@lru_cache(maxsize=64)
+def between(
+    x: bytes, y: bytes, length: float, width: float, poisson: float, thickness: float, base: str
+) -> np.ndarray:
+    """Depth and slopes of the face under every pad for force and moments on every other one, for 1 MPa,
+    [3 pad, 3 pad]; x and y are the bytes of the pads' middles."""
+    at = np.stack([np.frombuffer(x), np.frombuffer(y)], -1)
+    one, n = patches(length, width, False, COARSE), len(at)
+    m = one.shape[1]
+    modes = np.stack([np.ones(m), one[0], one[1]])
+    unit = Body(1.0, poisson, thickness, base)
+    face = np.empty((n, m, n, m))
+    for i in range(n):
+        for j in range(i + 1):
+            dx, dy = at[i] - at[j]
+            block = influence(unit, (one[0] + dx, one[1] + dy, *one[2:]), tuple(one))
+            face[i, :, j], face[j, :, i] = block, block.T
+    full = np.linalg.inv(face.reshape(n * m, n * m)).reshape(n, m, n, m)
+    grip = np.einsum("am,imjk,bk->iajb", modes, full, modes).reshape(3 * n, 3 * n)
+    out = np.linalg.inv(grip).reshape(n, 3, n, 3)
+    out[np.arange(n), :, np.arange(n)] = 0.0  # a pad's own part is its law's
+    return out.reshape(3 * n, 3 * n)
+
+
 class ManyPresses:
     """Pads that each give way in one manner (a hinge) on one layer, set up once.
 
@@ -123,23 +147,11 @@ class ManyPresses:
     def __init__(
         self, x: np.ndarray, y: np.ndarray, length: float, width: float, move: np.ndarray, body: Body
     ) -> None:
-        n = len(x)
         self.x, self.y, self.move, self.body = x, y, move, body
         self.law = pad_law(body.poisson, body.thickness, body.base, length, width)
-        one = patches(length, width, False, COARSE)
-        m = one.shape[1]
-        modes = np.stack([np.ones(m), one[0], one[1]])
-        unit = Body(1.0, body.poisson, body.thickness, body.base)
-        face = np.empty((n, m, n, m))
-        for i in range(n):
-            for j in range(i + 1):
-                block = influence(unit, (one[0] + x[i] - x[j], one[1] + y[i] - y[j], *one[2:]), tuple(one))
-                face[i, :, j], face[j, :, i] = block, block.T
-        full = np.linalg.inv(face.reshape(n * m, n * m)).reshape(n, m, n, m)
-        grip = np.einsum("am,imjk,bk->iajb", modes, full, modes).reshape(3 * n, 3 * n)
-        between = np.linalg.inv(grip).reshape(n, 3, n, 3)
-        between[np.arange(n), :, np.arange(n)] = 0.0  # a pad's own part is its law's
-        self.between = between.reshape(3 * n, 3 * n)
+        self.between = between(
+            x.tobytes(), y.tobytes(), length, width, body.poisson, body.thickness, body.base
+        )
 
     def system(self, modulus: np.ndarray, stiffness: np.ndarray) -> np.ndarray:
         """Depth lost for each unit of the law's forces, [..., 3 pad, 3 pad].
