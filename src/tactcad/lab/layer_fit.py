@@ -645,7 +645,7 @@ def expected(
     """
     n, G, T = len(at.number), len(modulus), len(load)
     rows, several = np.arange(n), (readings or T) / T
-    model = _Model(at, rows, calibration, load)
+    model = _Model(at, rows, calibration, load, None)
     part, free = model.part, np.arange(model.part["own"].start)
     q = np.zeros((G, model.size))
     q[:, 0], q[:, part["slope"]] = np.log(modulus), slope

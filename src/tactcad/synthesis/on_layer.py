@@ -30,6 +30,7 @@ from .target import Target
 LOADS = 4  # that stand for all that are read
 AROUND = 8  # directions in which the face falls away
 UNTRIED = 10.0  # depth of a candidate that is not tried: worse than all that are
+CLEAR = 0.3  # mm between facing pads at least: arms turn, and rules refuse less
 PATTERNS = 24  # of chance, in which kinds are dealt out
 STEPS = {
     "pitch": (-1.0, -0.25, 0.25, 1.0),
@@ -213,4 +214,5 @@ def others(stand: Stand, rng: np.random.Generator) -> Iterator[Stand]:
                     continue
                 array = replace(array, **{name: value})
                 array = replace(array, spacer=round(array.pitch - d.sheet.thickness, 6))
-            yield replace(stand, base=replace(d, array=array, element=element))
+            if array.row_pitch >= element.pad_length + CLEAR:
+                yield replace(stand, base=replace(d, array=array, element=element))
