@@ -8,6 +8,7 @@ from dataclasses import replace
 from math import atan2, degrees, dist
 
 import pytest
+from built import shape_of
 from variants import variant
 
 from tactcad.contour import Corner, rectangle, rounded_polygon
@@ -44,10 +45,9 @@ FRAMES = {
 
 
 def drawn(design, part):
-    from tactcad.solids.build import build
     from tactcad.solids.step import to_bytes
 
-    return part_sheet(Order(design, part, to_bytes(build(part).wrapped), (DXF,)))
+    return part_sheet(Order(design, part, to_bytes(shape_of(part)), (DXF,)))
 
 
 @pytest.fixture(scope="module")
