@@ -11,15 +11,17 @@ from scipy.special import ndtr, ndtri
 
 from tactcad.design.fields import present
 from tactcad.mechanics.section import Array
-from tactcad.parts.array.clamp import STACK, end_plate, stop_plate
+from tactcad.parts.array.clamp import OVER_EDGE, STACK, end_plate, stop_plate
 from tactcad.parts.array.element import DOWEL_HOLE, LEDGE, PAD_HEIGHT, blank, element, spacer
 from tactcad.parts.array.layout import Layout
 from tactcad.parts.bought.standard_parts import dowel_limits
 from tactcad.parts.language.description import Part
+from tactcad.parts.rigs.setting_fixture import FLOOR, SettingLayout, setting_fixture
 from tactcad.scenes.requirement import Deviations, DimensionLimits, Matters, variable
 
 # The stack's length once its spacers are chosen to the measured sheet.
 STACK_LENGTH = "stack: length, spacers to suit"
+STEPS = "setting fixture: steps over the floor"
 IN_PLAY, SHEET, MODULUS = (
     "element: place in its dowel hole's play, share",
     "sheet: thickness",
@@ -71,6 +73,7 @@ def _array(layout: Layout) -> Iterable[DimensionLimits]:
                 yield _zone(f"end plates: dowel holes along {axis}", "dowel holes", pins, "pads", *pair)
                 square = f"{name}: dowel holes' squareness along {axis}"
                 yield _zone(square, "dowel holes' squareness", pins, "pads", part)
+        yield _zone(f"{name}: {OVER_EDGE}", OVER_EDGE, pins, "pads", part)
         for axis in "xz":
             against = f"{name}: dowel holes against the pair's along {axis}"
             yield _zone(against, "dowel holes of the pair", pins, on, part)
@@ -78,6 +81,12 @@ def _array(layout: Layout) -> Iterable[DimensionLimits]:
         size = float(d.clamp.dowel)  # pin and hole are both counted from it
         of = ((part.part_no, bore.name),)
         yield variable(f"{name}: dowel hole diameter", bore.lower - size, bore.upper - size, pins, of, on)
+    fixture = setting_fixture(SettingLayout(d))
+    steps = [c for c in fixture.characteristics if c.name.startswith(FLOOR)]
+    stated = tuple((fixture.part_no, c.name) for c in steps)
+    yield variable(
+        STEPS, steps[0].lower - steps[0].nominal, steps[0].upper - steps[0].nominal, 2, stated, "pads"
+    )
     plate = stop_plate(layout)
     flat = next(g for g in plate.geometric if g.name == "flatness")
     of = ((plate.part_no, flat.name),)
