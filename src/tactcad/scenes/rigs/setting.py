@@ -77,10 +77,10 @@ def setting(design: Design, pose: Pose = REST) -> Scene:
         "fixture, pads down: the pads stand on the floor, both end plates' lower edges on the steps. "
         "Turn it against both pins, one at the left edge of each plate.",
         order=[Move(tuple(p.designator for p in loose.placements), (0.0, 0.0, 60.0), (STILL,))],
-        sets=("EP1 and EP2 on FX1: along z, turn about x and y; turn about z by FP1 and FP2",),
+        sets=("both end plates on FX1: along z, turn about x and y; turn about z by FP1 and FP2",),
         leaves=(
             f"elements: turn about their dowels, {wedge(layout)}",
-            "EP1: along y, until the screws are tight",
+            "the head end plate: along y, until the screws are tight",
         ),
     )
     screws = [
