@@ -19,21 +19,45 @@ from scipy.optimize import linprog
 from tactcad.mechanics import ladder, strain
 from tactcad.mechanics.section import Array, HingeSection
 from tactcad.mechanics.strength import back_share, stress_share, tip_compliance
-from tactcad.parts.array.clamp import OVER_EDGE, SQUARE, lean
-from tactcad.parts.array.element import PAD_HEIGHT
+from tactcad.parts.array.clamp import SQUARE, lean
+from tactcad.parts.array.element import (
+    ARM_LENGTH,
+    DOWEL_HOLE,
+    LEDGE,
+    PAD_HEIGHT,
+    PAD_LENGTH,
+    STOP_GAP,
+    TIP_PLACE,
+)
 from tactcad.parts.array.hinge_section import hinge_section
 from tactcad.parts.array.layout import Layout
 from tactcad.parts.array.measurements import WAYS
 from tactcad.parts.array.stop_gap import stop_gap
 from tactcad.scenes.requirement import Deviations, DimensionLimits
 
-from .variables import IN_PLAY, MODULUS, SHEET, STEPS
+from .variables import (
+    BLANK_LEDGE,
+    FLATNESS,
+    IN_PLAY,
+    MODULUS,
+    PIN,
+    SHEET,
+    STEPS,
+    Axis,
+    Plate,
+    bore_in,
+    of_element,
+    over_edge,
+    own_holes,
+    pair_holes,
+    squareness,
+)
 
 CUT = 100.0  # stress over yield strength, at most; chosen: whatever is beyond it is gone
-PAD = f"element: {PAD_HEIGHT}"
+PAD = of_element(PAD_HEIGHT)
 # The field of HingeSection that a variable sets; the load arm follows from two others.
 HINGE = {
-    SHEET if field == "width" else f"element: {name}": field
+    SHEET if field == "width" else of_element(name): field
     for name, (field, *_) in WAYS.items()
     if field not in ("", "load_arm")
 }
@@ -91,24 +115,24 @@ class Assembled:
 
     # --- pins and pads over the fixture's floor ---
 
-    def holes(self, which: str, axis: str) -> Array:
+    def holes(self, which: Plate, axis: Axis) -> Array:
         """How far the first dowel holes of both rows are off in the `tapped` or `head` plate, (arrays, 2)."""
-        pair = self.made[f"end plates: dowel holes along {axis}"]
-        own = self.made[f"end plate, {which}: dowel holes against the pair's along {axis}"]
+        pair = self.made[pair_holes(axis)]
+        own = self.made[own_holes(which, axis)]
         return (pair + own)[:, self.first_pins]
 
-    def over_floor(self, which: str) -> Array:
+    def over_floor(self, which: Plate) -> Array:
         """How much higher than drawn the first holes of both rows stand in a plate on the fixture,
         (arrays, 2)."""
         step = self.made[STEPS][:, [1 if which == "tapped" else 0]]
-        return step + self.made[f"end plate, {which}: {OVER_EDGE}"][:, self.first_pins]
+        return step + self.made[over_edge(which)][:, self.first_pins]
 
-    def pin(self, axis: str, y: Array | float) -> Array:
+    def pin(self, axis: Axis, y: Array | float) -> Array:
         """How far the first pins of both rows are off along an axis at y, (arrays, 2); along z over the
         fixture's floor, where the head plate holds their ends within its play."""
         layout = self.layout
         # as a share of the squareness's zone, which is as wide as SQUARE
-        zone = self.made[f"end plate, tapped: dowel holes' squareness along {axis}"][:, self.first_pins]
+        zone = self.made[squareness(axis)][:, self.first_pins]
         thick = layout.design.clamp.end_plate_thickness
         slope = zone / (SQUARE / 2) * lean(layout) / (layout.stack + thick)
         if axis == "x":
@@ -118,7 +142,7 @@ class Assembled:
         bent = np.sign(off) * np.maximum(np.abs(off) - self.head_play, 0.0)
         return root + (slope - bent / far) * (layout.stack / 2 - y)
 
-    def _pin_at_elements(self, axis: str) -> Array:
+    def _pin_at_elements(self, axis: Axis) -> Array:
         at = {y: self.pin(axis, y) for y in sorted(set(self.y))}
         return np.column_stack([at[y][:, r] for y, r in zip(self.y, self.row)])
 
@@ -129,8 +153,8 @@ class Assembled:
         return (
             h.dowel_hole
             - size
-            + self.made["element: dowel hole diameter"]
-            - self.made["dowel pin: diameter"][:, self.first_pins][:, self.row]
+            + self.made[of_element(DOWEL_HOLE)]
+            - self.made[PIN][:, self.first_pins][:, self.row]
         )
 
     @cached_property
@@ -160,7 +184,7 @@ class Assembled:
     def head_play(self) -> Array:
         """Radial play of the head plate on the tighter of its pins, (arrays, 1)."""
         m = self.made
-        play = m["end plate, head: dowel hole diameter"] - m["dowel pin: diameter"]
+        play = m[bore_in("head")] - m[PIN]
         return play.min(axis=1, keepdims=True) / 2
 
     @property
@@ -176,14 +200,15 @@ class Assembled:
     @property
     def press(self) -> Array:
         """By how much each pin is larger than its hole in the tapped plate, (arrays, pins)."""
-        return self.made["dowel pin: diameter"] - self.made["end plate, tapped: dowel hole diameter"]
+        return self.made[PIN] - self.made[bore_in("tapped")]
 
     @property
     def tilt(self) -> Array:
         """The carrier's angles against the fixture's floor, along the row and across, degrees, (arrays, 2),
         by the upper edges of both plates over their lower ones."""
         y = self.layout.stack / 2 + self.layout.design.clamp.end_plate_thickness / 2
-        tapped, head = (self.over_floor(which) - self.holes(which, "z") for which in ("tapped", "head"))
+        tapped = self.over_floor("tapped") - self.holes("tapped", "z")
+        head = self.over_floor("head") - self.holes("head", "z")
         along = (head - tapped).mean(axis=1, keepdims=True) / (2 * y)
         across = (tapped[:, :1] - tapped[:, 1:]) / (2 * self.dowel_x)
         return np.degrees(np.hstack([along, across]))
@@ -195,7 +220,7 @@ class Assembled:
         """How far each tip is off along x, away from the middle, mm."""
         d = self.layout.design
         place = self.made[IN_PLAY] * self.play / 2 + self.turn * (d.holes.height + d.element.pad_height)
-        return self.side * self._pin_at_elements("x") + place - self.made["element: tip from dowel hole"]
+        return self.side * self._pin_at_elements("x") + place - self.made[of_element(TIP_PLACE)]
 
     @property
     def row_gaps(self) -> Array:
@@ -209,7 +234,7 @@ class Assembled:
 
     def ledges(self, x: float) -> Array:
         """Height of each ledge over its nominal one at so far from the middle line, pads on the floor."""
-        return self.raised(x) + self.made["element: ledge over the pad face"]
+        return self.raised(x) + self.made[of_element(LEDGE)]
 
     @cached_property
     def plate(self) -> Array:
@@ -221,7 +246,7 @@ class Assembled:
             way = np.array([1.0 if row == 1 else -1.0 for row, _ in blanks])
             y = np.array([layout.position_y(index) for _, index in blanks])
             points = np.vstack([points, np.column_stack([way * seat, y])])
-            heights = np.hstack([heights, self.made["blank: ledge over the dowel hole"]])
+            heights = np.hstack([heights, self.made[BLANK_LEDGE]])
         return resting_plane(points, heights)
 
     @cached_property
@@ -229,13 +254,13 @@ class Assembled:
         """Stop plate over each element's own ledge, at its stop land."""
         land = self.layout.pad_inner + self.layout.design.stop.land_length / 2
         over = self.plate[:, :1] + self.plate[:, 1:2] * (self.side * land) + self.plate[:, 2:] * self.y
-        return over - self.ledges(land) + self.made["stop plate: flatness"]
+        return over - self.ledges(land) + self.made[FLATNESS]
 
     @cached_property
     def gaps(self) -> Array:
         """Stop gap of each element as assembled."""
         drawn = np.array([stop_gap(self.layout, p) for p in self.layout.elements])
-        return drawn + self.made["element: stop gap"] + self.lifts
+        return drawn + self.made[of_element(STOP_GAP)] + self.lifts
 
     # --- mechanics ---
 
@@ -245,7 +270,7 @@ class Assembled:
         drawn, m = hinge_section(self.layout, self.layout.elements), self.made
         zero = np.zeros(1)  # a full round has no fillet of its own
         changed = {f: getattr(drawn, f) + m.get(name, zero) for name, f in HINGE.items()}
-        arm = m["element: arm length"] - m["element: pad length"] / 2
+        arm = m[of_element(ARM_LENGTH)] - m[of_element(PAD_LENGTH)] / 2
         modulus = drawn.youngs_modulus * (1.0 + m[MODULUS])
         # nor does a fillet reach higher than the arm
         deep = (changed["arm_height"] - changed["hinge_thickness"]) / drawn.notch_sides
