@@ -485,7 +485,10 @@ def test_a_second_family_takes_five_files(tree):
     (tree.folder / "short.toml").write_text(design.replace("length = 20.0", "length = 4.0"), "utf-8")
     for said, command in (
         ("rule leaf_is_slender", ("check", "short.toml")),
-        ("does not take designs of this family", ("grasp", "leaf.toml", "--object", "E=1,thickness=5")),
+        (
+            "does not take designs of this family",
+            ("grasp", "leaf.toml", "--object", "E=1,nu=0.4,thickness=5"),
+        ),
         ("does not take designs of this family", ("estimate", "leaf.toml", "--model", "solid")),
         ("no such scene", ("check", "leaf.toml", "--scene", "calibration")),
     ):
