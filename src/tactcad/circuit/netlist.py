@@ -23,6 +23,8 @@ Kind = Literal[
     "amplifier",
     "capacitor",
     "connector",
+    "regulator",
+    "diode",
 ]
 GROUND = "GND"
 
@@ -40,7 +42,8 @@ class Pin:
 class Component:
     """One component. `part_no` is its line of the bill. `figures` in V, ohm, F, Hz by name, for the deck.
 
-    `element` and `board` are the numbers of those that it belongs to; 0 for none.
+    `element` and `board` are the numbers of those that it belongs to; 0 for none. `footprint` by its name
+    (footprints.py), of what stands on a board; where not `fitted`, its place stays empty.
     """
 
     designator: str
@@ -51,6 +54,8 @@ class Component:
     figures: tuple[tuple[str, float], ...] = ()
     element: int = 0
     board: int = 0
+    footprint: str = ""
+    fitted: bool = True
 
     def net(self, role: str) -> str:
         """The net of the pin with that role; raises KeyError where it has none."""

@@ -13,6 +13,12 @@ BOARD = "CIRCUIT-BOARD"
 # At every supply pin of every circuit, and at the bridges' supply of every board; chosen: usual practice.
 DECOUPLING, RESERVOIR = "CAPACITOR-100N", "CAPACITOR-10U"
 TO_LEADS, TO_CARD = "HEADER-LEADS", "HEADER-CARD"
+REFERENCE, SET_RESISTOR = "LT3042EMSE#PBF", "SET-RESISTOR"
+SET_AMPERE = 100e-6  # out of the LT3042's SET pin, 1 %: its sheet, front page
+CLAMP, LINK = "1N5819HW-7-F", "LINK-0R"
+SERIES, PULL_DOWN = "RESISTOR-1K", "RESISTOR-100K"
+FILTER_RESISTOR, ANTI_ALIAS = "RESISTOR-100R", "CAPACITOR-100P"
+FILTER_OHM = 100.0  # in each input of the amplifier; chosen: with 100 pF between them nothing above 3.4 MHz passes
 ON_SUPPLIES = 5  # of decoupling capacitors: two at the amplifier, two at the multiplexer, one at the decoder
 CARD_SIGNALS = 8  # of the connector to the card beside the address: supplies, ground twice, enable, output
 
