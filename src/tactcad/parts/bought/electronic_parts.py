@@ -18,7 +18,8 @@ SET_AMPERE = 100e-6  # out of the LT3042's SET pin, 1 %: its sheet, front page
 CLAMP, LINK = "1N5819HW-7-F", "LINK-0R"
 SERIES, PULL_DOWN = "RESISTOR-1K", "RESISTOR-100K"
 FILTER_RESISTOR, ANTI_ALIAS = "RESISTOR-100R", "CAPACITOR-100P"
-FILTER_OHM = 100.0  # in each input of the amplifier; chosen: with 100 pF between them nothing above 3.4 MHz passes
+# In each input of the amplifier; chosen: with 100 pF between them nothing above 3.4 MHz passes.
+FILTER_OHM = 100.0
 ON_SUPPLIES = 5  # of decoupling capacitors: two at the amplifier, two at the multiplexer, one at the decoder
 CARD_SIGNALS = 8  # of the connector to the card beside the address: supplies, ground twice, enable, output
 
