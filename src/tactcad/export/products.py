@@ -212,8 +212,10 @@ def circuit_files(plan: Plan) -> Iterator[Batch]:
 
 @product(lambda plan: plan.options.guides)
 def guide_files(plan: Plan) -> Iterator[Batch]:
-    """Each scene's assembly guide: an exploded view, a picture a step, and the page that shows them."""
+    """Each scene's assembly guide: an exploded view, a picture a step, the page that shows them; and every
+    move as data."""
     from tactcad.drawing import guide
+    from tactcad.scenes.moves import guide_json
 
     def picture(
         scene: Scene, label: str, title: str, placements: Sequence[Placement], marked: Sequence[Placement]
@@ -240,6 +242,9 @@ def guide_files(plan: Plan) -> Iterator[Batch]:
         page = guide.page(plan.design, scene)
         key = digest(("guide", page))
         yield _one(Output(guide.page_path(scene), "report", "", key), partial(bytes, page))
+        told = guide_json(scene)
+        made = Output(f"guide/{scene.name}.json", "report", "", digest(("guide moves", told)))
+        yield _one(made, partial(bytes, told))
 
 
 @product(lambda plan: plan.options.robot)
