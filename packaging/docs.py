@@ -53,7 +53,9 @@ def schema_page() -> str:
         "# The design file\n\nEvery field with its legal values; `tactcad schema` prints the same, `tactcad "
         "schema --json` as "
         "JSON Schema. Lengths in mm, forces in N, stresses in MPa, density in kg/m3 unless a field says "
-        "otherwise.\n\n"
+        "otherwise.\n\n![An element, with the lengths of sheet, element, holes and stop named]"
+        "(images/labelled-element.svg)\n\n![The array, with pitch, row pitch, spacer and sheet named]"
+        "(images/labelled-array.svg)\n\n"
         f"{markdown_schema()}\n"
     )
 
