@@ -53,20 +53,20 @@ LEFT = 2.5  # mm from the board's side to the first column
 
 
 @dataclass(frozen=True)
-class Column:
+class BusColumn:
     net: str
     x: float
     y: float
 
 
 @dataclass
-class Sheet:
+class Routing:
     """What is laid out so far, and the columns that wait for their bus."""
 
     placed: list[Placed] = field(default_factory=list)
     tracks: list[Track] = field(default_factory=list)
     vias: list[Via] = field(default_factory=list)
-    columns: list[Column] = field(default_factory=list)
+    columns: list[BusColumn] = field(default_factory=list)
 
     def path(self, net: str, *points: Point, width: float = TRACK, layer: str = TOP) -> None:
         steps = [rounded(p) for p in points]
@@ -83,18 +83,18 @@ class Sheet:
         self.placed.append(placed)
         return {pad.number: placed.pad_at(pad) for pad in placed.footprint.pads}
 
-    def moved(self, x: float, y: float, turned: bool = False) -> Sheet:
+    def moved(self, x: float, y: float, turned: bool = False) -> Routing:
         """The same, moved; `turned` by 180 degrees about the corner first."""
         f = -1 if turned else 1
 
         def at(p: Point) -> Point:
             return rounded((x + f * p[0], y + f * p[1]))
 
-        return Sheet(
+        return Routing(
             [replace(p, at=at(p.at), turn=(p.turn + 90 - 90 * f) % 360) for p in self.placed],
             [replace(t, start=at(t.start), end=at(t.end)) for t in self.tracks],
             [replace(v, at=at(v.at)) for v in self.vias],
-            [Column(c.net, *at((c.x, c.y))) for c in self.columns],
+            [BusColumn(c.net, *at((c.x, c.y))) for c in self.columns],
         )
 
     def extent(self) -> tuple[float, float]:
@@ -104,12 +104,12 @@ class Sheet:
         halves += [(c.y, TRACK / 2 + CLEARANCE) for c in self.columns]
         return min(y - h for y, h in halves), max(y + h for y, h in halves)
 
-    def add(self, other: Sheet) -> None:
+    def add(self, other: Routing) -> None:
         for mine, new in zip(vars(self).values(), vars(other).values()):
             mine.extend(new)
 
 
-def _cell(sheet: Sheet, board: dict[str, Component], c: int, x0: float, pins: Sequence[Point]) -> None:
+def _cell(sheet: Routing, board: dict[str, Component], c: int, x0: float, pins: Sequence[Point]) -> None:
     """Channel c between its three pins and its three columns."""
     red, plus, minus, foot = (f"CH{c}_{end}" for end in ("RED", "PLUS", "MINUS", "FOOT"))
     one, two, three, link = (board[f"R{10 * c + k}"] for k in (1, 2, 3, 4))
@@ -142,9 +142,9 @@ def _cell(sheet: Sheet, board: dict[str, Component], c: int, x0: float, pins: Se
     x, y2 = switch["source"]
     sheet.via("GND", (x, y2), (x, y2 + 1.35))
     sheet.columns += [
-        Column(plus, x0 + PLUS, r4["2"][1]),
-        Column(f"GATE{c}", x0 + GATE, switch["gate"][1]),
-        Column(minus, x0 + MINUS, jog),
+        BusColumn(plus, x0 + PLUS, r4["2"][1]),
+        BusColumn(f"GATE{c}", x0 + GATE, switch["gate"][1]),
+        BusColumn(minus, x0 + MINUS, jog),
     ]
     x, y2 = switch["gate"]
     sheet.path(f"GATE{c}", (x, y2), (x0 + GATE, y2))
@@ -158,7 +158,7 @@ class Strip:
     closed: list[float]
     x: float
     y: float  # of the circuits' middles
-    sheet: Sheet = field(default_factory=Sheet)
+    sheet: Routing = field(default_factory=Routing)
 
     def column(self, net: str, x: float, y: float, step: float = 0.0) -> float:
         """At x, or by steps from there the first place that is open; raises ValueError where x is closed."""
@@ -167,7 +167,7 @@ class Strip:
                 raise ValueError
             x = round(x + step, 3)
         self.closed.append(x)
-        self.sheet.columns.append(Column(net, x, y))
+        self.sheet.columns.append(BusColumn(net, x, y))
         return x
 
     def is_open(self, x: float) -> bool:
@@ -278,7 +278,7 @@ class Strip:
                 self.column(pin.net, here[0], here[1])
 
 
-def _rows(columns: Iterable[Column]) -> dict[str, int]:
+def _rows(columns: Iterable[BusColumn]) -> dict[str, int]:
     """Of a bus: each net's row, by the left-edge rule."""
     reach: dict[str, tuple[float, float]] = {}
     for c in columns:
@@ -294,7 +294,7 @@ def _rows(columns: Iterable[Column]) -> dict[str, int]:
 
 
 def _bus(
-    sheet: Sheet, columns: Sequence[Column], passing: Sequence[Column], rows: dict[str, int], y: float
+    sheet: Routing, columns: Sequence[BusColumn], passing: Sequence[BusColumn], rows: dict[str, int], y: float
 ) -> None:
     """Columns down or up to their net's row, and the row."""
     places: dict[str, set[float]] = {}
@@ -309,7 +309,7 @@ def _bus(
         sheet.path(net, *((x, y + ROW * rows[net]) for x in sorted(xs)), layer=BOTTOM)
 
 
-def _card(sheet: Sheet, board: dict[str, Component], middle: float, y: float) -> None:
+def _card(sheet: Routing, board: dict[str, Component], middle: float, y: float) -> None:
     """The connector to the card with what belongs to its pins."""
     connector = board["J1"]
     at = sheet.place(connector, (middle, y))
@@ -333,13 +333,13 @@ def _card(sheet: Sheet, board: dict[str, Component], middle: float, y: float) ->
             first = net == down.net("1")
             other = sheet.place(down, (x, y - 7.4), 90 if first else 270)
         else:
-            sheet.columns.append(Column(net, x, y))
+            sheet.columns.append(BusColumn(net, x, y))
             continue
         near, far = ("1", "2") if down.net("1") == net else ("2", "1")
         sheet.path(net, end, other[near])
         sheet.path(net, end, (x + PIN / 2, end[1]))
         sheet.via(down.net(far), other[far], (x, other[far][1] - 1.3))
-        sheet.columns.append(Column(net, x + PIN / 2, end[1]))
+        sheet.columns.append(BusColumn(net, x + PIN / 2, end[1]))
 
 
 SELECTING = ("U2", "U3", "C3", "C4", "C5")
@@ -349,12 +349,12 @@ def lay_out(circuit: Netlist, outline: BoardOutline) -> BoardCopper:
     """Raises CheckFailure where the board is too small for it."""
     board = {c.designator: c for c in circuit.components}
     width, height = outline.width, outline.height
-    whole, lead_pins = Sheet(), footprint(board["J2"].footprint).pads
+    whole, lead_pins = Routing(), footprint(board["J2"].footprint).pads
     pins = whole.place(board["J2"], (width / 2, LEADS_FROM_EDGE))
     x0 = width / 2 + lead_pins[0].x - PIN / 2
-    for c in range(1, sum(1 for _ in circuit.of_kind("switch")) + 1):
+    for c in range(1, sum(p.kind == "switch" for p in circuit.components) + 1):
         _cell(whole, board, c, x0 + (c - 1) * CELL, [pins[str(3 * c - 2 + i)] for i in range(3)])
-    card = Sheet()
+    card = Routing()
     _card(card, board, width / 2, 0.0)
     selecting, reading, passing = _strips(board, width, whole.columns, card.columns)
 
@@ -383,8 +383,8 @@ def lay_out(circuit: Netlist, outline: BoardOutline) -> BoardCopper:
 
 
 def _strips(
-    board: dict[str, Component], width: float, cells: list[Column], card: list[Column]
-) -> tuple[Sheet, Sheet, list[Column]]:
+    board: dict[str, Component], width: float, cells: list[BusColumn], card: list[BusColumn]
+) -> tuple[Routing, Routing, list[BusColumn]]:
     """Multiplexer and decoder; amplifier and the bridges' supply; columns through both buses. All by their
     middles, the second yet to be turned."""
     through = Strip(board, [c.x for c in (*cells, *card)], LEFT, 0.0)

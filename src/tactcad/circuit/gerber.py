@@ -29,7 +29,7 @@ Line = tuple[Point, Point, float]
 
 
 def gerber_files(board: BoardCopper, name: str, date: str) -> dict[str, bytes]:
-    """Every layer and both drill files by name."""
+    """Every layer and both drill files; `name` is printed on the board."""
     pads = [(at, *placed.size(pad), pad.round, pad) for placed, pad, at, _ in board.pads]
     vias = [(v.at, VIA, VIA, True) for v in board.vias]
     through: list[Flash] = [(at, w, h, r) for at, w, h, r, pad in pads if pad.drill]
@@ -51,12 +51,12 @@ def gerber_files(board: BoardCopper, name: str, date: str) -> dict[str, bytes]:
     corners = board.corners()
     edge = [(a, b, OUTLINE) for a, b in zip(corners, corners[1:] + corners[:1])]
     made["Edge_Cuts"] = _layer(board, "Edge_Cuts", date, [], edge)
-    files = {f"{name}-{layer}.gbr": data for layer, data in made.items()}
+    files = {f"{layer}.gbr": data for layer, data in made.items()}
     plated = [(VIA_DRILL, v.at, "ViaDrill") for v in board.vias]
     plated += [(pad.drill, at, "ComponentDrill") for _, pad, at, _ in board.pads if pad.drill]
     bare = [(d, (x, y), "MechanicalDrill") for x, y, d in board.holes]
-    files[f"{name}-PTH.drl"] = _drills(board, date, plated, "Plated,1,4,PTH")
-    files[f"{name}-NPTH.drl"] = _drills(board, date, bare, "NonPlated,1,4,NPTH")
+    files["PTH.drl"] = _drills(board, date, plated, "Plated,1,4,PTH")
+    files["NPTH.drl"] = _drills(board, date, bare, "NonPlated,1,4,NPTH")
     return files
 
 

@@ -38,14 +38,14 @@ from tactcad.parts.bought.electronic_parts import (
     REFERENCE,
     RESERVOIR,
     SERIES,
-    SET_AMPERE,
     SET_RESISTOR,
     TO_CARD,
     TO_LEADS,
+    WIRE_LINK,
     completion_resistance,
     gain_resistance,
-    nearest_e192,
     set_gain,
+    supply_resistance,
 )
 
 from .netlist import GROUND, Component, Kind, Netlist, Pin
@@ -92,8 +92,8 @@ def lines(part: Multiplexer) -> tuple[str, ...]:
     return (*(f"A{i}" for i in range(len(part.address))), "ENABLE")
 
 
-def _two(
-    designator: str, kind: Kind, value: str, part_no: str, nets: tuple[str, str], package: str,
+def two(
+    designator: str, kind: Kind, value: str, part_no: str, nets: tuple[str, str], package: str = "",
     fitted: bool = True, **figures: float,
 ) -> Component:  # fmt: skip
     """A component with two pins."""
@@ -110,13 +110,14 @@ def _channel(design: Design, c: int, used: bool, wires: int) -> Iterator[Compone
     for k, nets in enumerate(((red, EXCITATION), (minus, EXCITATION), (foot, minus)), start=1):
         name = f"R{10 * c + k}"
         if used:
-            yield _two(name, "resistor", f"{arm:g} ohm", COMPLETION, nets, package, ohm=arm)
+            yield two(name, "resistor", f"{arm:g} ohm", COMPLETION, nets, package, ohm=arm)
         elif k < 3:
-            yield _two(name, "resistor", "0 ohm link", LINK, nets, package, ohm=1e-3)
+            link = LINK if package == "0805" else WIRE_LINK
+            yield two(name, "resistor", "0 ohm link", link, nets, package, ohm=1e-3)
         else:
-            yield _two(name, "resistor", "left off", COMPLETION, nets, package, False, ohm=1e12)
+            yield two(name, "resistor", "left off", COMPLETION, nets, package, False, ohm=1e12)
     linked = wires == 2 or not used
-    yield _two(
+    yield two(
         f"R{10 * c + 4}", "resistor", "0 ohm", LINK, (red, plus), "0805", linked, ohm=1e-3 if linked else 1e12
     )
     on = {"gate": f"GATE{c}", "source": GROUND, "drain": foot}
@@ -153,7 +154,7 @@ def _amplifier(design: Design) -> Iterator[Component]:
     value = f"{amplifier.name}, gain {gain:.6g}"
     yield Component("U1", "amplifier", value, amplifier.mpn, pins, figures, footprint="SOIC-8")
     if resistance:
-        yield _two(
+        yield two(
             "R1", "resistor", f"{resistance:g} ohm", GAIN_RESISTOR, (first, second), "0805", ohm=resistance
         )
 
@@ -192,33 +193,34 @@ def _decoder(part: Multiplexer) -> Component:
 
 
 def _reference(design: Design) -> Iterator[Component]:
-    ohm = nearest_e192(design.readout.excitation / SET_AMPERE)
+    ohm = supply_resistance(design)
     pins = tuple(Pin(number, role, net) for role, number, net in REFERENCE_PINS)
-    yield Component("U4", "regulator", "LT3042", REFERENCE, pins, footprint="MSOP-10-EP")
-    yield _two("R2", "resistor", f"{ohm:g} ohm", SET_RESISTOR, ("SET", GROUND), "0805", ohm=ohm)
+    figures = (("volts", design.readout.excitation),)
+    yield Component("U4", "regulator", "LT3042", REFERENCE, pins, figures, footprint="MSOP-10-EP")
+    yield two("R2", "resistor", f"{ohm:g} ohm", SET_RESISTOR, ("SET", GROUND), "0805", ohm=ohm)
 
 
 def _around(design: Design, part: Multiplexer) -> Iterator[Component]:
     """Filter, series and pull-down resistors, capacitors, diodes."""
     for name, end in (("R3", "PLUS"), ("R4", "MINUS")):
         nets = (f"SEL_{end}", f"IN_{end}")
-        yield _two(name, "resistor", f"{FILTER_OHM:g} ohm", FILTER_RESISTOR, nets, "0805", ohm=FILTER_OHM)
+        yield two(name, "resistor", f"{FILTER_OHM:g} ohm", FILTER_RESISTOR, nets, "0805", ohm=FILTER_OHM)
     for k, line in enumerate(lines(part)):
-        yield _two(f"R{5 + k}", "resistor", "1 kohm", SERIES, (line + OUTSIDE, line), "0805", ohm=1e3)
-        yield _two(f"R{91 + k}", "resistor", "100 kohm", PULL_DOWN, (line, GROUND), "0805", ohm=1e5)
+        yield two(f"R{5 + k}", "resistor", "1 kohm", SERIES, (line + OUTSIDE, line), "0805", ohm=1e3)
+        yield two(f"R{91 + k}", "resistor", "100 kohm", PULL_DOWN, (line, GROUND), "0805", ohm=1e5)
     for k, rail in enumerate((POSITIVE, NEGATIVE, POSITIVE, NEGATIVE, LOGIC), start=1):
-        yield _two(f"C{k}", "capacitor", "100 nF", DECOUPLING, (rail, GROUND), "0805", farad=1e-7)
+        yield two(f"C{k}", "capacitor", "100 nF", DECOUPLING, (rail, GROUND), "0805", farad=1e-7)
     for name, rail in (("C6", POSITIVE), ("C7", EXCITATION)):
-        yield _two(name, "capacitor", "10 uF", RESERVOIR, (rail, GROUND), "1206", farad=1e-5)
-    yield _two("C8", "capacitor", "100 nF", DECOUPLING, ("SET", GROUND), "0805", farad=1e-7)
-    yield _two("C9", "capacitor", "100 pF", ANTI_ALIAS, ("IN_PLUS", "IN_MINUS"), "0805", farad=1e-10)
+        yield two(name, "capacitor", "10 uF", RESERVOIR, (rail, GROUND), "1206", farad=1e-5)
+    yield two("C8", "capacitor", "100 nF", DECOUPLING, ("SET", GROUND), "0805", farad=1e-7)
+    yield two("C9", "capacitor", "100 pF", ANTI_ALIAS, ("IN_PLUS", "IN_MINUS"), "0805", farad=1e-10)
     # pin 1 is the cathode
     for name, nets in (
         ("D1", (POSITIVE, EXCITATION)),
         ("D2", (GROUND, NEGATIVE)),
         ("D3", (POSITIVE, GROUND)),
     ):
-        yield _two(name, "diode", "1N5819HW", CLAMP, nets, "SOD-123")
+        yield two(name, "diode", "1N5819HW", CLAMP, nets, "SOD-123")
 
 
 def _connectors(part: Multiplexer) -> Iterator[Component]:

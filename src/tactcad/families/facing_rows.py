@@ -42,6 +42,8 @@ FAMILY = Family(
     pads=FamilyPads(places=Late("tactcad.lab.pads:pads_of"), springs=Late("tactcad.lab.pads:springs_of")),
     readout=FamilyReadout(
         netlist=Late("tactcad.circuit.bridges:netlist"),
+        boards=Late("tactcad.circuit.boards:laid_out"),
+        supplies=Late("tactcad.parts.array.supplies:electronic_supplies"),
         wiring=Late("tactcad.circuit.netlist_files:wiring"),
         sheets=Late("tactcad.drawing.circuit_sheets:circuit_written"),
         signals=Late("tactcad.review.effect:signals"),

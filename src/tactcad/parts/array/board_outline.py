@@ -16,6 +16,7 @@ from dataclasses import dataclass
 
 from tactcad.design.sensing import MULTIPLEXERS
 
+from ..bought.electronic_parts import CARD_SIGNALS
 from .layout import Layout
 
 Place = tuple[float, float]
@@ -51,9 +52,14 @@ class BoardOutline:
 
 
 def lead_pins(layout: Layout) -> int:
-    """Of a board's lead connector: three a channel, and one each for the cable's shield and the array's
+    """Of a board's lead connector: three a channel, and one each for the leads' shield and the array's
     metal."""
     return 3 * MULTIPLEXERS[layout.design.readout.multiplexer].channels + 2
+
+
+def card_pins(layout: Layout) -> int:
+    """Of a board's connector to the converter's card."""
+    return CARD_SIGNALS + len(MULTIPLEXERS[layout.design.readout.multiplexer].address)
 
 
 def board_outline(layout: Layout) -> BoardOutline:
