@@ -13,7 +13,7 @@ from .parser import add_needless_allowance, allowance
 
 if TYPE_CHECKING:
     from tactcad.design.family import FamilyReadings
-    from tactcad.design.tree import Design
+    from tactcad.design.tree import CommonTables
     from tactcad.lab.load_cell import LoadCell
 
 EXAMPLES = """\
@@ -115,7 +115,7 @@ def _load_cell(given: str | None, design: str | None) -> LoadCell:
     return cell
 
 
-def _readings_of(source: str) -> tuple[FamilyReadings, Design]:
+def _readings_of(source: str) -> tuple[FamilyReadings, CommonTables]:
     """What the family of a design makes of readings, and the design."""
     from tactcad.design.family import family_of
     from tactcad.parts.designs import load

@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 
 from tactcad.design.family import family_of
-from tactcad.design.tree import Design
+from tactcad.design.tree import CommonTables
 from tactcad.parts.array import seating
 from tactcad.parts.language.description import Part, Vector, vector
 from tactcad.parts.language.metric import METRIC
@@ -107,14 +107,14 @@ def _coming(scene: Scene, step: Step) -> tuple[Placement, ...]:
     )
 
 
-def torque(part: Part, design: Design) -> float | None:
+def torque(part: Part, design: CommonTables) -> float | None:
     """Tightening torque of a screw or nut, N m; None for other parts, 0 for a set screw that only touches."""
     if part.kind == "set screw":
         return seating.torque(family_of(design).layout(design))
     return METRIC[part.thread].torque if part.thread else None
 
 
-def tools(design: Design, scene: Scene) -> list[str]:
+def tools(design: CommonTables, scene: Scene) -> list[str]:
     """What the steps need: drivers of the screws and nuts that they place, torques, and their other tools."""
     ready = {d for step in scene.steps for d in step.ready}
     drivers: dict[tuple[str, float], list[str]] = {}
@@ -142,7 +142,7 @@ def sensing_face_map(scene: Scene) -> bytes | None:
     return svg_bytes(face_map(array, f"{scene.name}-{MAP}"))
 
 
-def page(design: Design, scene: Scene) -> bytes:
+def page(design: CommonTables, scene: Scene) -> bytes:
     """The guide as one HTML page; its pictures lie beside it."""
     style = Path(__file__).with_suffix(".css").read_text("utf-8")
     d = design.design
@@ -173,7 +173,7 @@ def page(design: Design, scene: Scene) -> bytes:
     ).encode()
 
 
-def _section(design: Design, scene: Scene, number: int, step: Step) -> str:
+def _section(design: CommonTables, scene: Scene, number: int, step: Step) -> str:
     lines = [f"<section><h2>{number}. {escape(step.title)}</h2>", f"<p>{escape(step.text)}</p>"]
     for said, what in zip(("Fixes", "Leaves adjustable"), settles(scene, number - 1)):
         if what:
@@ -191,7 +191,7 @@ def _section(design: Design, scene: Scene, number: int, step: Step) -> str:
     return "\n".join([*lines, "</section>"])
 
 
-def _table(design: Design, scene: Scene, step: Step) -> str:
+def _table(design: CommonTables, scene: Scene, step: Step) -> str:
     rows: dict[str, tuple[Part, list[str]]] = {}
     for p in scene.placements:
         if p.designator in step.designators and p.designator not in step.ready:

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 from tactcad.design.family import family_of
 from tactcad.design.messages import CheckFailure
-from tactcad.design.tree import Design
+from tactcad.design.tree import CommonTables
 from tactcad.parts.language.description import NOT_MADE, Extrusion, ModelFile, Part, Revolution
 from tactcad.scenes import make_scene
 from tactcad.scenes.rig import ARRAY
@@ -59,7 +59,7 @@ class Batch:
 class Plan:
     """What an export is of: a design, what is asked for, its scenes at their detail, the parts' shapes."""
 
-    design: Design
+    design: CommonTables
     options: ExportOptions
     scenes: Sequence[Scene]
     shapes: Shapes
@@ -349,7 +349,7 @@ def circuit_sheets(plan: Plan) -> Iterator[Batch]:
     yield _drawing(f"{plan.design.name}-circuit_{plan.revision}", "", key, make, FILES, 100)
 
 
-def _tables(design: Design, *names: str) -> tuple:
+def _tables(design: CommonTables, *names: str) -> tuple:
     """Of these tables those that the family's designs have."""
     return tuple(getattr(design, name, None) for name in names)
 

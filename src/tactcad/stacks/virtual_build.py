@@ -12,7 +12,7 @@ from scipy.special import betaincinv
 
 from tactcad.design.family import Family, family_of
 from tactcad.design.load import paths
-from tactcad.design.tree import Design
+from tactcad.design.tree import CommonTables
 from tactcad.mechanics.section import Array
 from tactcad.parts.array.layout import Layout
 from tactcad.scenes import make_scene, scene_names
@@ -162,7 +162,7 @@ class Sensor:
         )
 
 
-def sensor(design: Design, scenes: Sequence[Scene] | None = None) -> Sensor:
+def sensor(design: CommonTables, scenes: Sequence[Scene] | None = None) -> Sensor:
     """A design's array, and the rigs of these scenes (by default all), ready to be built virtually."""
     family = family_of(design)
     layout = family.layout(design)
