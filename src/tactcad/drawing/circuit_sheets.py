@@ -15,11 +15,8 @@ from math import ceil
 from tactcad.circuit.bridges import netlist
 from tactcad.circuit.netlist import GROUND, Component, Netlist
 from tactcad.circuit.netlist_files import wiring
-<<<<<<< HEAD
 from tactcad.circuit.read_board import LOGIC, NEGATIVE, POSITIVE
-=======
 from tactcad.design.family import taken_as
->>>>>>> origin/main
 from tactcad.design.messages import CheckFailure
 from tactcad.design.sensing import MULTIPLEXERS
 from tactcad.design.tree import CommonTables, Design
