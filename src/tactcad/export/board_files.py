@@ -14,7 +14,7 @@ from tactcad.circuit.gerber import FUNCTIONS, gerber_files, places_csv
 from tactcad.circuit.kicad_board import board_bytes
 from tactcad.circuit.netlist import Component
 from tactcad.design.messages import CheckFailure
-from tactcad.design.tree import Design
+from tactcad.design.tree import CommonTables
 from tactcad.parts.bought.supply import Supply
 
 from .circuit_files import Nets, check_nets, kicad_file
@@ -26,7 +26,7 @@ ENDS = (".kicad_pcb", ".net", "-bill.csv", "-places.csv")
 BARE = (*(f"gerber/{layer}.gbr" for layer in FUNCTIONS), "gerber/PTH.drl", "gerber/NPTH.drl", "outline.dxf")
 
 
-def files_of(board: BoardCopper, design: Design, supplies: Iterable[Supply]) -> tuple[bytes, ...]:
+def files_of(board: BoardCopper, design: CommonTables, supplies: Iterable[Supply]) -> tuple[bytes, ...]:
     """The files of a board as it is fitted, in the order of ENDS."""
     d = design.design
     kicad = board_bytes(board, printed_name(design), d.title, d.date, d.revision)
@@ -34,14 +34,14 @@ def files_of(board: BoardCopper, design: Design, supplies: Iterable[Supply]) -> 
     return kicad, kicad_file(design, board.netlist), bill_csv(board, supplies), places_csv(board)
 
 
-def bare_files(board: BoardCopper, design: Design) -> list[bytes]:
+def bare_files(board: BoardCopper, design: CommonTables) -> list[bytes]:
     """The files of the bare board, in the order of BARE."""
     made = gerber_files(board, printed_name(design), design.design.date)
     check_flashes(board, made)
     return [*(made[path.removeprefix("gerber/")] for path in BARE[:-1]), outline_dxf(board)]
 
 
-def printed_name(design: Design) -> str:
+def printed_name(design: CommonTables) -> str:
     return f"{design.name}-board {design.design.revision}"
 
 

@@ -46,7 +46,7 @@ def wiring_file(design: CommonTables, circuit: Netlist) -> bytes:
     return data
 
 
-def harness_file(design: Design, circuit: Netlist) -> bytes:
+def harness_file(design: CommonTables, circuit: Netlist) -> bytes:
     """Every wire with both its ends."""
     family = family_of(design)
     return harness_csv(circuit, family.must("readout", "export").wiring(family.layout(design), circuit))
