@@ -68,8 +68,10 @@ def test_an_amplifier_whose_inputs_float_is_found(designator, role, net, when):
 def test_the_resolution_by_hand():
     """Two standard deviations of ten averaged samples; drift of gauge, three arms, amplifier and leads, V."""
     d = read("macro-array")
-    noise = (0.000513149**2 + (10 / 65536) ** 2 / 12) ** 0.5 / 10**0.5
-    drifts = (67.5 * 2.1 * 1e-6, 67.5 * 3**0.5 * 1e-6, 100 * 1e-6, 67.5 * 1.1e-5)
+    noise = (0.000513149**2 + (140e-6) ** 2 + (10 / 65536) ** 2 / 12) ** 0.5 / 10**0.5
+    leads = 0.205 * 1.361 / 120 * 0.0039 * 0.5  # the longest is cut to 205 mm
+    supply = 0.001 * 0.235028  # of the largest imbalance: 0.3 % of the gauge, three arms of 0.01 %, 125 uV
+    drifts = (67.5 * 2.1 * 1e-6, 67.5 * 3**0.5 * 1e-6, 100 * 1e-6, supply, 67.5 * leads)
     volts = (4 * noise**2 + sum(v**2 for v in drifts)) ** 0.5
     from tactcad.circuit.element_signals import element_signals
 
