@@ -401,7 +401,7 @@ BAD: dict[str, Bad] = {
     "strain-relief": Bad("circuit", "leads not bonded", lambda: circuit(wiring__bonded=0.0), CIRCUIT),
     "signal-range": Bad("signals", "a converter of 0.9 V", lambda: signals(readout__adc_range=0.9), CIRCUIT),
     "force-resolution": Bad(
-        "signals", "3 mN wished for", lambda: signals(readout__force_resolution=3.0), CIRCUIT
+        "signals", "2 mN wished for", lambda: signals(readout__force_resolution=2.0), CIRCUIT
     ),
     "deflection": Bad("rigidity", "a holder's lid of 2 mm", rigidity, "tests/checks/test_rigidity.py"),
     "calibration": Bad(
