@@ -9,6 +9,7 @@ from bad_parts import BAD
 from variants import variant
 
 from tactcad.checks.facing_rows.circuit import check_bridges, check_circuit, check_inputs, check_signals
+from tactcad.checks.facing_rows.gauge_limits import check_gauges, parts_used
 from tactcad.circuit.bridges import netlist
 from tactcad.circuit.netlist import Netlist
 from tactcad.design.load import names, read
@@ -77,6 +78,32 @@ def test_the_resolution_by_hand():
 
     for signal in element_signals(Layout(d)):
         assert signal.resolution * signal.per_force == pytest.approx(volts, rel=1e-5)
+
+
+def test_no_unread_figure_decides_a_check_without_a_word(monkeypatch):
+    """Every part that checks ask for figures is named while one of them is unread, and no other."""
+    from tactcad.design import sensing
+
+    design = read("macro-array")
+    tables = {k: v for k, v in vars(sensing).items() if isinstance(v, dict) and k.isupper()}
+    bought = {k: v for k, v in tables.items() if all(isinstance(p, sensing.Bought) for p in v.values())}
+    assert set(bought) == {"AMPLIFIERS", "SWITCHES", "MULTIPLEXERS", "COMPLETIONS", "FOILS"}
+    (told,) = (f for f in check_gauges(design) if f.check == "unread-figures")
+    chosen = [p for p in parts_used(design).values()]
+    assert len(chosen) == len(bought) and all(p.name in told.message for p in chosen)
+    for table in bought.values():  # as if each had been read
+        for name, part in table.items():
+            monkeypatch.setitem(table, name, replace(part, verified=True))
+    assert not [f for f in check_gauges(design) if f.check == "unread-figures" or "unread" in f.message]
+
+
+def test_the_gauges_own_limits_are_flagged():
+    """By hand: 2419 e-6 at 2 N on the 4 mm arm, above the 1500 e-6 at which makers try their gauges."""
+    found = {f.check: f for f in check_gauges(read("macro-array"))}
+    assert set(found) == {"gauge-fatigue", "unread-figures"}
+    assert found["gauge-fatigue"].value > 2419e-6 > found["gauge-fatigue"].limit == 0.0015
+    assert "10 of 10" in found["gauge-fatigue"].message and "unread" in found["gauge-fatigue"].message
+    assert "gauge-strain" in {f.check for f in BAD["gauge-strain"].find()}
 
 
 def test_two_wires_drift_more():

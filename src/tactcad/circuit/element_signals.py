@@ -22,6 +22,7 @@ class ElementSignal:
     per_force   V/N behind the amplifier, at no load
     rated       least and largest output at the rated force, V, of either sign, tolerances at their worst
     overload    likewise with the stop closed under the overload force
+    rated_strain, overload_strain   of the foil at these two
     resolution  N: two standard deviations of a reading, and drift, by the root of their squares
     """
 
@@ -30,6 +31,8 @@ class ElementSignal:
     rated: tuple[float, float]
     overload: tuple[float, float]
     resolution: float
+    rated_strain: float
+    overload_strain: float
 
 
 def smallest_output(layout: Layout) -> float:
@@ -57,11 +60,16 @@ def element_signals(layout: Layout) -> list[ElementSignal]:
     found = []
     for i, state in enumerate(overloads(layout)):
         per_force = volts * float(foil[i])
-        at_rated = gauge.factor * float(foil[i]) * state.rated_force
-        at_overload = gauge.factor * float(bent[i]) * state.deflection
+        strains = float(foil[i]) * state.rated_force, float(bent[i]) * state.deflection
+        at_rated, at_overload = (gauge.factor * strain for strain in strains)
         found.append(
             ElementSignal(
-                state.place, per_force, extremes(at_rated), extremes(at_overload), least / abs(per_force)
+                state.place,
+                per_force,
+                extremes(at_rated),
+                extremes(at_overload),
+                least / abs(per_force),
+                *strains,
             )
         )
     return found

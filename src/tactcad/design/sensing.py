@@ -125,6 +125,16 @@ class Completion(Bought):
 
 
 @dataclass(frozen=True)
+class Foil(Bought):
+    """A gauge's grid on its backing: largest strain, and the strain plus and minus at which it bears so many
+    cycles."""
+
+    strain: float
+    fatigue: float
+    cycles: float
+
+
+@dataclass(frozen=True)
 class Wire:
     """Lead wire: conductor and insulation mm, ohm/m."""
 
@@ -201,6 +211,10 @@ COMPLETIONS = {
     )
     for row in _rows("completions")
 }
+FOILS = {
+    row["name"]: Foil(**_bought(row), **_numbers(row, "strain", "fatigue", "cycles"))
+    for row in _rows("foils")
+}
 WIRES = {
     row["name"]: Wire(row["name"], **_numbers(row, "diameter", "outer", "ohm_per_metre"))
     for row in _rows("wires")
@@ -213,6 +227,9 @@ class StrainGauge:
 
     resistance: float = given(Number("ohm", 10, 10000, "gauge resistance"), 120.0)
     factor: float = given(Number("", 0.5, 200, "gauge factor"), 2.1)
+    foil: str = given(
+        OneOf(tuple(FOILS), "grid and backing, for the strain that they bear"), "constantan on polyimide"
+    )
     grid_length: float = given(Number("mm", 0.01, 10, "active grid length, centred on the hinge"), 0.5)
     grid_width: float = given(Number("mm", 0.01, 20, "grid width"), 0.65)
     grid_height: float = given(Number("mm", 0, 0.5, "backing and adhesive: foil over the hinge's face"), 0.03)
