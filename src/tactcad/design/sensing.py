@@ -125,6 +125,22 @@ class Completion(Bought):
 
 
 @dataclass(frozen=True)
+class Converter(Bought):
+    """A sigma-delta converter; noise V rms at the input at a gain and a rate (Hz), drift V/K, clock Hz."""
+
+    inputs: int
+    bits: int
+    gains: tuple[float, ...]
+    noise: float
+    noise_gain: float
+    noise_rate: float
+    clock: float
+    drift: float
+    ratiometric: bool
+    source: str
+
+
+@dataclass(frozen=True)
 class Foil(Bought):
     """A gauge's grid on its backing: largest strain, and the strain plus and minus at which it bears so many
     cycles."""
@@ -210,6 +226,20 @@ COMPLETIONS = {
         **_numbers(row, "tolerance", "drift", "watts"),
     )
     for row in _rows("completions")
+}
+CONVERTERS = {
+    row["name"]: Converter(
+        **_bought(row),
+        inputs=int(row["inputs"]),
+        bits=int(row["bits"]),
+        gains=tuple(map(float, row["gains"].split())),
+        noise=float(row["noise_nV"]) * 1e-9,
+        drift=float(row["drift_nV"]) * 1e-9,
+        ratiometric=row["ratiometric"] == "true",
+        source=row["source"],
+        **_numbers(row, "noise_gain", "noise_rate", "clock"),
+    )
+    for row in _rows("converters")
 }
 FOILS = {
     row["name"]: Foil(**_bought(row), **_numbers(row, "strain", "fatigue", "cycles"))
@@ -328,6 +358,10 @@ class Readout:
     )
     excitation_drift: float = given(
         Number("", 0, 0.1, "relative change of the bridges' supply between zero and reading"), 0.001
+    )
+    converter: str = given(
+        OneOf(("card", *CONVERTERS), "a card behind the amplifier, or settings of a converter besides"),
+        "card",
     )
     inputs: int | None = given(
         Whole(1, 4096, "differential inputs of the converter's card"), None, "one for each board"
