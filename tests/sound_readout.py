@@ -72,6 +72,9 @@ def draw_readout(d: Draw) -> None:
     for path in ("readout.noise", "readout.temperature_span", "readout.force_resolution"):
         if d.once_in(2):
             d.number(path)
+    for path in ("adc_noise", "excitation_drift", "hum", "jitter"):
+        if d.once_in(2):
+            d.number(f"readout.{path}")
     d.number("readout.reference_mismatch")
 
 
@@ -94,6 +97,16 @@ def _times(d: Draw) -> None:
     on = d.number("readout.on_time", 2 * slowest, 50.0)
     d.number("readout.sample_rate", 2 * samples / on)
     d.number("readout.period", on)
+    most = d.table["readout.sample_rate"] / samples / 1.01
+    if d.once_in(2) and 2.3 / on < min(most, 1000.0) and most > 10.0:
+        d.number("readout.mains", 2.3 / on, most)
+    spread = (
+        1 / d.table["readout.mains"]
+        if "readout.mains" in d.table
+        else samples / d.table["readout.sample_rate"]
+    )
+    if d.once_in(2) and slowest < on - spread:
+        d.number("readout.instant", slowest, on - spread)
 
 
 def _power(d: Draw) -> float:

@@ -190,7 +190,10 @@ def _amplifier(row: dict[str, str]) -> Amplifier:
         **_numbers(row, *same, "least_supply", "most_supply", "settling"),
         noise_in=float(row["noise_in"]) * 1e-9,
         noise_out=float(row["noise_out"]) * 1e-9,
-        **{n: float(row[n]) * 1e-6 for n in ("offset_in", "offset_out", "drift_in", "drift_out")},
+        offset_in=float(row["offset_in"]) * 1e-6,
+        offset_out=float(row["offset_out"]) * 1e-6,
+        drift_in=float(row["drift_in"]) * 1e-6,
+        drift_out=float(row["drift_out"]) * 1e-6,
         input_capacitance=float(row["input_pF"]) * 1e-12,
         pins=_pins(row, "rg1", "minus", "plus", "negative", "ref", "out", "positive", "rg2"),
     )

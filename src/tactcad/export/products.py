@@ -211,12 +211,11 @@ def circuit_files(plan: Plan) -> Iterator[Batch]:
         path = f"circuit/{design.name}-{name.format(plan.revision)}"
         yield _one(Output(path, kind, "", f"{key} {path}"), partial(make, design, circuit))
     converter = getattr(getattr(design, "readout", None), "converter", "card")
-    for ending, make in (("h", settings_header), ("json", settings_json)) if converter != "card" else ():
+    for ending, settings in (("h", settings_header), ("json", settings_json)) if converter != "card" else ():
         path = f"circuit/{design.name}-{converter}_{plan.revision}.{ending}"
-        yield _one(
-            Output(path, "converter", "", f"{key} {path} {digest(design)}"),
-            partial(make, family.layout(design), converter),
-        )
+        made_of = digest(("converter", plan.shapes.made_by, design, path))
+        written = partial(settings, family.layout(design), converter)
+        yield _one(Output(path, "converter", "", made_of), written)
 
 
 @product(lambda plan: plan.options.guides)

@@ -334,8 +334,8 @@ def switching_settles(layout: Layout) -> Iterator[Finding]:
         what = f"{r.samples} samples in a period of the mains are more than readout.sample_rate gives"
         yield wrong("readout.samples", what, r.samples, f"at most {floor(r.sample_rate / r.mains)}")
     elif r.instant is not None and not settling - SAME <= r.instant <= r.on_time - sampling + SAME:
-        legal = f"from {settling:.3g} s, when the output has settled, to {r.on_time - sampling:.3g} s"
-        yield wrong("readout.instant", "samples do not lie in what is settled and powered", r.instant, legal)
+        span = f"from {settling:.3g} s, when the output has settled, to {r.on_time - sampling:.3g} s"
+        yield wrong("readout.instant", "samples do not lie in what is settled and powered", r.instant, span)
     elif r.mains is not None and r.on_time < least:
         what = f"settling takes {settling:.3g} s and a period of the mains {sampling:.3g} s"
         yield wrong("readout.on_time", what, r.on_time, f"at least {least * 1.005:.3g} s")
