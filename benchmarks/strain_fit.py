@@ -57,10 +57,8 @@ MARGIN, MARGIN_OF_FEW, FEW = (
     20,
 )  # stated error over the largest found, by climbs too: a climb of another seed found up to 1.2
 FEATURES = {"grid": 5, "fillet": 4, "stress": 4}  # of `strain.narrow`
-RIDGE, RIDGE_NARROW = (
-    1e-3,
-    1e-2,
-)  # share of the mean square: keeps coefficients small that few samples do not determine
+# share of the mean square: keeps coefficients small that few samples do not determine
+RIDGE, RIDGE_NARROW = 1e-3, 1e-2
 
 
 def draw(count: int = COUNT, seed: int = SEED) -> Columns:
