@@ -59,7 +59,7 @@ docs: environment ## the documentation as a site that opens offline: exports/doc
 reference: environment ## the published benchmarks again, in full, on a quiet machine: docs, benchmarks/results
 	$(BIN)/python benchmarks/bench.py --full --out exports/bench
 	$(BIN)/python benchmarks/publish.py exports/bench
-	$(BIN)/python benchmarks/interval_tables.py docs/validation.md
+	$(BIN)/python benchmarks/interval_tables.py benchmarks/results/intervals.md
 
 nightly: environment ## the long tests, a night by chance, and the kernel's tests on the kernel that comes next
 	@status=0; \

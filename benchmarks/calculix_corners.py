@@ -1,6 +1,6 @@
 """Eight designs in the corners of the accepted range by CalculiX's C3D20R beside the program's own rungs.
 
-    python benchmarks/calculix_corners.py docs/mechanics.md    a quarter of an hour; ccx must be installed
+    python benchmarks/calculix_corners.py benchmarks/results/calculix_corners.md    15 minutes; needs ccx
 
 Strain and stress are read from CalculiX's displacements as fem-solid's are.
 """

@@ -1,4 +1,6 @@
-"""How often intervals hold: `python benchmarks/interval_tables.py docs/validation.md` writes it there.
+"""How often intervals hold.
+
+    python benchmarks/interval_tables.py benchmarks/results/intervals.md
 
 Every row is hundreds of simulated labs with known truth, from a seed: the same bytes each time. A reason
 stands beside a figure where it is not what one expects of 95 %; which one is chosen by the figure.

@@ -26,7 +26,7 @@ from tactcad.mechanics.register import rungs
 from tactcad.report.report import sig
 
 REFERENCE = "benchmarks/results/reference.json"
-DOCUMENTS = ("docs/benchmarks.md", "docs/rigs.md", "docs/mechanics.md", "docs/checks.md")
+DOCUMENTS = ("docs/benchmarks.md", "docs/checks.md")
 
 # --- one table to choose from: rung, tessellation, detail level ---
 

@@ -1,4 +1,4 @@
-"""Corners of the accepted range by CalculiX: the table of docs/mechanics.md, and what stands in it."""
+"""Corners of the accepted range by CalculiX: benchmarks/results/calculix_corners.md, and what it says."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from calculix_corners import CORNERS, QUANTITIES, Compared, compared, stated
 
 from tactcad.mechanics import ladder, validity
 
-DOCUMENT = (Path(__file__).parents[2] / "docs" / "mechanics.md").read_text("utf-8")
+DOCUMENT = (Path(__file__).parents[2] / "benchmarks" / "results" / "calculix_corners.md").read_text("utf-8")
 
 
 def stored(corner):

@@ -14,7 +14,7 @@ from scipy.stats import binom
 from tactcad.lab.regression import fit_lines
 from tactcad.lab.simulate import Noise
 
-DOCUMENT = Path(__file__).parents[2] / "docs" / "validation.md"
+DOCUMENT = Path(__file__).parents[2] / "benchmarks" / "results" / "intervals.md"
 ARRAY = interval_tables.chosen(interval_tables.THREE)
 KINDS = {s.what: s.lab for s in interval_tables.STUDIES}
 # the elements share the load cell's error; one run is given more scatter than it has

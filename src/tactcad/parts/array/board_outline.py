@@ -1,0 +1,74 @@
+"""A read-out board as what carries it sees it: outline, holes, where the leads come in, how high it is.
+
+  W = width
++-------------------------------+  y = height
+| o     ::::::::::::::::      o |     leads come in over this edge
+|       lead connector          |
+|                               |
+| o     ::::::: to the card   o |
++-------------------------------+  y = 0
+x = 0
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from tactcad.design.sensing import MULTIPLEXERS
+
+from .layout import Layout
+
+Place = tuple[float, float]
+
+THICKNESS = 1.6  # mm; chosen: what every board house has in stock
+PITCH = 2.54  # of the headers' pins, mm
+HOLE, AT_CORNER = 3.2, 4.0  # mm: a hole for M3 (ISO 273, medium 3.4, fine 3.2), from both edges of its corner
+LEADS_FROM_EDGE = (
+    4.0  # mm, the lead connector's pins from the upper edge; chosen: the ties' holes beside them
+)
+HIGHEST = 8.5  # mm, pin headers: insulator 2.54 and pins of 6; the foil resistors are 8.3
+PIN_LENGTH = 1.4  # mm that soldered pins reach below the board; chosen: pins of 3 mm through 1.6 mm
+WIDTH, HEIGHT = 80.0, 85.0  # mm; chosen: what the routed board takes
+
+
+@dataclass(frozen=True)
+class BoardOutline:
+    """mm, from the lower left corner of the component side; `thickness` of the bare board.
+
+    holes: x, y, diameter. connector: the middle of the lead connector's row of pins, `connector_width` long;
+    leads leave along `connector_direction` in the board's plane. highest: of the parts above the board, no
+    plug in it; lowest: what stands out below it.
+    """
+
+    width: float
+    height: float
+    thickness: float
+    holes: tuple[tuple[float, float, float], ...]
+    connector: Place
+    connector_width: float
+    connector_direction: Place
+    highest: float
+    lowest: float
+
+
+def lead_pins(layout: Layout) -> int:
+    """Of a board's lead connector: three a channel, and one each for the cable's shield and the array's
+    metal."""
+    return 3 * MULTIPLEXERS[layout.design.readout.multiplexer].channels + 2
+
+
+def board_outline(layout: Layout) -> BoardOutline:
+    """Of each board that reads the array; all are alike."""
+    at = AT_CORNER
+    holes = tuple((x, y, HOLE) for y in (at, HEIGHT - at) for x in (at, WIDTH - at))
+    return BoardOutline(
+        WIDTH,
+        HEIGHT,
+        THICKNESS,
+        holes,
+        (WIDTH / 2, HEIGHT - LEADS_FROM_EDGE),
+        lead_pins(layout) * PITCH,
+        (0.0, 1.0),
+        HIGHEST,
+        PIN_LENGTH,
+    )
