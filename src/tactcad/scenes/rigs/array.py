@@ -221,9 +221,10 @@ def array_steps(layout: Layout, placed: Mapping[str, Sequence[Placement]]) -> tu
         tools: tuple[str, ...] = (),
         fan: int = 0,
         elements: bool = False,
+        limit: str = "",
     ) -> Step:
         names = tuple(p.designator for p in placed.get(title, ()))
-        return Step(title, names, explode, text, fan=fan, tools=tools, elements=elements)
+        return Step(title, names, explode, text, fan=fan, tools=tools, elements=elements, limit=limit)
 
     return (
         step(
@@ -243,6 +244,7 @@ def array_steps(layout: Layout, placed: Mapping[str, Sequence[Placement]]) -> tu
             _coplanar(layout, c),
             flatness_tools(layout),
             elements=True,
+            limit=f"All pads in one plane within {2 * d.tolerance.pad_height:g} mm",
         ),
         step(STOP_PLATE, (0, 0, 0.8 * width), _laying_stop_plate(layout)),
         step(
