@@ -79,12 +79,16 @@ class FamilyReadout:
     """What reads the elements.
 
     netlist  (layout) to the circuit
+    boards   (layout) to every different board, laid out
+    supplies (layout) to the lines of the bill of what the read-out takes
     wiring   (layout, circuit) to the bytes of the table of leads to cut
     sheets   orders of the circuit's drawing to what is written
     signals  (design) to V/N of every element
     """
 
     netlist: Late
+    boards: Late
+    supplies: Late
     wiring: Late
     sheets: Late
     signals: Late

@@ -46,6 +46,8 @@ FAMILY = Family(
     ),
     readout=FamilyReadout(
         netlist=Late("tactcad.circuit.bridges:netlist"),
+        boards=Late("tactcad.circuit.boards:laid_out"),
+        supplies=Late("tactcad.parts.array.supplies:electronic_supplies"),
         wiring=Late("tactcad.circuit.netlist_files:wiring"),
         sheets=Late("tactcad.drawing.circuit_sheets:circuit_written"),
         signals=Late("tactcad.review.effect:signals"),
