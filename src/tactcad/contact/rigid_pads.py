@@ -206,14 +206,16 @@ class ManyPresses:
         body: Body,
         others: np.ndarray | None = None,
     ) -> None:
-        """`others` replaces `between`."""
+        """`others` replaces `between`; `lifted` is not known then."""
         self.x, self.y, self.move, self.body = x, y, move, body
         self.law = pad_law(body.poisson, body.thickness, body.base, length, width)
         at = x.tobytes(), y.tobytes(), length, width, body.poisson, body.thickness, body.base
-        self.between, self.field = between(*at) if others is None else (others, None)
+        if others is not None:
+            self.between = others
+            return
+        self.between, self.field = between(*at)
         n, whole = len(x), self.law.spread[0, 0]
-        if self.field is not None:
-            self.whole = np.einsum("pa,ipjq,qb->iajb", whole, self.field, whole).reshape(3 * n, 3 * n)
+        self.whole = np.einsum("pa,ipjq,qb->iajb", whole, self.field, whole).reshape(3 * n, 3 * n)
 
     def lifted(self, r: np.ndarray) -> np.ndarray:
         """What pads at depths r change in the part that they have in each other's depth, [..., 3 pad, 3
