@@ -76,7 +76,8 @@ def test_every_command_of_a_page_is_one_that_the_program_takes(page):
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory) -> tuple[Path, set[str]]:
-    """The folder, and what was typed in it. A checkout's designs under git with a sensor of one's own, a study, a shop and a table of designs."""
+    """A folder, and what was typed in it: a checkout's designs under git, a sensor of one's own, a study, a
+    shop, a table of designs."""
     place = tmp_path_factory.mktemp("pages")
     shutil.copytree(ROOT / "hardware", place / "hardware")
     shutil.copytree(ROOT / "exports" / "golden", place / "exports" / "golden")
