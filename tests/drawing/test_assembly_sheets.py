@@ -332,7 +332,7 @@ def test_notes_give_torques_and_the_pads_procedure(assembly):
         assert f"{thread} {METRIC[thread].torque:g} N·m" in text
     if scene.name == "array":
         assert "Turn set screws in to M3 0.2 N·m" in text
-        assert "surface plate" in text and "feelers, 2 mm nominal" in text and "0.01 mm" in text
+        assert "surface plate" in text and "feelers, 2 mm nominal" in text and "setting fixture" in text
         assert "E4 arm 8" in text and "E10 arm 7" in text
 
 
