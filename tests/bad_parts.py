@@ -107,7 +107,7 @@ def cut_off() -> list[Finding]:
 
     from tactcad.checks.facing_rows.circuit import check_inputs
 
-    return list(check_inputs(moved("U12", "enable", "ENABLE1")))
+    return list(check_inputs(moved("A1-U2", "enable", "ENABLE1")))
 
 
 def missoldered() -> list[Finding]:

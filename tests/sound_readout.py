@@ -68,7 +68,7 @@ def draw_readout(d: Draw) -> None:
     fitting = [g for g in gains if g <= largest] or [gains[0]]
     d.put("readout.gain", d.choice(*fitting) if exact else d.between(gains[0], max(largest, gains[0])))
     d.put("readout.switch", d.choice("IRLML6244", "AO3400A"))
-    d.put("readout.multiplexer", d.choice("ADG1407", "ADG1409", "ADG407"))
+    d.put("readout.multiplexer", d.choice("ADG1407", "ADG1409"))
     for path in ("readout.noise", "readout.temperature_span", "readout.force_resolution"):
         if d.once_in(2):
             d.number(path)

@@ -44,11 +44,11 @@ def test_each_check_finds_its_bad_design(name):
     ("designator", "role", "net", "gauges"),
     [
         ("W31", "2", "E2_RED", {"B2", "B3"}),  # two gauges hang on one arm
-        ("R31", "1", "GND", {"B3"}),  # an arm that the supply does not feed
-        ("R33", "2", "E4_FOOT", {"B3", "B4"}),  # an arm in the next bridge
-        ("Q7", "drain", "E8_FOOT", {"B7", "B8"}),  # a bridge that nothing switches, one switched twice
-        ("U12", "S2A", "E1_PLUS", {"B2"}),  # a bridge that no channel reads
-        ("U12", "S2B", "E3_MINUS", {"B2"}),  # a channel across two bridges
+        ("A1-R31", "2", "GND", {"B3"}),  # an arm that the supply does not feed
+        ("A1-R33", "1", "E4_FOOT", {"B3", "B4"}),  # an arm in the next bridge
+        ("A2-Q2", "drain", "E8_FOOT", {"B7", "B8"}),  # a bridge that nothing switches, one switched twice
+        ("A1-U2", "S2A", "E1_PLUS", {"B2"}),  # a bridge that no channel reads
+        ("A1-U2", "S2B", "E3_MINUS", {"B2"}),  # a channel across two bridges
     ],
 )
 def test_a_gauge_must_be_in_one_bridge_that_is_read(designator, role, net, gauges):
@@ -57,7 +57,7 @@ def test_a_gauge_must_be_in_one_bridge_that_is_read(designator, role, net, gauge
 
 @pytest.mark.parametrize(
     ("designator", "role", "net", "when"),
-    [("U22", "enable", "ENABLE2", "ENABLE2 is low"), ("U12", "S7A", "SPARE", "S7A is addressed")],
+    [("A2-U2", "enable", "ENABLE2", "ENABLE2 is low"), ("A1-U2", "S7A", "SPARE", "S7A is addressed")],
 )
 def test_an_amplifier_whose_inputs_float_is_found(designator, role, net, when):
     assert list(check_inputs(SHIPPED)) == []

@@ -133,7 +133,7 @@ def test_inputs_rest_at_the_bridges_supply_while_no_switch_is_closed(element, tm
     circuit = netlist(Layout(read("macro-array")))
     board = circuit.of_element("gauge", element).board
     commands = [line for line in closed(circuit, element) if not line.startswith("alter RQ")]
-    said = [f"let rest{s} = v(in{board}_{s})" for s in ("plus", "minus")]
+    said = [f"let rest{s} = v(a{board}_in_{s})" for s in ("plus", "minus")]
     found = solved(
         deck(circuit, [*commands, "op", *said, f"let out = v(out{board})", "print restplus restminus out"]),
         tmp_path,
@@ -157,7 +157,7 @@ def test_a_switch_of_some_ohm_explains_what_the_papers_table_lacks(tmp_path):
         {},
         {"readout.gain": 10},
         {"gauge.resistance": 1000.0},
-        {"readout.amplifier": "AD8221", "readout.multiplexer": "ADG407"},
+        {"readout.amplifier": "AD8221", "readout.multiplexer": "ADG1409"},
         {"readout.amplifier": "AD620", "readout.gain": 20.0},
         {"readout.amplifier": "AD623", "readout.gain": 300.0},
     ],
@@ -166,7 +166,7 @@ def test_the_netlists_noise_is_that_of_mechanics(changes, tmp_path):
     """ngspice adds up Johnson noise of every resistor and the amplifier's, up to 100 MHz, within 1 %."""
     design = variant(changes)
     circuit = netlist(Layout(design))
-    commands = [*closed(circuit, 1), "noise v(out1) VEXC dec 100 1 1e8", "print onoise_total"]
+    commands = [*closed(circuit, 1), "noise v(out1) VEXC1 dec 100 1 1e8", "print onoise_total"]
     found = solved(deck(circuit, commands), tmp_path)["onoise_total"]
     assert found == pytest.approx(design_readout(design).noise, rel=0.01)
 

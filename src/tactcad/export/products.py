@@ -201,13 +201,36 @@ def circuit_files(plan: Plan) -> Iterator[Batch]:
     circuit = family.must("readout", "export").netlist(family.layout(design))
     key = digest(("circuit", plan.shapes.made_by, circuit, design.design))
     for name, kind, make in (
-        ("circuit_{}.net", "netlist", files.kicad_file),
         ("circuit_{}.csv", "netlist", files.table_file),
         ("circuit_{}.cir", "netlist", files.deck_file),
         ("wiring_{}.csv", "wiring", files.wiring_file),
+        ("harness_{}.csv", "wiring", files.harness_file),
     ):
         path = f"circuit/{design.name}-{name.format(plan.revision)}"
         yield _one(Output(path, kind, "", f"{key} {path}"), partial(make, design, circuit))
+
+
+@product(_read)
+def board_files(plan: Plan) -> Iterator[Batch]:
+    """The boards that read the array: each as it is fitted, and bare for who makes it."""
+    from . import board_files as files
+
+    design, family = plan.design, family_of(plan.design)
+    layout = family.layout(design)
+    readout = family.must("readout", "export")
+    made, supplies = readout.boards(layout), readout.supplies(layout)
+    key = digest(("boards", plan.shapes.made_by, made, supplies, design.design))
+
+    def batch(stem: str, ends: Sequence[str], make: Callable[[], Sequence[bytes]]) -> Batch:
+        paths = [f"circuit/boards/{stem}{end}" for end in ends]
+        kinds = ["gerber" if "gerber/" in path else "board" for path in paths]
+        outputs = (Output(path, kind, "", f"{key} {path}") for path, kind in zip(paths, kinds))
+        return Batch(tuple(outputs), make, FILES, 10)
+
+    for board in made:
+        make = partial(files.files_of, board, design, supplies)
+        yield batch(f"{board.netlist.name}_{plan.revision}", files.ENDS, make)
+    yield batch("", files.BARE, partial(files.bare_files, made[0], design))
 
 
 @product(lambda plan: plan.options.guides)
