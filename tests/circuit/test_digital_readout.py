@@ -76,3 +76,22 @@ def test_the_header_compiles(tmp_path):
     (tmp_path / "main.c").write_text(f'#include "converter.h"\nint main(void) {{ return {body}; }}\n')
     asked = ["cc", "-Wall", "-Werror", "-o", tmp_path / "a", tmp_path / "main.c"]
     assert subprocess.run(asked, check=False).returncode == 0
+
+
+def test_an_export_takes_both_files_along():
+    """Beside the netlist's, of a kind that manifest and packages know; none where a card reads."""
+    from types import SimpleNamespace
+
+    from tactcad.export.manifest import KINDS
+    from tactcad.export.products import circuit_files
+
+    found = {}
+    for converter in (CHIP, "card"):
+        design = variant({"readout.converter": converter})
+        plan = SimpleNamespace(design=design, revision="X", shapes=SimpleNamespace(made_by="here"))
+        batches = list(circuit_files(plan))
+        outputs = [output for batch in batches for output in batch.files]
+        assert {output.kind for output in outputs} <= set(KINDS)
+        found[converter] = {output.path for output in outputs}
+    added = {f"circuit/macro-array-{CHIP}_X.{ending}" for ending in ("h", "json")}
+    assert found[CHIP] - found["card"] == added

@@ -19,7 +19,7 @@ from tactcad.parts.array.hinge_section import design_gauge, design_readout
 from tactcad.parts.array.layout import Layout
 from tactcad.parts.array.leads import lead_routes
 
-SWITCHES = {"IRLML6244": 0.021, "BSS138": 3.5, "2N7002": 7.5}
+SWITCHES = {"IRLML6244": 0.021, "BSS138": 6.0, "2N7002": 7.5}
 FULL_SCALE = 0.035  # V at a bridge: the converter's 3.5 V over a gain of 100
 
 

@@ -215,7 +215,7 @@ def circuit_files(plan: Plan) -> Iterator[Batch]:
         path = f"circuit/{design.name}-{converter}_{plan.revision}.{ending}"
         made_of = digest(("converter", plan.shapes.made_by, design, path))
         written = partial(settings, family.layout(design), converter)
-        yield _one(Output(path, "converter", "", made_of), written)
+        yield _one(Output(path, "netlist", "", made_of), written)
 
 
 @product(_read)
