@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from tactcad.contact.elastic_body import Body, influence
-from tactcad.contact.press import PadsOnBody, complementary, pad_stiffness, patches
-from tactcad.contact.rigid_pads import ManyPresses, pad_law
+from tactcad.contact.press import Pads, PadsOnBody, complementary, pad_stiffness, patches
+from tactcad.contact.rigid_pads import ManyPresses, pad_law, press_many
 from tactcad.lab.pads import springs_of
 from tactcad.parts.designs import load
 
@@ -56,3 +56,35 @@ def test_a_pads_law_is_its_patches_and_its_derivative_a_difference():
         assert law(3 * r)[0] == pytest.approx(3 * g)
         numeric = np.array([(law(r + 1e-6 * e)[0] - law(r - 1e-6 * e)[0]) / 2e-6 for e in np.eye(3)]).T
         assert d == pytest.approx(numeric, rel=1e-5, abs=1e-5)
+
+
+def row_of(number: int, pitch: float, stop: float) -> Pads:
+    """Two facing rows of pads on soft and stiff springs."""
+    y = (np.arange(number) - (number - 1) / 2) * pitch
+    x, y = np.repeat([2.0, -2.0], number), np.tile(y, 2)
+    K = np.resize([3.0, 30.0], 2 * number)
+    move = np.stack([np.ones(2 * number), -np.sign(x) / 5.0, 0.0 * x], 1)
+    compliance = move[:, :, None] * move[:, None, :] / K[:, None, None]
+    return Pads(x, y, 2.0, 3.0, compliance, np.zeros(2 * number), np.full(2 * number, stop))
+
+
+@pytest.mark.parametrize(
+    ("pitch", "angle", "stop", "off"), [(4.0, (1.0, 2.0), 0.1, 0.01), (3.2, (0, 0), inf, 0.025)]
+)
+def test_many_pads_are_pressed_as_few(pitch, angle, stop, off):
+    """By the law of whole pads against single patches: forces within what is stated of their mean."""
+    pads, body = row_of(3, pitch, stop), Body(0.7, 0.49, 6.0)
+    exact = PadsOnBody(pads, body).press(load=5.0, angle=angle)
+    many = press_many(pads, body, 5.0, angle)
+    mean = exact.force[exact.force > 0].mean()
+    assert many.force == pytest.approx(exact.force, abs=off * mean)
+    assert many.force.sum() == pytest.approx(5.0) and (many.stopped == exact.stopped).all()
+
+
+def test_far_pads_bear_alike():
+    """A hundred and twenty pads, pairs a hundred pads apart: each bears what it does among four."""
+    body = Body(0.7, 0.49, 6.0)
+    many = press_many(row_of(60, 300.0, inf), body, 60.0, (0.0, 0.0)).force
+    four = press_many(row_of(2, 300.0, inf), body, 2.0, (0.0, 0.0)).force
+    assert many.sum() == pytest.approx(60)
+    assert many == pytest.approx(np.concatenate([np.tile(four[:2], 30), np.tile(four[2:], 30)]), rel=1e-6)

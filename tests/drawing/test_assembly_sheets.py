@@ -17,10 +17,11 @@ from tactcad.drawing.assemblies import assembly_sheets as assembly_file
 from tactcad.drawing.assemblies.assembly_sheets import assembly_faults, assembly_sheets
 from tactcad.drawing.assemblies.balloons import laid, laid_columns, list_drawn
 from tactcad.drawing.engine.extent import placed
-from tactcad.drawing.engine.ink import DrawnArc, Fill, Stroke, Text, preliminary
+from tactcad.drawing.engine.ink import DrawnArc, DrawnSheet, Fill, Stroke, Text, bounds_of_items, preliminary
 from tactcad.drawing.engine.layout_check import layout_faults
 from tactcad.drawing.engine.paper import MOST_DRAWN, fewer
 from tactcad.drawing.engine.sheet_files import pdf_bytes, pdf_runs, stacked_svg
+from tactcad.drawing.guide import axes
 from tactcad.parts.bought.screws import METRIC
 from tactcad.scenes import make_scene
 from tactcad.scenes.bom import bom_rows
@@ -313,6 +314,14 @@ def test_the_sensing_face_says_which_element_stands_where(assembly):
         assert (text.at[0] > centre) == (x > 0)
         assert text.at[1] + f * y == pytest.approx(low, abs=1e-6)
     assert {"+x", "+y", "Sensing face"} <= {t.text for t in sheets[0].texts}
+
+
+def test_the_axes_names_stand_on_the_side_away_from_the_elements_numbers():
+    """Numbers end just left of the axes, at any height: of a short array E1 beside the end of y."""
+    x0, *_ = bounds_of_items(axes((0.0, 0.0)))
+    assert x0 > -0.5  # half an arrow head
+    sheet = DrawnSheet("axes", "", (50.0, 50.0), tuple(axes((25.0, 25.0))))
+    assert layout_faults(sheet) == []
 
 
 def test_notes_give_torques_and_the_pads_procedure(assembly):

@@ -25,6 +25,7 @@ OTHERS = {
     "a gain resistor, four channels": {"readout.amplifier": "AD8221", "readout.multiplexer": "ADG1409"},
     "one element": {"array.row_arms": [[4.0]]},
     "rows of 3 and 20": {"array.row_arms": [[4, 8, 4], [5] * 20]},
+    "a resistance of eleven letters": {"gauge.resistance": 8515.59},
     "a hundred elements": {"array.row_arms": [[4, 7, 6, 8, 6] * 10, [8, 5, 4, 5, 7] * 10]},
 }
 

@@ -427,12 +427,16 @@ def test_a_second_family_takes_five_files(tree):
     }
     assert {"step-part", "dxf", "drawing", "bom", "inspection", "picture"} <= kinds and "netlist" not in kinds
 
+    (tree.folder / "loads.csv").write_text("0.01,0,0,2,0,0\n0,0.02,0,0,2,0\n0,0,0.05,0,0,2\n", "utf-8")
+    calibrated = tree.run("calibrate", "loads.csv", "--design", "leaf.toml")
+    assert calibrated.stdout == "leaf: 200 N/mm, 100 N/mm, 40 N/mm\n", calibrated.stderr
+
     (tree.folder / "longer.toml").write_text(design.replace("length = 20.0", "length = 25.0"), "utf-8")
     assert "stiffness_n_per_mm: 22.5 -> 11.52" in tree.run("diff", "leaf.toml", "longer.toml").stdout
     (tree.folder / "short.toml").write_text(design.replace("length = 20.0", "length = 4.0"), "utf-8")
     for said, command in (
         ("rule leaf_is_slender", ("check", "short.toml")),
-        ("does not take designs of this family", ("calibrate", "x.csv", "--design", "leaf.toml")),
+        ("does not take designs of this family", ("grasp", "leaf.toml", "--object", "E=1,thickness=5")),
         ("does not take designs of this family", ("estimate", "leaf.toml", "--model", "solid")),
         ("no such scene", ("check", "leaf.toml", "--scene", "calibration")),
     ):

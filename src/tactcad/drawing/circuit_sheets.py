@@ -389,7 +389,7 @@ def _array_side(circuit: Netlist, gauge: Component) -> list[Item]:
     rows = [RED, WHITE, BLACK] if three else [RED, BLACK]
     colours = COLOURS["three-wire" if three else "two-wire"]
     connector = next(c for c, _ in circuit.nets[leads[0].net("2")] if c.kind == "connector")
-    x, terminal, pin = 42.0, 56.0, 90.0
+    x, terminal, pin = 46.0, 56.0, 90.0  # mm: left of x a value of eleven letters
     items: list[Item] = [
         *strain_gauge((x, RED), (x, BLACK), gauge.designator, gauge.value),
         line((x, RED), (terminal - 1.0, RED)),

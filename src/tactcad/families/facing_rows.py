@@ -54,9 +54,8 @@ FAMILY = Family(
         signals=Late("tactcad.review.effect:signals"),
     ),
     readings=FamilyReadings(
-        load_cell=Late("tactcad.lab.load_cell:of_design"),
-        overload=Late("tactcad.lab.load_cell:overload"),
-        against=Late("tactcad.lab.column_units:against_design"),
+        calibrate=Late("tactcad.cli.calibrate:calibrate_rows"),
+        stiffness=Late("tactcad.cli.stiffness:stiffness_rows"),
     ),
     variables=Late("tactcad.synthesis.synthesise:design"),
     checks="tactcad.checks.facing_rows",

@@ -55,6 +55,7 @@ SAME = 1e-6  # relative difference of stiffness below which two elements are no 
 LOOSE = 1e-4  # of a prior's weight where it is as good as none
 THICKER = 0.02  # relative step by which the layer's part in the sinks is found
 BATCH = 250  # grasps at once: 0.3 GB
+NEWTON, LOADED = 30, 1e-4  # steps at most to the approach of a load, and its relative error
 
 
 @dataclass(frozen=True)
@@ -479,6 +480,30 @@ def _start(model: _Model, pressed: np.ndarray, before: np.ndarray, load: np.ndar
     return q
 
 
+def _errors(
+    priors: _Priors,
+    calibration_dof: np.ndarray,
+    dof: np.ndarray,
+    level: float,
+    row: np.ndarray,
+    variance: np.ndarray,
+    known: np.ndarray,
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Of a quantity whose covariance with all parameters is `row` [grasp, parameter]: standard error,
+    Student's quantile, and how far the load cell's limits shift it."""
+    pull = np.einsum("eij,gej->gei", priors.of_element, row[:, priors.calibrated])
+    stated = np.einsum("gei,gei->g", pull, row[:, priors.calibrated])
+    actual = np.einsum("gei,eij,gej->ge", pull, priors.own, pull)
+    others = np.einsum("gi,ij,gj->g", row, known, row)
+    by_noise = np.maximum(variance - stated - others, 0.0)
+    total = by_noise + others + actual.sum(1)
+    bottom = by_noise**2 / dof + (actual**2 / calibration_dof).sum(1)
+    freedom = np.clip(total**2 / np.maximum(bottom, 1e-300), 1.0, KNOWN)
+    moved = np.array([np.einsum("gei,ei->g", pull, s) for s in priors.shift] or [np.zeros(len(row))])
+    quantile = np.array([t_quantile(level, float(f)) for f in freedom])
+    return total**0.5, quantile, np.abs(moved).max(0)
+
+
 def _results(
     at: LayeredArray,
     model: _Model,
@@ -502,22 +527,8 @@ def _results(
         full[:, keep[:, None], keep] = _solve(part_of, np.broadcast_to(np.eye(len(keep)), part_of.shape))
         return full
 
-    def errors(
-        row: np.ndarray, variance: np.ndarray, known: np.ndarray
-    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Of a quantity whose covariance with all parameters is `row` [grasp, parameter]: standard error,
-        Student's quantile, and how far the load cell's limits shift it."""
-        pull = np.einsum("eij,gej->gei", priors.of_element, row[:, priors.calibrated])
-        stated = np.einsum("gei,gei->g", pull, row[:, priors.calibrated])
-        actual = np.einsum("gei,eij,gej->ge", pull, priors.own, pull)
-        others = np.einsum("gi,ij,gj->g", row, known, row)
-        by_noise = np.maximum(variance - stated - others, 0.0)
-        total = by_noise + others + actual.sum(1)
-        bottom = by_noise**2 / dof + (actual**2 / c.dof).sum(1)
-        freedom = np.clip(total**2 / np.maximum(bottom, 1e-300), 1.0, KNOWN)
-        moved = np.array([np.einsum("gei,ei->g", pull, s) for s in priors.shift] or [np.zeros(G)])
-        quantile = np.array([t_quantile(level, float(f)) for f in freedom])
-        return total**0.5, quantile, np.abs(moved).max(0)
+    def errors(row: np.ndarray, variance: np.ndarray, known: np.ndarray) -> tuple[np.ndarray, ...]:
+        return _errors(priors, c.dof, dof, level, row, variance, known)
 
     full, loose = covariance(priors.weigh, free), covariance(priors.loose, free)
     # what the priors of K and K_v cost against as many freedoms as they take
@@ -578,3 +589,123 @@ def _even_in_ratio(
         return np.where(ln_R <= 1e-15, inf, np.maximum(value, 0.0))
 
     return np.stack([object_(middle), object_(middle + steep * half), object_(middle - steep * half)], -1)
+
+
+@dataclass(frozen=True)
+class Expected:
+    """What `fit` will say of grasps, before any is made; arrays with one entry a grasp first.
+
+    object_     K_obj, N/mm, [estimate, low, high]; modulus: E, MPa, likewise
+    force       on each pad at the largest load, N; sink of its middle, mm, [grasp, pad]
+    first       force on the pad that bears least at the first load, N
+    """
+
+    object_: np.ndarray
+    modulus: np.ndarray
+    force: np.ndarray
+    sink: np.ndarray
+    first: np.ndarray
+
+
+def expected(
+    at: LayeredArray,
+    load: np.ndarray,
+    calibration: Sensitivity,
+    modulus: np.ndarray,
+    slope: np.ndarray,
+    noise: float,
+    *,
+    readings: int | None = None,
+    shared: tuple[np.ndarray, ...] = (),
+    stiffness: np.ndarray | None = None,
+    height: np.ndarray | None = None,
+    level: float = 0.95,
+) -> Expected:
+    """The intervals that `fit` gives on average, by its own equations made linear about the truth.
+
+    Parameters
+    ----------
+    at
+        The array on its layer, all of whose elements are read.
+    load
+        N, [load], above zero; one reading without load comes before.
+    calibration
+        As expected, all elements in their order.
+    modulus, slope
+        True, MPa, [grasp], and of the face, [grasp, 2].
+    noise
+        Of a reading, V.
+    readings
+        Number of loads that are read, where `load` has a few that stand for them.
+    shared
+        ln K and ln K_v of every element, [element, 2], for one standard deviation of each error that all
+        have alike.
+    stiffness, height
+        True, where they are not as drawn and level: N/mm and mm, [grasp, pad].
+    """
+    n, G, T = len(at.number), len(modulus), len(load)
+    rows, several = np.arange(n), (readings or T) / T
+    model = _Model(at, rows, calibration, load, None)
+    part, free = model.part, np.arange(model.part["own"].start)
+    q = np.zeros((G, model.size))
+    q[:, 0], q[:, part["slope"]] = np.log(modulus), slope
+    q[:, part["height"]] = 0.0 if height is None else height
+    q[:, part["K"]] = 0.0 if stiffness is None else np.log(stiffness / model.K)
+    depth = _approaches(model, q)
+    signal, _, _, force, A, B = model.signals(q, depth, True)
+    sigma = np.maximum(noise, SHAPE * np.ptp(signal, axis=2).max(1)) / several**0.5
+    A = A.reshape(G, n * T, model.size) / sigma[:, None, None]
+    N = A.swapaxes(1, 2) @ A + B.swapaxes(1, 2) @ B * (several / (LOAD * load.max()) ** 2)
+    o = np.arange(part["offset"].start, part["offset"].stop)
+    N[:, o, o] += 1 / several / sigma[:, None] ** 2
+    priors = _priors(model, calibration)
+    N = (N + priors.weigh)[:, free[:, None], free]
+    dof = np.full(G, max(n * (several * T + 1) - n - several * T - 3.0, 1.0))
+    K = model.K
+    soft, stiff = float(K.min()), float(K.max())
+    found = []
+    for by_thickness in (at.unit_by_thickness, 0.0):
+        quantity = np.zeros(len(free))
+        quantity[0], quantity[part["thickness"].start] = 1.0, by_thickness
+        row = np.zeros((G, model.size))
+        row[:, free] = _solve(N, np.broadcast_to(quantity[:, None], (G, len(free), 1)))[..., 0]
+        se, t, moved = _errors(
+            priors, calibration.dof, dof, level, row, row[:, free] @ quantity, priors.others
+        )
+        pull = np.einsum("eij,gej->gei", priors.of_element, row[:, priors.calibrated])
+        alike = sum(np.einsum("gei,ei->g", pull, each) ** 2 for each in shared)
+        x = np.log(modulus * at.unit)
+        half = t * np.sqrt(se**2 + alike) + moved
+        found.append(_even_in_ratio(x, np.zeros(G), half, stiff, soft))
+    sink = (signal / model.K_v[:, None])[:, :, -1]
+    return Expected(found[0], found[1] / at.unit, force[:, -1], sink, force[:, 0].min(1))
+
+
+def _approaches(model: _Model, q: np.ndarray) -> np.ndarray:
+    """Sets the approaches at which the pads bear the loads, by Newton's method; the pads' depths there."""
+    at, part, contact = model.at, model.part, model.at.contact
+    G, T, n = len(q), len(model.load), len(model.at.number)
+    spread = lambda v: np.repeat(v[:, None], T, 1)  # noqa: E731
+    E, K = spread(np.exp(q[:, 0])), spread(model.K * np.exp(q[:, part["K"]]))
+    slope, height = spread(q[:, part["slope"]]), spread(q[:, part["height"]])
+    M, along = contact.system(E, K), np.zeros((3 * n, 1))
+    along[::3] = 1.0
+    alone = 1 / (1 / (E * at.unit) + 1 / K.mean(-1))
+    back = height + slope[..., :1] * at.contact.x + slope[..., 1:] * at.contact.y
+    ready = np.sort(back, -1)
+    # the approach on separate springs, all alike
+    number = np.arange(1, n + 1)
+    each = (model.load[:, None] / alone[..., None] + np.cumsum(ready, -1)) / number
+    approach = np.take_along_axis(each, np.maximum((each > ready).sum(-1, keepdims=True) - 1, 0), -1)[..., 0]
+    depth = contact.approached(approach, slope, height)
+    for _ in range(NEWTON):
+        depth, g, d, J = contact.rest(M, contact.approached(approach, slope, height), depth)
+        off = model.load - E * g[..., 0].sum(-1)
+        if (np.abs(off) < LOADED * model.load).all():
+            break
+        move = np.linalg.solve(J, np.broadcast_to(along, (G, T, 3 * n, 1))).reshape(depth.shape)
+        steep = E * np.einsum("gtnj,gtnj->gt", d[..., 0, :], move)
+        step = off / np.maximum(steep, 1e-3 * alone)
+        approach, depth = approach + step, depth + step[..., None, None] * move
+    q[:, part["approach"]] = approach
+    return depth
