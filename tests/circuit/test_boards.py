@@ -203,10 +203,10 @@ def test_the_gerber_files_show_the_copper_that_kicad_plots(tmp_path):
         assert not (binary_erosion(b, iterations=2) & ~a).any()
 
 
-def test_kinparse_reads_every_board(tmp_path):
+def test_kinparse_reads_a_boards_netlist():
     from kinparse import parse_netlist
 
-    for used in range(1, 9):
+    for used in (1, 5):  # a second each; those between differ by what is fitted
         circuit = board_netlist(variant({}), used, 3)
         read = parse_netlist(kicad_bytes(circuit, "title", None, "2026-01-01", "A").decode())
         pins = {net.name.removeprefix("/"): {(p.ref, p.num) for p in net.pins} for net in read.nets}
