@@ -10,7 +10,7 @@ import pytest
 
 from tactcad.contact.elastic_body import Body, influence
 from tactcad.contact.press import Pads, PadsOnBody, complementary, pad_stiffness, patches
-from tactcad.contact.rigid_pads import ManyPresses, pad_law, press_many
+from tactcad.contact.rigid_pads import POWERS, ManyPresses, pad_law, press_many
 from tactcad.lab.pads import springs_of
 from tactcad.parts.designs import load
 
@@ -24,7 +24,8 @@ def array():
 
 @pytest.mark.parametrize("thickness", [1.0, 6.0, inf])
 def test_presses_are_those_of_single_patches(thickness):
-    """Within 0.3 % of the largest sink, whole pads or edges; 10 pads, 3 to 10 N."""
+    """Within 0.2 % of the largest sink, whole pads or edges; 10 pads, 3 to 10 N. Without what lifting changes
+    between pads they are up to 0.3 % off."""
     pads, K, move = array()
     body = Body(1.0, 0.49, thickness)
     single = PadsOnBody(pads, body)
@@ -35,9 +36,13 @@ def test_presses_are_those_of_single_patches(thickness):
         lifted += int((exact.contact < 1).sum())
         slope = np.array([[tan(radians(a)) for a in angle]])
         b = many.approached(np.array([exact.approach]), slope, pads.height[None])
-        g = many.rest(many.system(np.array([E]), K[None]), b, b)[1][0]
+        r, change = b, None
+        for _ in range(3):
+            r, g = many.rest(many.system(np.array([E]), K[None], change), b, r)[:2]
+            change = many.lifted(r)
+        g = g[0]
         sink = E * (g * many.move).sum(-1) / K
-        assert np.abs(sink - exact.sink).max() < 3e-3 * exact.sink.max()
+        assert np.abs(sink - exact.sink).max() < 2e-3 * exact.sink.max()
         assert E * g[:, 0].sum() == pytest.approx(N, rel=2e-3)
     assert lifted > 4
 
@@ -56,6 +61,21 @@ def test_a_pads_law_is_its_patches_and_its_derivative_a_difference():
         assert law(3 * r)[0] == pytest.approx(3 * g)
         numeric = np.array([(law(r + 1e-6 * e)[0] - law(r - 1e-6 * e)[0]) / 2e-6 for e in np.eye(3)]).T
         assert d == pytest.approx(numeric, rel=1e-5, abs=1e-5)
+
+
+def test_whole_pads_change_nothing_between_each_other_and_moments_are_those_of_the_pressure():
+    pads, _, move = array()
+    many = ManyPresses(pads.x, pads.y, pads.length, pads.width, move, Body(1.0, 0.49, 6.0))
+    whole = np.tile([1.0, 0.01, -0.01], (len(pads.x), 1))
+    assert np.abs(many.lifted(whole[None])).max() < 1e-9 * np.abs(many.between).max()
+    one = patches(2.0, 3.0, False)
+    M = influence(Body(1.0, 0.49, 6.0), tuple(one))
+    for r in ((1.0, 0.8, 0.0), (0.6, -0.9, 0.5), (0.2, 0.5, -0.6)):
+        r = np.array(r)
+        f, _ = complementary(M, -(r[1] * one[0] + r[2] * one[1]), None, r[0], np.ones(len(M)))
+        for (a, b), found in zip(POWERS, many.law.moments(r) @ many.law(r)[0], strict=True):
+            moment = (one[0] ** a * one[1] ** b) @ f
+            assert found == pytest.approx(moment, abs=0.02 * f.sum() * 1.5 ** (a + b))
 
 
 def row_of(number: int, pitch: float, stop: float) -> Pads:

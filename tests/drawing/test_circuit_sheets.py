@@ -94,9 +94,14 @@ def test_no_general_tolerance_on_a_sheet_without_dimensions():
 def test_no_sample_before_the_output_has_settled():
     design = read("macro-array")  # 12.4 us
     text = " ".join(pdf_runs(circuit_written(CircuitOrder(design)).pdf)[0])
-    said = float(re.search(r"Sample ([\d.]+) us after ENABLE", text)[1])
+    said = float(re.search(r"settled after ([\d.]+) us", text)[1])
     settled = settling_time(design) * 1e6
     assert settled <= said < settled + 1
+    first, last = map(
+        float, re.search(r"10 samples a reading, ([\d.]+) to ([\d.]+) ms after ENABLE", text).groups()
+    )
+    assert settled < 1e3 * first and first == pytest.approx(5 - 0.1) and last == pytest.approx(first + 0.09)
+    assert "within 1 us, by a clocked line" in text
 
 
 def test_the_plan_names_short_arms_of_two_digits_too():

@@ -20,7 +20,7 @@ from tactcad.design.family import taken_as
 from tactcad.design.messages import CheckFailure
 from tactcad.design.sensing import MULTIPLEXERS
 from tactcad.design.tree import CommonTables, Design
-from tactcad.parts.array.bridge_figures import settling_time
+from tactcad.parts.array.bridge_figures import instants, jitter, settling_time
 from tactcad.parts.array.layout import ElementPlace, Layout
 from tactcad.parts.array.leads import COLOURS, boards, lead_routes, leads
 from tactcad.parts.array.supplies import wire_metres
@@ -117,7 +117,7 @@ def circuit_sheets(design: Design, draft: bool = False, sample: bool = False) ->
 def _channel_notes(layout: Layout) -> list[str]:
     r, inputs = layout.design.readout, len(boards(layout))
     address = len(MULTIPLEXERS[r.multiplexer].address)
-    settled = ceil(settling_time(layout.design) * 1e6)
+    settled, at = ceil(settling_time(layout.design) * 1e6), instants(layout.design) * 1e3
     return [
         "Symbols IEC 60617, letters of designators IEC 81346-2: B gauge, C capacitor, D diode, J connector, "
         "Q transistor, R resistor, U circuit, W lead, X terminal",
@@ -128,7 +128,10 @@ def _channel_notes(layout: Layout) -> list[str]:
         "on, all others are off; with ENABLE low no gauge is warm, and the amplifier's inputs rest at EXC",
         f"The card needs {inputs + address} digital outputs, A0 to A{address - 1} for all boards and one "
         f"ENABLE a board; and {inputs} differential input{'s' if inputs > 1 else ''}, OUT and GND of a board",
-        f"Sample {settled} us after ENABLE or later: {r.samples} samples within {r.on_time * 1e3:g} ms",
+        f"{r.samples} samples a reading, {at[0]:.4g} to {at[-1]:.4g} ms after ENABLE, always at "
+        f"the same instant within {jitter(layout.design) * 1e6:g} us"
+        + (", by a clocked line of the card" if r.timing == "hardware" else ", by a program")
+        + f": the gauge warms meanwhile; the output has settled after {settled} us",
         "All other channels are alike; of channels that are not used the switch and the third arm are left "
         "off, the other arms are links, so that their inputs lie at EXC",
     ]

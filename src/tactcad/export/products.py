@@ -195,6 +195,8 @@ def _read(plan: Plan) -> bool:
 @product(_read)
 def circuit_files(plan: Plan) -> Iterator[Batch]:
     """The circuit that reads the array: its netlist in three forms, and the leads to cut."""
+    from tactcad.circuit.digital_readout import settings_header, settings_json
+
     from . import circuit_files as files
 
     design, family = plan.design, family_of(plan.design)
@@ -208,6 +210,12 @@ def circuit_files(plan: Plan) -> Iterator[Batch]:
     ):
         path = f"circuit/{design.name}-{name.format(plan.revision)}"
         yield _one(Output(path, kind, "", f"{key} {path}"), partial(make, design, circuit))
+    converter = getattr(getattr(design, "readout", None), "converter", "card")
+    for ending, settings in (("h", settings_header), ("json", settings_json)) if converter != "card" else ():
+        path = f"circuit/{design.name}-{converter}_{plan.revision}.{ending}"
+        made_of = digest(("converter", plan.shapes.made_by, design, path))
+        written = partial(settings, family.layout(design), converter)
+        yield _one(Output(path, "netlist", "", made_of), written)
 
 
 @product(_read)
