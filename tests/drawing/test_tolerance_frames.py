@@ -9,6 +9,7 @@ from itertools import pairwise
 from math import atan2, degrees, dist
 
 import pytest
+from built import shape_of
 from variants import variant
 
 from tactcad.contour import Corner, rectangle, rounded_polygon
@@ -46,10 +47,9 @@ FRAMES = {
 
 
 def drawn(design, part):
-    from tactcad.solids.build import build
     from tactcad.solids.step import to_bytes
 
-    return part_sheet(Order(design, part, to_bytes(build(part).wrapped), (DXF,)))
+    return part_sheet(Order(design, part, to_bytes(shape_of(part)), (DXF,)))
 
 
 @pytest.fixture(scope="module")
