@@ -28,7 +28,7 @@ WIDEST, STEP = 600.0, 10.0  # mm, widths of sheet that are tried; chosen: a wire
 
 
 @dataclass(frozen=True)
-class Piece:
+class NestedPiece:
     """A section with its corner at (x, y) on the sheet, mm; `quarter`: turned by 90 degrees."""
 
     part_no: str
@@ -67,7 +67,7 @@ class Nest:
     wire: bool
     width: float
     height: float
-    pieces: tuple[Piece, ...]
+    pieces: tuple[NestedPiece, ...]
 
     @property
     def name(self) -> str:
@@ -142,7 +142,7 @@ def _nested(material: str, thickness: float, high: int, wire: bool, some: Sequen
     for part, count in some:
         section = cut_section(part)
         assert section is not None  # of nests()
-        piece = Piece(part.part_no, section, 0.0, 0.0)
+        piece = NestedPiece(part.part_no, section, 0.0, 0.0)
         x, y = piece.size
         pieces += [replace(piece, quarter=not wire and y > x)] * count
     pieces.sort(key=lambda p: (-p.size[1], -p.size[0], p.part_no))
@@ -158,7 +158,7 @@ def _widths() -> Iterator[float]:
     yield from (STEP * i for i in range(1, round(WIDEST / STEP) + 1))
 
 
-def _rows(pieces: Sequence[Piece], width: float, gap: float) -> tuple[float, list[Piece]]:
+def _rows(pieces: Sequence[NestedPiece], width: float, gap: float) -> tuple[float, list[NestedPiece]]:
     """Height of a sheet of that width, and the pieces on it: the tallest first, each in the first row that
     has room."""
     rows: list[list[float]] = []  # y of its lower edge, x that is free

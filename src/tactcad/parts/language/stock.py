@@ -24,7 +24,7 @@ _SOLD = rows(__file__, "stock")
 
 
 @dataclass(frozen=True)
-class Stock:
+class FlatStock:
     """Flat stock of a part.
 
     thickness, lower, upper  as ordered, and the limits of what is delivered
@@ -45,7 +45,7 @@ def own_thickness(part: Part) -> Characteristic | None:
     return next((c for c in part.characteristics if {*c.between} == {*FACES}), None)
 
 
-def stock_of(part: Part) -> Stock | None:
+def stock_of(part: Part) -> FlatStock | None:
     """The thinnest stock sold that leaves enough on both faces. Wire-cut sheet of a thickness that is
     sold is left as rolled, picked where the part's limits are closer than the standard's. None for what is
     no extrusion, or is turned, and where nothing sold is thick enough."""
@@ -57,12 +57,12 @@ def stock_of(part: Part) -> Stock | None:
     ]
     standard = next((name for size, _, name in sold if size == t), None if sold else "")
     if part.process == "wire-cut" and own and standard is not None:
-        return Stock(t, own.lower, own.upper, standard, 0.0, 0.0)
+        return FlatStock(t, own.lower, own.upper, standard, 0.0, 0.0)
     face, high = FACE[part.process], own.upper if own else t + general(t)
     for size, off, standard in sold:
         if size - off >= high + 2 * face - 1e-9:
             edge = 0.0 if part.process == "wire-cut" else next(e for to, e in EDGE if size <= to)
-            return Stock(size, size - off, size + off, standard, face, edge)
+            return FlatStock(size, size - off, size + off, standard, face, edge)
     return None
 
 
