@@ -77,8 +77,10 @@ def _cart(d: Draw) -> None:
         "holder.plenum_depth", GROOVE_DEPTH + 1 + M5.d / 2 + M5.tap_drill / 2 + 0.9, min(16.0, 8 * corner)
     )
     floor = d.number("holder.floor", 1.5, 22 - plenum)
-    lid = d.number("holder.lid_thickness", M3.head_height + 2, min(DRILL_REACH * hole, 28.0 - plenum - floor))
-    body = plenum + floor + lid - M3.head_height
+    lid = d.number(
+        "holder.lid_thickness", M3.head_height + 2.2, min(DRILL_REACH * hole, 28.0 - plenum - floor)
+    )
+    body = plenum + floor + lid - M3.head_height - 0.2  # the head sunk with a margin
     fixing = min(n for n in CAP_SCREW_LENGTHS["M3"] if n - body >= 4.5)
     longer = max(0.0, fixing - body - TAP_REACH * 3)  # the next screw would reach deeper than a tap
     d.put("holder.lid_thickness", round(lid + longer, 6))

@@ -145,13 +145,15 @@ def told(text: str) -> float:
     text, envelope = text.removesuffix(" Ⓔ"), text.endswith(" Ⓔ")
     assert not envelope or "⌀" in text
     match = re.fullmatch(
-        r"(?:\d+× )?[⌀R↧]?(-?[\d.]+)°?(?: ±[\d.]+)?(?: ([+-][\d.]+)/([+-][\d.]+|0))?( H7| D10)?", text
+        r"(?:\d+× )?[⌀R↧]?(-?[\d.]+)°?(?: ±[\d.]+)?(?: ([+-][\d.]+)/([+-][\d.]+|0))?( H7| D10| N7)?", text
     )
     assert match, text
     if not match[2]:
         assert not match[4] or match[1] == "3"
-        return float(match[1]) + {None: 0.0, " H7": 0.005, " D10": 0.04}[match[4]]
+        return float(match[1]) + {None: 0.0, " H7": 0.005, " D10": 0.04, " N7": 0.005}[match[4]]
     size, upper, lower = map(float, match.groups()[:3])
+    if lower > 0:  # limits off the nominal size, at which the model stands: its sheet says so
+        return size
     return size + ((0.005 if size <= 3 else 0.008) if upper < 0 else (upper + lower) / 2)
 
 

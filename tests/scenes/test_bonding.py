@@ -119,7 +119,7 @@ def test_the_clamps_weight_acts_over_the_gauge_and_presses_as_wished():
 
 def test_a_bar_is_aluminium_where_steel_would_be_too_thin():
     rig = rig_of({"bonding.pressure": 0.03})
-    assert rig.bar_material.name == "6061-T6" and rig.bar_height >= 6.0
+    assert rig.bar_material.name == "6061-T651" and rig.bar_height >= 6.0
     assert rig.bar_pressure == pytest.approx(0.03, rel=0.03)
 
 

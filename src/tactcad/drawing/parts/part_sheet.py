@@ -162,9 +162,11 @@ def notes_of(part: Part, files: Sequence[MadeFrom]) -> tuple[str, ...]:
         cut = "Cut by"
         if stock and stock.face:
             lines.append(f"From {stock.thickness:g} plate: both faces ground before it is cut")
+        # drawn where neighbours touch it: the model stands at its nominal size, outside its limits
+        off = [c.name for c in part.characteristics if not c.lower <= c.nominal <= c.upper]
+        but = f", but for the {' and the '.join(off)}: these as dimensioned" if off else ""
         lines.append(
-            "Wire path: the DXF's contour as it is, which lies in the middle of all limits, offset by "
-            "your wire's "
+            f"Wire path: the DXF's contour as it is, in the middle of all limits{but}; offset by your wire's "
             "radius and spark gap"
         )
         if part.extrusion.openings:

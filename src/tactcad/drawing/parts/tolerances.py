@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from math import atan2, degrees, hypot
+from math import atan2, degrees, dist, hypot
 
 from tactcad.contour import Line
 from tactcad.parts.language.description import Part
@@ -21,6 +21,7 @@ from .sheet_plan import Callout, Datum, Frame, View, seen
 
 # Where along an edge a frame's leader may end; so near to its ends broken views show it, too.
 SHARES = (0.5, 0.25, 0.75, 0.1, 0.9, 0.05, 0.95)
+LONG, LONG_SHARES = 600.0, (0.01, 0.99)  # mm: so long an edge is broken off, and this is no corner yet
 ASIDE = 60.0  # degrees from the normal that its leader may lie
 FRAME = 2 * LETTERS  # height of a frame, and least width of its cells
 PAD = 1.0  # beside the text of a cell
@@ -65,7 +66,8 @@ def with_marks(part: Part, views: Sequence[View]) -> tuple[View, ...]:
         for name in dict.fromkeys(names):
             for (start, end), away in _lines(part, view, name):
                 framed.add(name)
-                spots = tuple((Datum("", start, end, away).at(share), 0.0) for share in SHARES)
+                shares = (*SHARES, *LONG_SHARES) if dist(start, end) > LONG else SHARES
+                spots = tuple((Datum("", start, end, away).at(share), 0.0) for share in shares)
                 out = degrees(atan2(away[1], away[0]))
                 spans = ((out - ASIDE, out + ASIDE),) * len(spots)
                 callouts.append(Callout((), spots, spans=spans, frames=frames_of(part, (name,))))

@@ -111,9 +111,9 @@ NITRILE = Material("NBR 70", 1200)
 SECTION = 1.78
 # Inside diameter by size code, mm.
 INSIDE = {row["code"]: number(row["inside"]) for row in rows(__file__, "orings")}
-# Groove of a static face seal for 1.78: depth 1.27 to 1.40, width 2.41 (makers' tables, as in bd_warehouse
-# 0.4.0).
-GROOVE_DEPTHS = (1.27, 1.40)
+# Groove of a static face seal for 1.78: depth 1.27 to 1.40 (here to 1.37, about what is drawn), width 2.41
+# (makers' tables, as in bd_warehouse 0.4.0).
+GROOVE_DEPTHS = (1.27, 1.37)
 GROOVE_DEPTH = 1.32
 GROOVE_WIDTH = 2.4
 

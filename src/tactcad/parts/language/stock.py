@@ -16,7 +16,7 @@ from .tables import number, rows
 
 # Over the finished edge, mm, by the thickness that is cut, up to `to`: after ISO 9013:2017, machining
 # allowances of thermal cuts, not read again here; a saw takes less.
-EDGE = ((20.0, 2.0), (50.0, 3.0))
+EDGE = ((20.0, 2.0), (50.0, 3.0), (80.0, 5.0), (120.0, 7.0))
 # Over each finished face, mm; chosen: milled off, the skin and bow of a rolled plate of 200 mm; ground off
 # (and so before it is wire-cut), the skin alone.
 FACE = {"ground": 0.2, "milled": 0.5, "wire-cut": 0.2}
