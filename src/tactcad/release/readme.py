@@ -355,9 +355,9 @@ def _sheet_table(one: Packed) -> list[str]:
 
 def _blank_for(row: Mapping[str, str]) -> str:
     limits = f"{row['least_mm']} to {row['most_mm']} mm thick; " if row["least_mm"] else ""
-    if row["for"] != "wire-cut":
+    if row["for"] not in ("wire-cut", "etched"):
         return f"blank by its DXF (laser, water jet or saw), to be {row['for']}"
-    return f"{limits}as sheet, to the wire cutter"
+    return f"{limits}as sheet, to be {row['for']}"
 
 
 WIDTH = 96

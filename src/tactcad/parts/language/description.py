@@ -18,7 +18,7 @@ from tactcad.design.messages import CheckFailure
 from .limits import FACES, Characteristic, DatumFeature, Geometric, contradictions
 
 Vector = tuple[float, float, float]
-Process = Literal["wire-cut", "milled", "turned", "ground", "reference", "bought", "included"]
+Process = Literal["wire-cut", "etched", "milled", "turned", "ground", "reference", "bought", "included"]
 Kind = Literal["", "element", "cap screw", "set screw", "nut"]
 NOT_MADE = ("bought", "included", "reference")
 NOT_ORDERED = ("included", "reference")
@@ -337,6 +337,11 @@ class Part:
         return self.volume * self.material.density * 1e-6
 
     @property
+    def by_contour(self) -> bool:
+        """Cut from sheet by its contour alone, all its openings and holes included."""
+        return self.process in ("wire-cut", "etched")
+
+    @property
     def bought(self) -> bool:
         return self.process in ("bought", "included")
 
@@ -359,12 +364,12 @@ def section(part: Part) -> tuple[Contour, tuple[Contour, ...]]:
 def cut_section(part: Part) -> Extrusion | None:
     """The section that a part's cut file describes, extruded; None where the part has no cut file.
 
-    Wire-cut parts are cut with all their holes. A part that is milled or ground from plate has a cut file of
+    Wire-cut and etched parts are cut with all their holes. A part that is milled or ground from plate has a cut file of
     its blank: the outline, and the holes that may be cut to their final size or to the tap drill's. Holes
     with a fit are reamed afterwards; counterbores, threads and holes from the edges are left to the drawing.
     A part that has a pocket, or is thicker than it is wide, is milled from a block and has no cut file.
     """
-    if part.process == "wire-cut":
+    if part.by_contour:
         outer, openings = section(part)
         return Extrusion(outer, part.extrusion.thickness, openings)
     if part.process not in ("milled", "ground") or not _is_plate(part):
