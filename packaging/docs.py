@@ -23,6 +23,7 @@ from tactcad.design.schema import markdown_schema
 
 ROOT = Path(__file__).parents[1]
 TOP = {"README.md": "index.md", "CONTRIBUTING.md": "CONTRIBUTING.md", "CHANGELOG.md": "CHANGELOG.md"}
+FETCHED = "https://unpkg.com/iframe-worker/shim"
 LINK = re.compile(r"\]\(([^)#\s]+)")
 
 
@@ -33,7 +34,7 @@ def stage(folder: Path) -> None:
     out = folder / "pages"
     shutil.copytree(ROOT / "docs", out)
     shutil.copy(ROOT / "packaging" / "zensical.toml", folder)
-    for name in ("site.css", "site.js"):
+    for name in ("site.css", "worker.js"):
         shutil.copy(ROOT / "packaging" / name, out)
     for source, target in TOP.items():
         (out / target).write_text((ROOT / source).read_text("utf-8").replace("](docs/", "]("), "utf-8")
@@ -44,6 +45,9 @@ def stage(folder: Path) -> None:
             if not (out / linked).exists() and (ROOT / linked).is_file():
                 (out / linked).parent.mkdir(parents=True, exist_ok=True)
                 shutil.copy(ROOT / linked, out / linked)
+                if linked.endswith(".md"):  # docs/ is the site's top
+                    whole = (out / linked).read_text("utf-8")
+                    (out / linked).write_text(whole.replace("](../../docs/", "](../../"), "utf-8")
     (out / "reference-schema.md").write_text(schema_page(), "utf-8")
     (out / "reference-commands.md").write_text(commands_page(), "utf-8")
 
@@ -112,7 +116,13 @@ class Page(HTMLParser):
 
 
 def finish(site: Path) -> list[str]:
-    """What is wrong with the site: links that lead nowhere, files that would be fetched from elsewhere."""
+    """What is wrong with the site: links that lead nowhere, files that would be fetched from elsewhere.
+
+    The generator's help for searching from the disk would be fetched; it is replaced by our own.
+    """
+    for path in site.rglob("*.html"):
+        own = "../" * len(path.relative_to(site).parent.parts) + "worker.js"
+        path.write_text(path.read_text("utf-8").replace(FETCHED, own), "utf-8")
     pages = {path: Page(path.read_text("utf-8")) for path in site.rglob("*.html") if path.name != "404.html"}
     wrong = []
     for path, page in pages.items():

@@ -65,6 +65,19 @@ def tool() -> list[Finding]:
     return t.found(t.scene(bridge=30.0))
 
 
+BAD_STEPS = {
+    "insertion": "a pin 16 mm long under a roof 10 mm over its hole's plate",
+    "order": "a screw before the part that it goes into",
+    "fingers": "a pin to be pulled that stands out 8 mm, a roof 13 mm over it",
+}
+
+
+def bad_step(check: str) -> list[Finding]:
+    import test_steps as t
+
+    return t.found(t.BAD[check])
+
+
 def calibration() -> list[Finding]:
     from tactcad.scenes.rigs.calibration import check_travel
 
@@ -440,6 +453,10 @@ BAD: dict[str, Bad] = {
         "interference", "a screw 0.1 mm beyond its full thread", thread, "tests/checks/test_interference.py"
     ),
     "tool-room": Bad("tools", "a bridge 30 mm over the screw", tool, "tests/checks/test_tools.py"),
+    **{
+        name: Bad("steps", what, lambda name=name: bad_step(name), "tests/checks/test_steps.py")
+        for name, what in BAD_STEPS.items()
+    },
     "motion": Bad("motion", "a foil of 10 um in the way", motion, "tests/rigs/test_motion.py"),
     "moving-weight": Bad("moving weight", "2 N asked for", moving_weight, "tests/rigs/test_rig_statics.py"),
     "scene": Bad(

@@ -18,15 +18,16 @@ from typing import Any
 
 from sound_designs import LEGAL, Draw, as_table, sound_table
 
+from tactcad.design.family import section_types
 from tactcad.design.fields import OneOf
-from tactcad.design.load import SECTION_TYPES
 from tactcad.design.messages import InputError
+from tactcad.design.tree import Design
 
 # Letters of names and titles: more than ASCII, quotes and backslashes among them.
 TITLE = "aZ09 -_.,:;/\\\"'<>&#%äßøŁжλ日本語€"
 CHOICES = {
     f"{section}.{name}": f.metadata["spec"].options
-    for section, kind in SECTION_TYPES.items()
+    for section, kind in section_types(Design).items()
     if section != "origin"
     for name, f in kind.__dataclass_fields__.items()
     if isinstance(f.metadata.get("spec"), OneOf)

@@ -15,8 +15,9 @@ from typing import Any
 
 from hypothesis import strategies as st
 
+from tactcad.design.family import section_types
 from tactcad.design.fields import Number
-from tactcad.design.load import SECTION_TYPES, from_table
+from tactcad.design.load import from_table
 from tactcad.design.materials import PLATE_ALLOYS
 from tactcad.design.tree import Design
 from tactcad.parts.bought.screws import SET_SCREW_LENGTHS
@@ -33,7 +34,7 @@ LEAD = 0.25  # mm, AWG 36 with its insulation
 # Numbers by path: what the design file may hold; stop.gaps holds several.
 LEGAL: dict[str, Number] = {
     f"{section}.{f.name}": f.metadata["spec"]
-    for section, kind in SECTION_TYPES.items()
+    for section, kind in section_types(Design).items()
     if section != "origin"
     for f in fields(kind)
     if isinstance(f.metadata.get("spec"), Number)

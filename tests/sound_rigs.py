@@ -148,7 +148,7 @@ def _calibration(d: Draw, into_sample: float) -> None:
     aside = 0.9 * half * (min(map(min, d.arms)) - 2 * half) / below
     travel = d.number("calibration.travel", high=min(0.9, d.elastic, aside))
     retract = d.number("calibration.retract", high=40.0)
-    d.number("calibration.axis_travel", max(retract, travel, into_sample) + 5.0)
+    d.number("calibration.axis_travel", max(max(retract, travel, into_sample) + 5.0, 9.0))
     d.number("calibration.stage_travel", max(d.far_x, d.far_y))
     d.put("calibration.roller", d.choice("2", "2.5", "3"))
     # the carrier from its middle to an end plate, which stands at half the stack and its own half

@@ -27,7 +27,7 @@ from tactcad.design.messages import CheckFailure, InputError, in_brackets, near
 from tactcad.design.text_values import parse_toml
 
 if TYPE_CHECKING:
-    from tactcad.design.tree import Design
+    from tactcad.design.tree import CommonTables
     from tactcad.parts.language.description import Part
     from tactcad.review.show import ShownPage
     from tactcad.scenes.scene import AddedPart, Scene
@@ -163,7 +163,7 @@ class LoadedDesign:
         return self._read.name
 
     @property
-    def design(self) -> Design:
+    def design(self) -> CommonTables:
         """The parameter tree with the parts added; the first use tries the rules between its fields."""
         if not self._kept:
             from tactcad.parts.rules import refuse_broken

@@ -123,7 +123,7 @@ def test_every_check_runs_on_every_part_and_scene_that_it_is_for(macro, monkeypa
         expected |= {("brep", number), ("step", number), ("mesh", number)}
         expected |= {("wire-cut", number)} if part.process == "wire-cut" else set()
         expected |= {("machining", number)} if part.process in ("milled", "turned", "ground") else set()
-    expected |= {(name, s.name) for name in ("interference", "tools") for s in scenes}
+    expected |= {(name, s.name) for name in ("interference", "tools", "steps") for s in scenes}
     expected |= {("motion", s.name) for s in scenes if s.motions}
     expected |= {("configurations", s.name) for s in posed}
     assert report.runs["calibration travel"] == report.runs["moving weight"] == 1

@@ -10,6 +10,7 @@ import pytest
 from bad_parts import BAD
 
 from tactcad.checks.check import declared
+from tactcad.design.tree import Design
 from tactcad.scenes.rig import all_rigs
 
 ROOT = Path(__file__).parents[2]
@@ -79,6 +80,6 @@ def test_every_timed_check_has_its_times():
         for c in declared(folder)
     }
     timed |= {"build", "origins", "scenes left out"} | {
-        name for rig in all_rigs().values() for name, _ in rig.checks
+        name for rig in all_rigs(Design).values() for name, _ in rig.checks
     }
     assert timed - {"configurations"} == set(times) - {"golden"}

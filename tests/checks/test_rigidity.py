@@ -20,6 +20,7 @@ from tactcad.checks.check_report import Report, as_record
 from tactcad.checks.described.rigidity import check_rigidity, deflections
 from tactcad.design.load import from_table, names
 from tactcad.design.messages import InputError
+from tactcad.design.tree import Design
 from tactcad.parts.array import seating
 from tactcad.parts.array.layout import Layout
 from tactcad.parts.array.seating import carrier_beam, carrier_opens
@@ -84,7 +85,7 @@ def test_what_is_thin_or_loaded_is_found(changes, wrong):
 )
 def test_what_is_said_to_help_helps_and_less_does_not(changes, scene, path, words):
     line = next(s for s in deflections(variant(changes), [scene]) if s.too_much)
-    named, value, legal = remedy(variant(changes), line, all_rigs()[scene].deflections)
+    named, value, legal = remedy(variant(changes), line, all_rigs(Design)[scene].deflections)
     assert (named, value) == (path, attrgetter(path)(variant(changes)))
     said = re.fullmatch(rf"{words} ([\d.]+)( mm| degree)?", legal)
     enough = type(value)(said[1])
@@ -96,7 +97,7 @@ def test_what_is_said_to_help_helps_and_less_does_not(changes, scene, path, word
 def test_what_no_field_helps_says_so():
     line = next(s for s in deflections(load("macro-array"), ["array"]) if s.part == "end plate")
     stuck = replace(line, fields=("clamp.carrier_margin",), gives=line.allowed * 2)
-    assert remedy(variant({"tolerance.pad_height": 0.0001}), stuck, all_rigs()["array"].deflections)[
+    assert remedy(variant({"tolerance.pad_height": 0.0001}), stuck, all_rigs(Design)["array"].deflections)[
         2
     ].startswith("no value alone")
 
@@ -105,7 +106,7 @@ def test_what_helps_is_looked_for_where_no_stop_would_help_too():
     """A row of 500: the whole range of the overload force is tried, up to where no gap protects the hinge."""
     design = variant({"array.row_arms": [[4] * 500] * 2})
     said = [
-        remedy(design, line, all_rigs()["array"].deflections)
+        remedy(design, line, all_rigs(Design)["array"].deflections)
         for line in deflections(design, ["array"])
         if line.too_much
     ]

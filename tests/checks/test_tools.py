@@ -14,7 +14,7 @@ from tactcad.parts.bought.screws import cap_screw, nut, set_screw, threaded_rod
 from tactcad.parts.designs import load
 from tactcad.parts.language.description import Extrusion, Hole, Material, Part
 from tactcad.scenes import make_scene, scene_names
-from tactcad.scenes.scene import DOWN, Placement, Scene, Step
+from tactcad.scenes.scene import DOWN, Move, Placement, Scene, Step
 from tactcad.solids.build import build
 
 pytestmark = pytest.mark.cad
@@ -30,11 +30,12 @@ PLATE = block(
     "PLATE", 20, 20, 10, Hole("tap", (0, 0, 10), (0, 0, -1), 2.5, 10, True, thread="M3", thread_depth=9)
 )
 BRIDGE = block("BRIDGE", 20, 20, 2)
+ORDER = ("plate", "bridge", "screw")
 DRILLED = block("DRILLED", 20, 20, 2, Hole("key", (0, 0, 0), (0, 0, 1), 3.2, 2, True))
 
 
 def scene(
-    bridge: float, over: Part = BRIDGE, screw: Part | None = None, order=("plate", "bridge", "screw"), **step
+    bridge: float, over: Part = BRIDGE, screw: Part | None = None, order=ORDER, moves=(), **step
 ) -> Scene:
     """A screw in a plate, its head 3 mm high on it, under a bridge so far over the plate."""
     placed = {
@@ -42,9 +43,9 @@ def scene(
         "bridge": Placement("B1", over, (0, 0, 10 + bridge)),
         "screw": Placement("SC1", screw or cap_screw("M3", 8.0), (0, 0, 10), DOWN),
     }
+    last = ({}, {"order": moves, **step})
     steps = tuple(
-        Step(name, (placed[name].designator,), (0, 0, 0), "", **(step if name == "screw" else {}))
-        for name in order
+        Step(name, (placed[name].designator,), (0, 0, 0), "", **last[name == "screw"]) for name in order
     )
     return Scene("test", tuple(placed.values()), steps=steps)
 
@@ -73,7 +74,8 @@ def test_a_hole_for_the_key_lets_it_through():
 def test_steps_say_what_stands_there():
     assert found(scene(10.0, order=("plate", "screw", "bridge"))) == []
     assert found(scene(10.0, bench=True)) == []
-    assert found(scene(10.0, aside=("B1",))) == []
+    aside = Move(("B1",), (0, 0, 0), ((50.0, 0, 0),)), ("SC1",), Move(("B1",), (50.0, 0, 0), ((0, 0, 0),))
+    assert found(scene(10.0, moves=aside)) == []
     assert found(scene(10.0, ready=frozenset({"SC1"}))) == []
 
 

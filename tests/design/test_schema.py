@@ -12,7 +12,8 @@ import sys
 import pytest
 from variants import table, variant
 
-from tactcad.design.load import SECTION_TYPES, from_table, names
+from tactcad.design.family import section_types
+from tactcad.design.load import from_table, names
 from tactcad.design.messages import InputError
 from tactcad.design.schema import json_schema, text_schema
 from tactcad.design.tree import NO_TABLES, Design
@@ -83,7 +84,7 @@ def accepted(tree: dict) -> bool:
 def spec_paths() -> list[str]:
     return [
         f"{section}.{f.name}"
-        for section, kind in SECTION_TYPES.items()
+        for section, kind in section_types(Design).items()
         if section != "origin"
         for f in dataclasses.fields(kind)
         if "spec" in f.metadata and f.name != "gaps"

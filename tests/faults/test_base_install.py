@@ -52,17 +52,29 @@ size --stiffness 10 --load-arm 6 --hinge-length 1 --fillet-radius 0.2 --arm-heig
 size --stiffness 10 --load-arm 6 --width 3 --youngs-modulus 7e4 --poisson 0.3 --alloy 7075-T6 --force 0.1
 size --stiffness 10 --load-arm 6 --tolerance 0.01 --model beam --body-height 5 --body-length 4
 size --stiffness 10 --load-arm 6 --within 1% --in 1
+readings grasp-log.csv --map grasp-map.toml --out readings.csv --json
 calibrate calibration.csv --load-cell 57+-1 --run-scatter 0.01 --drop-outliers --out cal.csv
+calibrate log.csv --map log.toml
 calibrate calibration.csv --design macro-array --level 0.9 --within 1% --in 1 --json
 stiffness grasp.csv --calibration cal.csv --reference 8 --level 0.9 --json
 stiffness grasp.csv --calibration cal.csv --design macro-array --coupling 1 --within 1% --in 1
 stiffness grasp.csv --calibration cal.csv --thickness 5+-1 --nu 0.49
+stiffness grasp-log.csv --map grasp-map.toml --calibration cal.csv
 schema --target --json
 grasp macro-array --object E=0.5,nu=0.49,thickness=6 --load 1 --angle 0.5,1 --rung layer --out p.svg
 grasp --object E=0.5,nu=0.49,thickness=6 --within 1% --json
 schema --study
 schema element
 completion bash
+"""
+LOG_MAP = """
+log = { kind = "calibration", time = "t" }
+channels = { V = 1 }
+steps = { by = "marks", column = "step" }
+element = { values = [1] }
+run = { values = [1] }
+displacement = { column = "x", unit = "um" }
+force = { column = "F", unit = "mN" }
 """
 LONG = """
 design target.toml --out designed --best --within 10% --in 5 --json
@@ -89,6 +101,12 @@ def base(tmp_path_factory):
     (work / "target.toml").write_text(SMALL)
     for folder in ("hardware/examples", "src/tactcad/paper/data"):
         shutil.copytree(ROOT / folder, work, dirs_exist_ok=True)
+    log = [
+        "t,F,x,V,step",
+        *(f"{i},{i // 2},{i // 2},{i // 2 * 0.1 + i % 2 * 1e-3},{i // 2 + 1}" for i in range(12)),
+    ]
+    (work / "log.csv").write_text("\n".join(log) + "\n")
+    (work / "log.toml").write_text(LOG_MAP)
     for words in ("init -q", "add A.toml", "-c user.name=a -c user.email=a@b commit -qm A"):
         subprocess.run(["git", *words.split()], cwd=work, check=True)
     env = environment(work)

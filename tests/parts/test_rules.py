@@ -11,7 +11,8 @@ from hypothesis import strategies as st
 from sound_designs import sound_designs
 from variants import DROP, IN_SLOT, ORIGIN, table, variant
 
-from tactcad.design.load import SECTION_TYPES, from_table, names, paths
+from tactcad.design.family import section_types
+from tactcad.design.load import from_table, names, paths
 from tactcad.design.messages import InputError
 from tactcad.design.tree import Design
 from tactcad.parts.array.layout import Layout
@@ -462,7 +463,7 @@ def test_the_shipped_hinge_in_rows_of_any_length(rows):
 
 def _numbers() -> list[tuple[str, float, float]]:
     found = []
-    for section, kind in SECTION_TYPES.items():
+    for section, kind in section_types(Design).items():
         for f in fields(kind) if is_dataclass(kind) else ():
             spec = f.metadata.get("spec")
             if (

@@ -127,6 +127,9 @@ def test_a_scene_takes_three_files(tree):
         assert refused.returncode == 1 and said in refused.stdout + refused.stderr
 
 
+ALL_RIGS = "from tactcad.scenes.rig import all_rigs; all_rigs(Design)"
+
+
 @pytest.mark.parametrize(
     ("text", "said"),
     [
@@ -142,7 +145,7 @@ def test_a_scene_takes_three_files(tree):
 def test_an_incomplete_rig_is_refused_at_import(tree, text, said):
     tree.write("scenes/rigs/lacking.py", text)
     done = subprocess.run(
-        [sys.executable, "-c", "from tactcad.scenes.rig import all_rigs; all_rigs()"],
+        [sys.executable, "-c", f"from tactcad.design.tree import Design; {ALL_RIGS}"],
         env=os.environ | {"PYTHONPATH": str(tree.src)},
         capture_output=True,
         text=True,
@@ -238,6 +241,89 @@ def test_a_design_rule_takes_one_file(tree):
         check=False,
     )
     assert asked.returncode and "rule rows_stand_together has no witness: add " in asked.stderr
+
+
+CHECK = """
+from collections.abc import Iterator
+
+from tactcad.parts.language.description import Part
+from tactcad.parts.language.finding import Finding, at_most
+
+from ..check import Check
+
+HEAVIEST = 10.0  # g
+
+
+def check_weight(part: Part) -> Iterator[Finding]:
+    yield from at_most("heavy", part.part_no, part.mass, HEAVIEST, f"{part.mass:.0f} g", (0.0, 0.0, 0.0))
+
+
+CHECKS = (Check("weight", "part", lambda part, _: check_weight(part), place=60),)
+"""
+BAD_PART = """
+
+def heavy() -> list[Finding]:
+    from tactcad.checks.described.weight import check_weight
+    from tactcad.contour import rectangle
+    from tactcad.parts.language.description import Extrusion, Part
+    from tactcad.parts.language.part_materials import CARBON_STEEL
+
+    body = Extrusion(rectangle(0.0, 0.0, 40.0, 20.0), 20.0)
+    return [*check_weight(Part("b", "Block", "milled", CARBON_STEEL, body))]
+
+
+BAD["heavy"] = Bad("weight", "a block of 126 g", heavy, "tests/bad_parts.py")
+"""
+ASKED = "import test_checks_table as t; t.test_every_check_in_the_code_has_its_bad_part()"
+FOUND = """
+from tactcad.checks.check import Job, described, run_each
+from tactcad.checks.check_report import Report
+from tactcad.parts.designs import load
+from tactcad.scenes import make_scene
+
+design, report = load("tiny.toml"), Report("tiny")
+for part in make_scene(design, "array").parts:
+    run_each(report, described(design), "part", part, Job(design, ["array"]))
+for finding in report.failures:
+    print(finding.check, finding.part, finding.value)
+import bad_parts
+print(*bad_parts.BAD["heavy"].find())
+"""
+
+
+def test_a_check_takes_two_files(tree):
+    """It is found and run, and its bad part is asked for by name."""
+    tests = tree.folder / "tests"
+    shutil.copytree(HERE.parent, tests, ignore=shutil.ignore_patterns("__pycache__", "__snapshots__"))
+    (tree.folder / "hardware").symlink_to(HERE.parents[1] / "hardware")  # that bad parts vary
+    tree.write("checks/described/weight.py", CHECK)
+
+    def run(script: str) -> subprocess.CompletedProcess[str]:
+        path = os.pathsep.join(map(str, (tree.src, tests, tests / "checks")))
+        return subprocess.run(
+            [sys.executable, "-c", script],
+            cwd=tree.folder,
+            env=os.environ | {"PYTHONPATH": path},
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+
+    asked = run(ASKED)
+    assert asked.returncode and "check heavy has no bad part: add one to tests/bad_parts.py" in asked.stderr
+
+    (tests / "bad_parts.py").write_text((tests / "bad_parts.py").read_text("utf-8") + BAD_PART, "utf-8")
+    tree.changed.add("tests/bad_parts.py")
+    assert len(tree.changed) == 2
+    assert (done := run(ASKED)).returncode == 0, done.stderr
+
+    sensor(tree, "")
+    done = run(FOUND)
+    assert done.returncode == 0, done.stderr
+    *of_array, of_block = done.stdout.splitlines()
+    assert of_array and all(line.startswith("heavy tiny-") for line in of_array)
+    assert all(float(line.split()[-1]) > 10.0 for line in of_array)
+    assert "126 g" in of_block  # 40 x 20 x 20 mm of 7850 kg/m3: 125.6 g
 
 
 RUNG = """

@@ -19,6 +19,22 @@ SOFTWARE = ("--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-
 LOADED = 60_000  # ms, at most, on a busy machine
 DRAWN = "() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))"
 SET = """(input, value) => { input.value = value; input.dispatchEvent(new Event('input')); }"""
+# Words of table cells that stand on two lines; a word ends at a blank or a hyphen.
+BROKEN = """() => [...document.querySelectorAll('table')].flatMap((table) => {
+  const found = [];
+  for (const cell of table.querySelectorAll('td, th')) {
+    const texts = document.createTreeWalker(cell, NodeFilter.SHOW_TEXT);
+    while (texts.nextNode()) {
+      for (const word of texts.currentNode.data.matchAll(/[^\\s-]+/g)) {
+        const range = document.createRange();
+        range.setStart(texts.currentNode, word.index);
+        range.setEnd(texts.currentNode, word.index + word[0].length);
+        if (range.getClientRects().length > 1) found.push(word[0]);
+      }
+    }
+  }
+  return found;
+})"""
 
 
 def chromium() -> str:

@@ -303,7 +303,9 @@ def test_the_page_follows_the_file(running, live, server):
     assert "element.hinge_thickness 0.25 \u2192 0.4" in page.inner_text("#live-first")
     page.click("#live summary")
     told = [row.split("\t") for row in page.inner_text("#live-all").splitlines()]
-    for what, estimated in zip(("K, N/mm", "rated, N", "yields at, N"), zip(*map(estimates, (TEXT, THICK)))):
+    for what, estimated in zip(
+        ("K, N/mm", "rated force, N", "yield force, N"), zip(*map(estimates, (TEXT, THICK)))
+    ):
         rows = [row[2:5:2] for row in told if row[:2] == ["E1", what]]
         assert rows == ([[f"{value:.4g}" for value in estimated]] if len(set(estimated)) > 1 else [])
     # what is said to have changed reads other after than before, the mass by its seventh figure, too

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from browser import Opened, chromium
+from browser import BROKEN, Opened, chromium
 
 from tactcad.scenes import make_scene
 
@@ -71,6 +71,7 @@ def fresh(opened):
         opened.page.click("[data-scene=array]")
     opened.page.click("[data-tab=Part]")
     opened.page.click("#show-all")
+    opened.page.evaluate("document.getElementById('motions').open = true")
     yield opened
     assert opened.troubles == []
     assert all(url.startswith(("file:", "blob:", "data:")) for url in opened.requests)
@@ -84,7 +85,9 @@ def differ(a: np.ndarray, b: np.ndarray) -> int:
 def test_the_picture_shows_every_colour_of_its_parts(fresh, macro_scene):
     fresh.page.click("#open-cover")
     shown = fresh.picture().reshape(-1, 3)
-    hues = {p.part.colour for p in macro_scene.placements if p.designator not in macro_scene.cover}
+    # elements have the colour of their stiffness: of ten the softest and the stiffest two
+    others = [p.part for p in macro_scene.placements if p.designator not in macro_scene.cover]
+    hues = {part.colour for part in others if part.kind != "element"} | {"#fde725", "#482475"}
     assert len(np.unique(shown, axis=0)) > 50
     for colour in hues:
         # lighting scales a colour: pixels whose direction is the colour's
@@ -98,6 +101,40 @@ def tree_holds(opened, placed) -> None:
     """Every designator stands in the tree, and a click on it gives its part's number."""
     said = opened.page.evaluate(EACH)  # all at once in the page; another test clicks by the mouse
     assert sorted(said) == sorted([p.designator, p.part.part_no] for p in placed)
+
+
+SIZES = ((1400, 900), (1920, 1080), (800, 1000), (390, 844))
+EYE = "() => started.then(({view: {viewer: v}}) => v.getCameraPosition()[2] - v.getCameraTarget()[2])"
+# Tables wider than what shows them.
+WIDE = """() => [...document.querySelectorAll('.wide')]
+  .filter((box) => box.scrollWidth > box.clientWidth + 1).map((box) => box.textContent.slice(0, 60))"""
+
+
+def test_the_array_opens_on_its_sensing_side_and_a_rig_from_above(fresh):
+    fresh.page.click("[data-scene=calibration]")
+    assert fresh.page.evaluate(EYE) > 1.0
+    fresh.page.click("[data-scene=array]")
+    assert fresh.page.evaluate(EYE) < -1.0
+    assert fresh.text("#stiffness-scale").split() == ["Stiffness", "K,", "N/mm", "7.18", "16.5", "38"]
+
+
+@pytest.mark.parametrize("size", SIZES)
+def test_no_cell_of_a_table_is_narrower_than_its_longest_word(running, record, tmp_path, size):
+    page = Opened(running, written(tmp_path / "review.html", record), "light", size)
+    page.page.locator("[data-designator=E1] > .row > b").click()
+    for tab in ("Part", "Findings", "Array", "Bill"):
+        page.page.click(f"[data-tab={tab}]")
+        assert page.page.evaluate(BROKEN) == [] and page.page.evaluate(WIDE) == [], tab
+    assert page.page.evaluate("document.documentElement.scrollWidth") <= size[0]
+    page.close()
+
+
+def test_findings_that_differ_in_numbers_alone_are_one_sentence(fresh, record):
+    fresh.page.click("[data-tab=Findings]")
+    rated = [f for f in record[0]["findings"] if f["check"] == "rated-force"]
+    (card,) = (t for t in fresh.page.locator(".finding").all_inner_texts() if "not at the 2 N" in t)
+    assert card.startswith(f"{len(rated)} flags") and "rated at 1.21 to 1.67 N, not at the 2 N" in card
+    assert all(f["designators"][0] in card.split() for f in rated)
 
 
 def test_the_tree_has_every_designator_and_a_click_gives_its_number(fresh, macro_scene):
@@ -127,7 +164,7 @@ def test_a_click_in_the_picture_picks_the_part_there(fresh):
     fresh.page.hover("[data-designator=E4] > .row")
     fresh.page.click("[data-designator=E4] > .row > .alone")
     box = fresh.page.locator("#canvas canvas").first.bounding_box()
-    seen = (fresh.picture().max(axis=2) < 250).nonzero()
+    seen = (fresh.picture().min(axis=2) < 150).nonzero()  # the softest is yellow, the ground white
     row, column = int(np.median(seen[0])), int(np.median(seen[1]))
     fresh.page.mouse.click(box["x"] + column, box["y"] + row)
     assert fresh.text("#part-number") == "macro-array-element-a8mm"
@@ -241,7 +278,8 @@ def test_a_finding_shows_its_part_and_its_place(fresh, record):
     found = [f for f in record[0]["findings"] if f["place"]][0]
     fresh.page.click("[data-tab=Findings]")
     whole = fresh.picture()
-    fresh.page.click(".finding >> nth=0")
+    fresh.page.locator(f".finding .link[title*='{found['about']}']").first.click()
+    assert fresh.page.locator(".finding .link").count() == len(record[0]["findings"])
     shown = fresh.page.locator("#tree [data-designator]:has(> .row > input:checked)")
     assert shown.evaluate_all("all => all.map((e) => e.dataset.designator)") == list(found["designators"])
     fresh.page.wait_for_selector("#marker", state="visible")  # it is put there with the next picture

@@ -8,6 +8,7 @@ from variants import DROP, variant
 
 from tactcad.design.load import names
 from tactcad.design.messages import InputError
+from tactcad.design.tree import Design
 from tactcad.parts.array.layout import Layout
 from tactcad.parts.designs import load
 from tactcad.parts.rules import broken_rules, design_rules
@@ -68,7 +69,7 @@ MISFITS = {
 def test_there_is_a_witness_for_every_rule():
     of_rigs = ("cart_rules", "calibration_rules", "grasping_rules")
     refusing = {n for n, r in design_rules().items() if r.find.__module__.endswith(of_rigs)}
-    fitting = {r.name for rig in all_rigs().values() for r in rig.rules}
+    fitting = {r.name for rig in all_rigs(Design).values() for r in rig.rules}
     for name, where in [(n, "WITNESSES") for n in refusing - set(WITNESSES)] + [
         (n, "MISFITS") for n in fitting - set(MISFITS)
     ]:
@@ -89,7 +90,7 @@ def test_a_design_that_breaks_it_is_refused(rule):
 def test_an_array_that_does_not_fit_costs_the_scene_and_says_why(rule):
     scene, changes = MISFITS[rule]
     design = variant(changes)
-    assert next(r for r in all_rigs()[scene].rules if r.name == rule)(Layout(design))
+    assert next(r for r in all_rigs(Design)[scene].rules if r.name == rule)(Layout(design))
     assert scene not in scene_names(design)
     assert any(str(left).startswith(f"scene {scene} left out: rule ") for left in left_out(design))
     with pytest.raises(InputError, match="left out"):

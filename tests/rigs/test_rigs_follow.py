@@ -49,7 +49,7 @@ def test_every_rig_is_there_or_a_line_names_the_field(count, sheet):
     there, lines = scene_names(design), [str(left) for left in left_out(design)]
     said = [LINE.fullmatch(line) for line in lines]
     assert all(said), lines
-    assert sorted([*there, *(m[1] for m in said)]) == sorted(all_rigs())
+    assert sorted([*there, *(m[1] for m in said)]) == sorted(all_rigs(Design))
     for m in said:
         assert m[2] in paths(design) and m[3] and m[4]
     assert not [f for f in check_rigidity(design, there, []) if f.severity == "fail"]
@@ -63,7 +63,7 @@ def test_how_many_have_which_rig():
         reach = (n - 1) * (t + 1.0) / 2
         fits = any(reach <= s.travel and s.size / 2 + reach <= POST_Y - 0.5 for s in STAGES)
         assert ("calibration" in scenes) == fits, (n, t)
-    assert set(all_rigs()) == set(there[7, 3]) == set(there[5, 5])
+    assert set(all_rigs(Design)) == set(there[7, 3]) == set(there[5, 5])
 
 
 @pytest.mark.parametrize("count, sheet", [(10, 3), (7, 5), (12, 6)])

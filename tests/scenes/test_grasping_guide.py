@@ -44,14 +44,13 @@ def test_latch_and_stop_are_there_before_they_are_used():
         for word in ("latch", "end stop")
     }
     rail = order.index("Guide rail")
-    assert "ES1 LP1" in steps["Guide rail"][1]
+    assert "ES1" in steps["Guide rail"][1] and "LP1" in steps["Guide rail"][1]
     assert first["latch"] == first["end stop"] == rail
-    # the carriage is held while something is screwed on it, and the sample is out of the flat plate's way
+    # the carriage is held while something is screwed on it, and no sample lies yet where the flat plate does
     text = steps["Bar on the carriage"][0]
-    assert (
-        text.index("set the latch under it") < text.index("Screw the bar") < text.index("Take the sample off")
-    )
-    assert text.index("Take the sample off") < text.index("lower the array")
+    assert text.index("set the latch under it") < text.index("screw it on the carriage")
+    level, sample = order.index("Pads level with the lid"), order.index("Sample")
+    assert order.index("Cart on the base plate") < level < sample < order.index("Weights")
 
 
 def test_the_moving_weight_is_in_grams_too():

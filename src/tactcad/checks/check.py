@@ -15,7 +15,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any, Literal, get_args
 
 from tactcad.design.family import family_of
-from tactcad.design.tree import Design
+from tactcad.design.tree import CommonTables
 from tactcad.parts.array.stiffness_table import Deflection
 from tactcad.parts.language.description import Part
 from tactcad.parts.language.finding import Finding
@@ -49,7 +49,7 @@ class Job:
     meetings     of pairs of parts, known from other scenes
     """
 
-    design: Design
+    design: CommonTables
     names: Sequence[str]
     scenes: Sequence[Scene] = ()
     shop: Shop = field(default_factory=load_shop)
@@ -111,22 +111,22 @@ def ordered(checks: Iterable[Check]) -> tuple[Check, ...]:
     return tuple(found)
 
 
-def described(design: Design) -> tuple[Check, ...]:
+def described(design: CommonTables) -> tuple[Check, ...]:
     """The checks that need no solids: of all designs, and of the design's family."""
     return ordered((*declared("described"), *declared(family_of(design).checks)))
 
 
-def of_rigs(design: Design, scenes: Sequence[Scene]) -> list[Check]:
+def of_rigs(design: CommonTables, scenes: Sequence[Scene]) -> list[Check]:
     """The checks that the rigs of these scenes declare."""
 
-    def declared_on(scene: Scene, name: str, find: Callable[[Design, Scene], list[Finding]]) -> Check:
+    def declared_on(scene: Scene, name: str, find: Callable[[CommonTables, Scene], list[Finding]]) -> Check:
         return Check(name, "design", lambda design, _: find(design, scene), RIGS)
 
     return [declared_on(scene, *each) for scene in scenes for each in rig_of(design, scene.name).checks]
 
 
 def run_each(
-    report: Report, checks: Iterable[Check], on: Subject, subject: Design | Part | Scene, job: Job
+    report: Report, checks: Iterable[Check], on: Subject, subject: CommonTables | Part | Scene, job: Job
 ) -> None:
     """Run those of the checks that are on such a subject, and for it."""
     for check in checks:
@@ -134,7 +134,7 @@ def run_each(
             report.run(check.name, check.run, subject, job)
 
 
-def quick_failures(design: Design) -> list[Finding]:
+def quick_failures(design: CommonTables) -> list[Finding]:
     """Failures of the design as a whole that take milliseconds to find. It must keep its rules."""
     report = Report(design.name)
     quick = [c for c in described(design) if c.quick]
@@ -142,7 +142,7 @@ def quick_failures(design: Design) -> list[Finding]:
     return report.failures
 
 
-def slow_failures(design: Design) -> list[Finding]:
+def slow_failures(design: CommonTables) -> list[Finding]:
     """Failures that take a second to find: of arrays made virtually, of every part's description, of rigs."""
     names = scene_names(design)
     scenes = [make_scene(design, name) for name in names]

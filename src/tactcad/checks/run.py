@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from tactcad.design.load import stale_origins
-from tactcad.design.tree import Design
+from tactcad.design.tree import CommonTables
 from tactcad.parts.language.description import Part
 from tactcad.parts.language.finding import Finding, Severity
 from tactcad.scenes import left_out, make_scene, overall_size
@@ -20,7 +20,7 @@ from .shop import DEFAULT, load_shop
 
 
 def run_checks(
-    design: Design,
+    design: CommonTables,
     scene_names: Sequence[str],
     shop_file: Path = DEFAULT,
     say: Callable[[int, int, str], None] = lambda done, total, text: None,
@@ -82,12 +82,12 @@ def run_checks(
     return report
 
 
-def _left_out(design: Design, severity: Severity = "flag") -> list[Finding]:
+def _left_out(design: CommonTables, severity: Severity = "flag") -> list[Finding]:
     """A rig that cannot take this array is flagged with the reason."""
     return [Finding("scene", severity, design.name, (), 0, 0, str(left)) for left in left_out(design)]
 
 
-def _stale(design: Design) -> list[Finding]:
+def _stale(design: CommonTables) -> list[Finding]:
     """Sources of values that were changed since."""
     return [Finding("origin", "flag", design.name, (), 0, 0, said) for said in stale_origins(design)]
 

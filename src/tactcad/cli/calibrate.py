@@ -10,10 +10,11 @@ from typing import TYPE_CHECKING
 from tactcad.design.messages import InputError
 
 from .parser import add_needless_allowance, allowance
+from .readings import add_map, from_log
 
 if TYPE_CHECKING:
     from tactcad.design.family import FamilyReadings
-    from tactcad.design.tree import Design
+    from tactcad.design.tree import CommonTables
     from tactcad.lab.load_cell import LoadCell
 
 EXAMPLES = """\
@@ -22,14 +23,18 @@ EXAMPLES = """\
   tactcad calibrate mine.csv --load-cell 57.04+-0.5 --run-scatter 0.005   measured cell, runs known to repeat
   tactcad calibrate mine.csv --design my-sensor.toml              the load cell of the design's [calibration]
   tactcad calibrate mine.csv --load-cell inf --json               a rigid force sensor; JSON
+  tactcad calibrate run7.lvm --map map.toml --out cal.csv         a lab's log as it is (tactcad readings
+  --help)
 
 FILE is CSV with the columns element, run, displacement, force, signal: the stage's displacement, in mm, N
 and V; or with the unit in the name: displacement_um, force_mN, signal_mV. Lines that start with # are
-comments; semicolons or tabs between columns, and decimal commas with them, are read too."""
+comments; semicolons or tabs between columns, and decimal commas with them, are read too. With a column
+time_s a displacement may be read any number of times, and where it returns later drift is told from it."""
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("file", metavar="FILE", help="readings (CSV)")
+    add_map(parser)
     parser.add_argument(
         "--load-cell",
         metavar="K[+-U]",
@@ -63,17 +68,20 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     from tactcad.design.files import refuse_overwriting, write_whole
-    from tactcad.lab import calibration, calibration_file, readings
+    from tactcad.lab import calibration, calibration_file, log_readings, readings
 
     from .streams import slow_work
 
     allowance(args)
     if args.out:
-        refuse_overwriting(args.out, args.file)
+        refuse_overwriting(args.out, args.file, args.map)
     load_cell = _load_cell(args.load_cell, args.design)
     with slow_work(sys.stderr) as tell:
         tell(0, 1, f"reading {args.file}")
-        table = readings.calibration(args.file)
+        if args.map:
+            table = log_readings.calibration(from_log(args.file, args.map))
+        else:
+            table = readings.calibration(args.file)
         rows = calibration.calibrate(
             table,
             load_cell,
@@ -115,7 +123,7 @@ def _load_cell(given: str | None, design: str | None) -> LoadCell:
     return cell
 
 
-def _readings_of(source: str) -> tuple[FamilyReadings, Design]:
+def _readings_of(source: str) -> tuple[FamilyReadings, CommonTables]:
     """What the family of a design makes of readings, and the design."""
     from tactcad.design.family import family_of
     from tactcad.parts.designs import load

@@ -15,7 +15,7 @@ from tactcad.mechanics.ladder import DEFAULT_RUNG, FINITE_ELEMENTS, FITTED, RUNG
 from .parser import UNLISTED, add_allowance, allowance, refuse_named
 
 if TYPE_CHECKING:
-    from tactcad.design.tree import Design, Tolerance
+    from tactcad.design.tree import CommonTables, Design, Tolerance
     from tactcad.lab.array_estimate import ElementEstimate
     from tactcad.mechanics.accuracy import Candidate
     from tactcad.mechanics.section import HingeSection
@@ -99,7 +99,7 @@ def run(args: argparse.Namespace) -> int:
     return family_of(design).estimate.run(args, asked, design)
 
 
-def plain_estimate(args: argparse.Namespace, asked: Allowance, design: Design) -> int:
+def plain_estimate(args: argparse.Namespace, asked: Allowance, design: CommonTables) -> int:
     """Of a family with one model: its elements' figures as they are."""
     from tactcad.design.family import family_of
     from tactcad.scenes import overall_size, stated_size

@@ -44,6 +44,7 @@ GROUPS = {
         "estimate": "stiffness, strain and strength of a design's elements, or of a table of designs",
         "size": "the hinge that gives a wanted stiffness, and what cutting tolerance leaves of it",
         "grasp": "press an array on a soft body: deflection, force and signal of every element",
+        "readings": "a lab's log (CSV, .lvm, .tdms) to the tables that calibrate and stiffness read",
         "calibrate": "force, deflection and signal readings to stiffness and sensitivity, with intervals",
         "stiffness": "grasp readings and a calibration to the object's stiffness, with intervals",
         "validate": "compare the models with the paper's Tables 1 and 2, as a report",

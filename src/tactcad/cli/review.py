@@ -99,5 +99,6 @@ def run(args: argparse.Namespace) -> int:
     else:
         for path, data in made.items():
             what = "reloads it in FreeCAD" if path == macro else ", ".join(names)
-            print(f"{path}: {what}; {len(data) / 1e6:.2f} MB")
+            size = f"{len(data) / 1e6:.2f} MB" if len(data) >= 1e5 else f"{len(data) / 1e3:.1f} kB"
+            print(f"{path}: {what}; {size}")
     return 0

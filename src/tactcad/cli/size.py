@@ -94,12 +94,14 @@ def run(args: argparse.Namespace) -> int:
         raise InputError(
             f"--hinge-{args.solve}", "is what is to be found; leave it out", value=getattr(args, parameter)
         )
+    from tactcad.design.family import taken_as
+    from tactcad.design.tree import Design
     from tactcad.lab.array_estimate import material_lines, material_record
     from tactcad.parts.designs import load
 
     asked = allowance(args)
     refuse_named(asked, "--model", args.model)
-    design = load(args.design)
+    design = taken_as(load(args.design), Design, "size --design")
     if asked.within is None:
         answer = _answer(args, design, parameter, args.model or DEFAULT_RUNG)
     else:

@@ -6,15 +6,18 @@ import argparse
 import sys
 
 from .parser import add_needless_allowance, allowance
+from .readings import add_map, from_log
 
 EXAMPLES = """\
   tactcad calibrate hardware/examples/calibration.csv --out calibration.csv
   tactcad stiffness hardware/examples/grasp.csv --calibration calibration.csv
   tactcad stiffness mine.csv --calibration calibration.csv --thickness 6+-0.3 --nu 0.49
   tactcad stiffness mine.csv --calibration calibration.csv --reference 1 --json
+  tactcad stiffness run8.tdms --map map.toml --calibration calibration.csv   a lab's log as it is
 
 FILE is CSV with the columns load, element, signal (N and V, or load_mN, signal_mV), and where there are
-several, run and sample: every element at every load. The calibration is what `tactcad calibrate` wrote
+several, run and sample: every element at every load. With a column time_s a load may be read any number of
+times, and where it returns later drift is told from it. The calibration is what `tactcad calibrate` wrote
 (--out, or --json)."""
 
 
@@ -22,6 +25,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     from tactcad.design.load import DEFAULT_DESIGN
 
     parser.add_argument("file", metavar="FILE", help="grasp readings (CSV)")
+    add_map(parser)
     parser.add_argument(
         "--calibration", required=True, metavar="FILE", help="calibration of the elements (CSV or JSON)"
     )
@@ -69,7 +73,7 @@ def run(args: argparse.Namespace) -> int:
     from tactcad.design.family import family_of
     from tactcad.design.load import DEFAULT_DESIGN
     from tactcad.design.messages import InputError
-    from tactcad.lab import calibration_file, grasp, pads, readings
+    from tactcad.lab import calibration_file, grasp, log_readings, pads, readings
     from tactcad.parts.designs import load
 
     from .streams import slow_work
@@ -88,7 +92,9 @@ def run(args: argparse.Namespace) -> int:
     results: list[grasp.Grasp] = []
     with slow_work(sys.stderr) as tell:
         tell(0, 1, f"reading {args.file}")
-        samples = readings.grasps(args.file)
+        samples = (
+            log_readings.grasps(from_log(args.file, args.map)) if args.map else readings.grasps(args.file)
+        )
         for g in samples:
             tell(len(results), len(samples), f"sample {g.sample}")
             shares = pads.coupling(source, g, args.coupling or 0.0)

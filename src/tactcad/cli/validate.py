@@ -29,8 +29,10 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
+    from tactcad.design.family import taken_as
     from tactcad.design.files import refuse_overwriting
     from tactcad.design.load import find
+    from tactcad.design.tree import Design
     from tactcad.export.publication import replacing
     from tactcad.paper import array_model as array
     from tactcad.paper import published, validation
@@ -41,7 +43,9 @@ def run(args: argparse.Namespace) -> int:
         refuse_overwriting(args.out, args.table1, args.table2, find(args.design))
     with replacing(args.out, report.SCHEMA, args.others) if args.out else nullcontext() as work:
         data = published.load(args.table1, args.table2)
-        made = validation.validate(data, array.from_design(load(args.design)))
+        made = validation.validate(
+            data, array.from_design(taken_as(load(args.design), Design, "validate --design"))
+        )
         as_json = report.to_json(made)
         if work:
             files = {"report.html": report.to_html(made).encode(), "report.json": as_json.encode()}

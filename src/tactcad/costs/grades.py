@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 
 from tactcad.design.allowance import Grade
 from tactcad.design.family import family_of
-from tactcad.design.tree import Design
+from tactcad.design.tree import CommonTables
 from tactcad.export.cache import Cache, default_root
 from tactcad.export.inputs import digest
 from tactcad.fem.mapped_mesh import layers, plane_mesh
@@ -57,7 +57,7 @@ REPEATS = 5  # the shortest counts: disturbances only add time; in all half a se
 KEPT = 24 * 3600.0  # s; chosen: a machine that was slow for hours is measured again the next day
 
 
-def check_grades(checked: Sequence[tuple[Design, Sequence[str]]]) -> list[Grade]:
+def check_grades(checked: Sequence[tuple[CommonTables, Sequence[str]]]) -> list[Grade]:
     """Every check of these designs' scenes, the parts meshed by ANGULAR."""
     fixed = published()["check"]["start"]
     counted = [counts(*each) for each in checked]
@@ -68,7 +68,7 @@ def check_grades(checked: Sequence[tuple[Design, Sequence[str]]]) -> list[Grade]
 
 
 def export_grades(
-    design: Design, scenes: Sequence[str], drawings: bool = False, guides: bool = False
+    design: CommonTables, scenes: Sequence[str], drawings: bool = False, guides: bool = False
 ) -> list[Grade]:
     """An export with nothing in the cache, the parts made written as STL, too, meshed by ANGULAR."""
     count, parts = counts(design, scenes)
@@ -83,7 +83,7 @@ def meshing_of(grade: Grade) -> Meshing:
     return next(Meshing(a, grade.error) for a in ANGULAR if _triangles(a) == grade.name)
 
 
-def counts(design: Design, scenes: Sequence[str]) -> tuple[Mapping[str, float], list[Part]]:
+def counts(design: CommonTables, scenes: Sequence[str]) -> tuple[Mapping[str, float], list[Part]]:
     """How many elements, scenes, parts, parts made and placed parts; and the parts, each once."""
     made = [make_scene(design, name) for name in scenes]
     parts = list({part.part_no: part for scene in made for part in scene.parts}.values())
@@ -116,7 +116,7 @@ def _meshing_seconds(parts: Sequence[Part], angular: float) -> float:
     return float(power_law(published()["mesh"]["seconds"][f"{angular:g}"], features).sum())
 
 
-def build_grades(design: Design) -> list[Grade]:
+def build_grades(design: CommonTables) -> list[Grade]:
     """`tactcad build` of so many arrays of each distribution, its stack included."""
     elements = {"element": len(family_of(design).layout(design).elements)}
     return _built(linear(published()["build"], elements), linear(published()["array"], elements))

@@ -16,10 +16,10 @@ from .files import read_text
 from .load import MOST_BYTES, find, names, parse
 from .messages import InputError
 from .text_values import parse_toml
-from .tree import NO_TABLES, Design, Identity
+from .tree import NO_TABLES, CommonTables, Identity
 
 
-def design_text(design: Design, heading: str = "") -> str:
+def design_text(design: CommonTables, heading: str = "") -> str:
     """TOML text of a design: every table with every value that is not derived, then their origins.
 
     Parameters

@@ -8,6 +8,7 @@ from .messages import InputError
 
 EXTRAS = {  # and the packages of each that are imported
     "cad": ("OCP", "build123d", "manifold3d", "trimesh"),
+    "logs": ("nptdms",),
     "review": ("ocp_viewer",),
     "robot": ("mujoco", "yourdfpy"),
     "sweep": ("dask", "distributed", "pyarrow"),

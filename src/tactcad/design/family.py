@@ -14,11 +14,12 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from functools import cache, cached_property
 from importlib import import_module
-from typing import Any
+from typing import Any, TypeVar
 
 from .messages import InputError
 from .tree import NO_TABLES, CommonTables
 
+Spec = TypeVar("Spec", bound=CommonTables)
 FOLDER = "tactcad.families"  # above all rooms that it names; looked up, so that no lower room imports it
 
 
@@ -96,10 +97,12 @@ class FamilyPads:
     places   (design) to x, y, number, length and width of the pads, mm
     springs  (design) to those pads on their springs, `tactcad.contact.press.Pads`, and the signal of each
              element over its pad's sink, V/mm
+    limit    (design) to how far a pad may stand above or below their plane, mm
     """
 
     places: Late
     springs: Late
+    limit: Late
 
 
 @dataclass(frozen=True)
@@ -221,6 +224,15 @@ def all_families() -> dict[str, Family]:
 def family_of(design: CommonTables) -> Family:
     """The family of a design."""
     return next(f for f in all_families().values() if f.spec is type(design))
+
+
+def taken_as(design: CommonTables, spec: type[Spec], where: str) -> Spec:
+    """The design, which must be of the family whose class is `spec`. Raises InputError at `where`."""
+    if not isinstance(design, spec):
+        able = next(f.name for f in all_families().values() if f.spec is spec)
+        what = "does not take designs of this family"
+        raise InputError(where, what, value=family_of(design).name, legal=able)
+    return design
 
 
 def family_with(tables: Iterable[str]) -> Family:

@@ -11,13 +11,13 @@ from json import dumps
 from pathlib import Path
 from typing import Any
 
-from .family import all_families, family_with, section_types
+from .family import all_families, family_with
 from .fields import Number, shown_text
 from .files import read_text
 from .materials import completed
 from .messages import InputError, nearest, one_of
 from .text_values import as_number, parse_toml
-from .tree import NO_TABLES, CommonTables, Design, Element, Hinge, SheetMaterial, Stop
+from .tree import NO_TABLES, CommonTables, Element, Hinge, SheetMaterial, Stop
 
 # A design is a page of text; a larger file is a mistake or an attack, and is refused without parsing.
 MOST_BYTES = 1_000_000
@@ -25,7 +25,7 @@ MOST_BYTES = 1_000_000
 DEFAULT_DESIGN = "macro-array"
 
 
-def read(source: str | Path) -> Design:
+def read(source: str | Path) -> CommonTables:
     """The design in a file, or the one of that name in hardware/, checked field by field.
 
     Rules between fields are tried by `tactcad.parts.designs.load`, which is what commands call. Raises
@@ -67,7 +67,7 @@ def _hardware_folders() -> list[Path]:
     return [here] if here.is_dir() and here.samefile(own) else [here, own]
 
 
-def parse(text: str, where: str) -> Design:
+def parse(text: str, where: str) -> CommonTables:
     """Read a design from TOML text; rules between fields are not tried.
 
     `where` names the text in messages. Raises InputError as `read` does.
@@ -75,7 +75,7 @@ def parse(text: str, where: str) -> Design:
     return from_table(parse_toml(text, where))
 
 
-def from_table(table: dict[str, Any]) -> Design:
+def from_table(table: dict[str, Any]) -> CommonTables:
     """Read a design from the nested dict that TOML gives."""
     family = family_with(table)
     for name, value in table.items():
@@ -101,12 +101,11 @@ def from_table(table: dict[str, Any]) -> Design:
     design = family.spec(**family.spec.completed(values), origin={})
     design = dataclasses.replace(design, origin=_origins(table.get("origin", {}), design))
     _ = design.differences  # refuses values that are not those of the material's name
-    return typing.cast(Design, design)
+    return typing.cast(CommonTables, design)
 
 
 SCHEMA = "tactcad schema"  # prints every field
 OTHER_FILES = {"target": "a target is for `tactcad design`", "study": "a study is for `tactcad sweep`"}
-SECTION_TYPES = section_types(Design)  # of facing rows
 
 
 def read_table(kind: type, table: dict[str, Any], path: str) -> Any:

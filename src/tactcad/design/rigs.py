@@ -29,7 +29,7 @@ class Calibration:
         Number("mm", 0.5, 100, "horizontal micro-stages reach at least this far each way"), 12.5
     )
     axis_travel: float = given(
-        Number("mm", 0.5, 100, "vertical micrometer axis reaches this far each way"), 6.5
+        Number("mm", 0.5, 100, "vertical micrometer axis reaches this far each way"), 12.5
     )
     retract: float = given(Number("mm", 0.1, 50, "tip is lifted this far before the stages move"), 1.0)
     roller: str = given(

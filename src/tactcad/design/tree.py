@@ -320,6 +320,11 @@ class CommonTables:
         since the elements are linear; None where the design has the table's."""
         return next((d.table / d.value for d in self.differences if d.name == "youngs_modulus"), None)
 
+    @property
+    def plate_alloy(self) -> str:
+        """Alloy of milled plates, by its row of the table; a family's own class may leave it to a field."""
+        return Clamp.plate_alloy
+
 
 @dataclass(frozen=True)
 class Design(CommonTables):
@@ -348,3 +353,7 @@ class Design(CommonTables):
         from .following import followed
 
         return followed(tables)
+
+    @property
+    def plate_alloy(self) -> str:
+        return self.clamp.plate_alloy

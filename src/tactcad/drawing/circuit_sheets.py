@@ -14,9 +14,10 @@ from math import ceil
 from tactcad.circuit.bridges import EXCITATION, LOGIC, NEGATIVE, POSITIVE, netlist
 from tactcad.circuit.netlist import GROUND, Component, Netlist
 from tactcad.circuit.netlist_files import wiring
+from tactcad.design.family import taken_as
 from tactcad.design.messages import CheckFailure
 from tactcad.design.sensing import MULTIPLEXERS
-from tactcad.design.tree import Design
+from tactcad.design.tree import CommonTables, Design
 from tactcad.parts.array.bridge_figures import settling_time
 from tactcad.parts.array.layout import ElementPlace, Layout
 from tactcad.parts.array.leads import COLOURS, boards, lead_routes, leads
@@ -65,7 +66,7 @@ SMALL = 1.8  # height of values' letters, ISO 3098
 class CircuitOrder:
     """The circuit of a design to draw."""
 
-    design: Design
+    design: CommonTables
     draft: bool = False
     sample: bool = False
 
@@ -79,10 +80,11 @@ def circuit_written(order: CircuitOrder) -> Written:
 
     Raises CheckFailure where a layout is not clean, or the PDF lacks a component when read back.
     """
-    sheets = circuit_sheets(order.design, order.draft, order.sample)
-    made = files_of(sheets, order.name, "circuit", order.design.design)
+    design = taken_as(order.design, Design, "the circuit's sheets")
+    sheets = circuit_sheets(design, order.draft, order.sample)
+    made = files_of(sheets, order.name, "circuit", design.design)
     runs = " ".join(run for page in pdf_runs(made.pdf) for run in page)
-    for gauge in netlist(Layout(order.design)).of_kind("gauge"):
+    for gauge in netlist(Layout(design)).of_kind("gauge"):
         if gauge.designator not in runs:
             raise CheckFailure(
                 f"drawings: {order.name}: {gauge.designator} is missing; no drawing was written"

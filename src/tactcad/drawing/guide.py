@@ -13,11 +13,14 @@ from html import escape
 from math import ceil
 from pathlib import Path
 
+import numpy as np
+
 from tactcad.design.family import family_of
-from tactcad.design.tree import Design
+from tactcad.design.tree import CommonTables
 from tactcad.parts.array import seating
-from tactcad.parts.language.description import Part, Vector
+from tactcad.parts.language.description import Part, Vector, vector
 from tactcad.parts.language.metric import METRIC
+from tactcad.scenes.moves import moments, settles
 from tactcad.scenes.scene import Placement, Scene, Step
 
 from .engine.boxes import Box, bounds, bounds_of, corners
@@ -41,6 +44,7 @@ from .engine.sheet_files import svg_bytes
 MAP = "sensing-face"  # label of the picture that shows which element stands where
 FACE_EYE: Vector = (0.0, 0.0, -1.0)
 FACE_UP: Vector = (0.0, -1.0, 0.0)
+FAR = 80.0  # mm that a step's parts are shown before their place, at most
 MAP_SIZE = (130.0, 110.0)  # of the map's outlines, mm of paper
 NUMBERS = (2.5, 1.8)  # of numbers, ISO 3098: the larger where all find room
 BELOW_EACH_OTHER = 0.8  # between numbers below each other, mm of paper
@@ -63,10 +67,34 @@ def exploded(scene: Scene) -> tuple[Placement, ...]:
 
 
 def at_step(scene: Scene, number: int) -> tuple[tuple[Placement, ...], tuple[Placement, ...]]:
-    """What stands already before step `number` (from 1), and what the step adds, still out of its place."""
-    earlier = {d for step in scene.steps[: number - 1] for d in step.designators}
-    standing = tuple(p for p in scene.placements if p.designator in earlier)
-    return standing, _coming(scene, scene.steps[number - 1])
+    """What stands already before step `number` (from 1), on the bench what lies there; and what the step
+    brings in, where its first move starts, or FAR before its end."""
+    placed = {p.designator: p for p in scene.placements}
+    there: dict[str, Vector] = {}
+    coming: dict[str, Vector] = {}
+    benched: set[str] = set()
+    for moment in moments(scene):
+        if moment.step > number - 1:
+            break
+        move = moment.move
+        benched -= set(move.designators)
+        if scene.steps[moment.step].bench:
+            benched |= set(move.designators)
+        if moment.step < number - 1:
+            there |= dict.fromkeys(move.designators, move.path[-1])
+            continue
+        way, end = np.subtract(move.start, move.path[-1]), np.array(move.path[-1])
+        near = end + way * min(1.0, FAR / max(float(np.linalg.norm(way)), FAR))
+        coming = {**dict.fromkeys(move.designators, vector(near.tolist())), **coming}
+    step = scene.steps[number - 1]
+    coming = {name: at for name, at in coming.items() if name in step.designators or any(at)}
+    if step.bench:
+        own = {d for s in scene.steps if s.bench and s.unit == step.unit for d in s.designators}
+        there = {name: at for name, at in there.items() if name in own}
+    else:
+        there = {name: at for name, at in there.items() if name not in benched}
+    standing = tuple(moved_by(placed[d], at) for d, at in there.items() if d not in coming)
+    return standing, tuple(moved_by(placed[d], at) for d, at in coming.items())
 
 
 def _coming(scene: Scene, step: Step) -> tuple[Placement, ...]:
@@ -79,14 +107,14 @@ def _coming(scene: Scene, step: Step) -> tuple[Placement, ...]:
     )
 
 
-def torque(part: Part, design: Design) -> float | None:
+def torque(part: Part, design: CommonTables) -> float | None:
     """Tightening torque of a screw or nut, N m; None for other parts, 0 for a set screw that only touches."""
     if part.kind == "set screw":
         return seating.torque(family_of(design).layout(design))
     return METRIC[part.thread].torque if part.thread else None
 
 
-def tools(design: Design, scene: Scene) -> list[str]:
+def tools(design: CommonTables, scene: Scene) -> list[str]:
     """What the steps need: drivers of the screws and nuts that they place, torques, and their other tools."""
     ready = {d for step in scene.steps for d in step.ready}
     drivers: dict[tuple[str, float], list[str]] = {}
@@ -114,7 +142,7 @@ def sensing_face_map(scene: Scene) -> bytes | None:
     return svg_bytes(face_map(array, f"{scene.name}-{MAP}"))
 
 
-def page(design: Design, scene: Scene) -> bytes:
+def page(design: CommonTables, scene: Scene) -> bytes:
     """The guide as one HTML page; its pictures lie beside it."""
     style = Path(__file__).with_suffix(".css").read_text("utf-8")
     d = design.design
@@ -145,8 +173,11 @@ def page(design: Design, scene: Scene) -> bytes:
     ).encode()
 
 
-def _section(design: Design, scene: Scene, number: int, step: Step) -> str:
+def _section(design: CommonTables, scene: Scene, number: int, step: Step) -> str:
     lines = [f"<section><h2>{number}. {escape(step.title)}</h2>", f"<p>{escape(step.text)}</p>"]
+    for said, what in zip(("Fixes", "Leaves adjustable"), settles(scene, number - 1)):
+        if what:
+            lines.append(f'<p class="note">{said}: {escape("; ".join(what))}.</p>')
     if step.designators:
         lines += [
             _table(design, scene, step),
@@ -160,7 +191,7 @@ def _section(design: Design, scene: Scene, number: int, step: Step) -> str:
     return "\n".join([*lines, "</section>"])
 
 
-def _table(design: Design, scene: Scene, step: Step) -> str:
+def _table(design: CommonTables, scene: Scene, step: Step) -> str:
     rows: dict[str, tuple[Part, list[str]]] = {}
     for p in scene.placements:
         if p.designator in step.designators and p.designator not in step.ready:

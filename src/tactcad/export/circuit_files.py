@@ -12,12 +12,12 @@ from tactcad.circuit.netlist import Netlist
 from tactcad.circuit.netlist_files import deck_bytes, kicad_bytes, netlist_csv, wiring_csv
 from tactcad.design.family import family_of
 from tactcad.design.messages import CheckFailure
-from tactcad.design.tree import Design
+from tactcad.design.tree import CommonTables
 
 Nets = dict[str, frozenset[tuple[str, str]]]  # designators and pins by net
 
 
-def kicad_file(design: Design, circuit: Netlist) -> bytes:
+def kicad_file(design: CommonTables, circuit: Netlist) -> bytes:
     """KiCad's netlist. Raises CheckFailure where it does not read back as the circuit."""
     d = design.design
     data = kicad_bytes(circuit, d.title, d.organisation, d.date, d.revision)
@@ -25,19 +25,19 @@ def kicad_file(design: Design, circuit: Netlist) -> bytes:
     return data
 
 
-def table_file(design: Design, circuit: Netlist) -> bytes:
+def table_file(design: CommonTables, circuit: Netlist) -> bytes:
     """The netlist as CSV. Raises CheckFailure where it does not read back as the circuit."""
     data = netlist_csv(circuit)
     check_nets("the netlist's table", nets_in_table(data), circuit)
     return data
 
 
-def deck_file(design: Design, circuit: Netlist) -> bytes:
+def deck_file(design: CommonTables, circuit: Netlist) -> bytes:
     """The SPICE deck."""
     return deck_bytes(circuit)
 
 
-def wiring_file(design: Design, circuit: Netlist) -> bytes:
+def wiring_file(design: CommonTables, circuit: Netlist) -> bytes:
     """The leads to cut. Raises CheckFailure where they are not the circuit's, each once."""
     family = family_of(design)
     data = wiring_csv(family.must("readout", "export").wiring(family.layout(design), circuit))

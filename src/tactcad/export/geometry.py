@@ -12,7 +12,7 @@ from typing import Any
 
 from tactcad.contour import Arc, Contour, Line, Segment
 from tactcad.design.family import family_of
-from tactcad.design.tree import Design
+from tactcad.design.tree import CommonTables
 from tactcad.drawing.engine.extent import part_box
 from tactcad.parts.language.description import Extrusion, Hole, ModelFile, Part, cut_section, section
 from tactcad.parts.language.surface import surface_area
@@ -27,7 +27,7 @@ DIGITS = 9  # decimals; tolerances of the comparison start at the sixth
 NOT_COMPARED = ("item", "part_no", "rev", "file", "sha256")
 
 
-def geometry(design: Design, scenes: Sequence[Scene] | None = None) -> Record:
+def geometry(design: CommonTables, scenes: Sequence[Scene] | None = None) -> Record:
     """What a design that keeps its rules means; `scenes` are all of its scenes, where they are made already.
 
     {parts: {part_no: ...}, scenes: {name: {placed, bom}}, elements: {E1: ...}}

@@ -14,7 +14,7 @@ from typing import Any, Literal
 
 from tactcad.design.files import absolute, make_folder, read_json, write_whole
 from tactcad.design.messages import CheckFailure, InputError
-from tactcad.design.tree import Design
+from tactcad.design.tree import CommonTables
 from tactcad.parts.language.finding import Finding
 
 from .difference import Change, differences
@@ -26,7 +26,7 @@ SCHEMA = "tactcad-golden-1"
 MOST_BYTES = 50_000_000  # the largest array, 2 x 500, takes under one
 
 
-def golden_path(design_file: Path, design: Design) -> Path | None:
+def golden_path(design_file: Path, design: CommonTables) -> Path | None:
     """Where the golden file of a design file belongs; None where the design stands in no hardware/, neither
     by the name given nor by where links lead."""
     for folder in (absolute(design_file).parent, design_file.resolve().parent):
@@ -35,7 +35,7 @@ def golden_path(design_file: Path, design: Design) -> Path | None:
     return None
 
 
-def golden_record(design: Design) -> Record:
+def golden_record(design: CommonTables) -> Record:
     """The record that a golden file holds."""
     return {"schema": SCHEMA, "design": design.name, "revision": design.design.revision, **geometry(design)}
 
@@ -64,7 +64,7 @@ def read_golden(path: Path) -> Record:
     return record
 
 
-def check_golden(design: Design, path: Path) -> list[Finding]:
+def check_golden(design: CommonTables, path: Path) -> list[Finding]:
     """Hold a design against its golden file.
 
     Parameters
@@ -126,11 +126,11 @@ def _about(severity: Severity, change: Change) -> Finding:
     return Finding("golden", severity, about, (), number(change.new), number(change.old), str(change))
 
 
-def _finding(severity: Severity, design: Design, message: str) -> Finding:
+def _finding(severity: Severity, design: CommonTables, message: str) -> Finding:
     return Finding("golden", severity, design.name, (), 0, 0, message)
 
 
-def changes_against(path: Path, design: Design) -> list[Change] | None:
+def changes_against(path: Path, design: CommonTables) -> list[Change] | None:
     """What writing the golden file would change, the revision included; None where there is no file yet.
 
     Raises CheckFailure where the file there cannot be read.
@@ -144,7 +144,7 @@ def changes_against(path: Path, design: Design) -> list[Change] | None:
     return differences(old, golden_record(design))
 
 
-def accept(design: Design, path: Path, failures: Sequence[Finding]) -> None:
+def accept(design: CommonTables, path: Path, failures: Sequence[Finding]) -> None:
     """Write the golden file where anything changed.
 
     Parameters

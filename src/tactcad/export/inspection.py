@@ -15,7 +15,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from tactcad.design.family import family_of
-from tactcad.design.tree import Design
+from tactcad.design.tree import CommonTables
 from tactcad.parts.language.description import Part
 from tactcad.parts.language.limits import FACES, Characteristic, Geometric
 from tactcad.scenes.requirement import DimensionLimits
@@ -52,7 +52,7 @@ READS = (0.01, 0.002, 0.001, 0.0005)
 
 
 def part_inspection_bytes(
-    design: Design,
+    design: CommonTables,
     parts: Iterable[Part],
     variables: Mapping[str, DimensionLimits],
     lines: Sequence[StackLine],

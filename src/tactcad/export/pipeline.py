@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Protocol
 
 from tactcad.design.family import family_of
 from tactcad.design.messages import CheckFailure
-from tactcad.design.tree import Design
+from tactcad.design.tree import CommonTables
 
 from . import manifest as manifests
 from .cache import Cache, default_root
@@ -76,7 +76,7 @@ class Exported:
 
 
 def export(
-    design: Design, options: ExportOptions, out: str | Path, progress: Progress, others: str = REFUSE
+    design: CommonTables, options: ExportOptions, out: str | Path, progress: Progress, others: str = REFUSE
 ) -> Exported:
     """Write a design's scenes to a folder, all or nothing.
 
@@ -151,7 +151,7 @@ def _reasons(earlier: Contents, now: Inputs) -> list[str]:
 
 
 def _rebuild(
-    design: Design,
+    design: CommonTables,
     options: ExportOptions,
     out: Path,
     work: Work,
@@ -248,13 +248,13 @@ def made_files(
     step(total, total, "done")
 
 
-def _record(folder: Path, product: Output, design: Design) -> FileRecord:
+def _record(folder: Path, product: Output, design: CommonTables) -> FileRecord:
     sha256 = manifests.sha256_of((folder / product.path).read_bytes())
     return FileRecord(product.path, product.kind, product.part_no, design.design.revision, sha256)
 
 
 def _write_bills(
-    folder: Path, design: Design, scenes: Sequence[Scene], records: Sequence[FileRecord]
+    folder: Path, design: CommonTables, scenes: Sequence[Scene], records: Sequence[FileRecord]
 ) -> list[FileRecord]:
     """A bill of materials a scene as CSV and JSON: bom.csv for the array, bom-NAME.csv for other scenes."""
     from tactcad.scenes import bom
@@ -276,7 +276,7 @@ def _write_bills(
     return written
 
 
-def _write_element_tables(folder: Path, design: Design) -> list[FileRecord]:
+def _write_element_tables(folder: Path, design: CommonTables) -> list[FileRecord]:
     """The inspection sheet to fill in, and the strength summary: tables of the numbered elements."""
     from . import inspection
     from . import strength_table as strength

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 from tactcad.design.family import family_of
 from tactcad.design.messages import CheckFailure
-from tactcad.design.tree import Design
+from tactcad.design.tree import CommonTables
 from tactcad.parts.language.description import NOT_MADE, Extrusion, ModelFile, Part, Revolution
 from tactcad.scenes import make_scene
 from tactcad.scenes.rig import ARRAY
@@ -59,7 +59,7 @@ class Batch:
 class Plan:
     """What an export is of: a design, what is asked for, its scenes at their detail, the parts' shapes."""
 
-    design: Design
+    design: CommonTables
     options: ExportOptions
     scenes: Sequence[Scene]
     shapes: Shapes
@@ -212,8 +212,10 @@ def circuit_files(plan: Plan) -> Iterator[Batch]:
 
 @product(lambda plan: plan.options.guides)
 def guide_files(plan: Plan) -> Iterator[Batch]:
-    """Each scene's assembly guide: an exploded view, a picture a step, and the page that shows them."""
+    """Each scene's assembly guide: an exploded view, a picture a step, the page that shows them; and every
+    move as data."""
     from tactcad.drawing import guide
+    from tactcad.scenes.moves import guide_json
 
     def picture(
         scene: Scene, label: str, title: str, placements: Sequence[Placement], marked: Sequence[Placement]
@@ -240,6 +242,9 @@ def guide_files(plan: Plan) -> Iterator[Batch]:
         page = guide.page(plan.design, scene)
         key = digest(("guide", page))
         yield _one(Output(guide.page_path(scene), "report", "", key), partial(bytes, page))
+        told = guide_json(scene)
+        made = Output(f"guide/{scene.name}.json", "report", "", digest(("guide moves", told)))
+        yield _one(made, partial(bytes, told))
 
 
 @product(lambda plan: plan.options.robot)
@@ -321,7 +326,7 @@ def circuit_sheets(plan: Plan) -> Iterator[Batch]:
     yield _drawing(f"{plan.design.name}-circuit_{plan.revision}", "", key, make, FILES, 100)
 
 
-def _tables(design: Design, *names: str) -> tuple:
+def _tables(design: CommonTables, *names: str) -> tuple:
     """Of these tables those that the family's designs have."""
     return tuple(getattr(design, name, None) for name in names)
 

@@ -39,7 +39,11 @@ FAMILY = Family(
         figures=Late("tactcad.stacks.virtual_build:element_figures"),
         elements=Late("tactcad.stacks.virtual_build:elements_built"),
     ),
-    pads=FamilyPads(places=Late("tactcad.lab.pads:pads_of"), springs=Late("tactcad.lab.pads:springs_of")),
+    pads=FamilyPads(
+        places=Late("tactcad.lab.pads:pads_of"),
+        springs=Late("tactcad.lab.pads:springs_of"),
+        limit=Late("tactcad.lab.pads:limit_of"),
+    ),
     readout=FamilyReadout(
         netlist=Late("tactcad.circuit.bridges:netlist"),
         wiring=Late("tactcad.circuit.netlist_files:wiring"),

@@ -40,12 +40,14 @@ from tactcad.lab.regression import (
     KNOWN,
     Lines,
     Readings,
+    drifts,
     extreme_deviates,
     fit_lines,
     require_level,
     spare_steps,
     steps,
     t_quantile,
+    told_from_time,
     weights,
 )
 from tactcad.report.figures import Figure, Figures
@@ -196,6 +198,7 @@ class _InContact:
     run: np.ndarray
     line: np.ndarray  # in the file
     notes: tuple[str, ...]
+    time: np.ndarray | None = None  # s, where it tells a drift
 
 
 def _in_contact(all_: CalibrationReadings, number: int, rows: np.ndarray) -> _InContact:
@@ -206,7 +209,15 @@ def _in_contact(all_: CalibrationReadings, number: int, rows: np.ndarray) -> _In
     x, run = all_.displacement[rows], all_.run[rows]
     y = np.column_stack([all_.force[rows], all_.signal[rows]])
     _require_line(where, x, run)
-    return _InContact(number, where, x, x - start, y, run, all_.line[rows], tuple(notes))
+    time = None if all_.time is None else all_.time[rows]
+    if time is not None and (spare_steps(x, run) < 2 or not told_from_time(x, time, run)):
+        notes.append(
+            "displacement goes with time in every run: no drift can be told from the slope; read the way back"
+        )
+        time = None
+    if time is not None:  # what follows sees force and signal without their drift
+        y = y - np.outer(time - time.mean(), drifts(x, y, run, time))
+    return _InContact(number, where, x, x - start, y, run, all_.line[rows], tuple(notes), time)
 
 
 def _element(
@@ -219,7 +230,7 @@ def _element(
     alarm: float,
 ) -> ElementCalibration:
     notes = list(e.notes)
-    x, y, run, by_force = e.x, e.y, e.run, weight[0]
+    x, y, run, by_force, time = e.x, e.y, e.run, weight[0], e.time
     bad = [extreme_deviates(x, y[:, k], run, weight[k], alarm) for k in (0, 1)]
     outliers = tuple(
         Outlier(e.number, int(run[i]), float(x[i]), name, int(e.line[i]))
@@ -229,8 +240,9 @@ def _element(
     if drop and outliers:
         keep = np.setdiff1d(np.arange(len(x)), np.union1d(*bad).astype(int))
         x, run, y, by_force = x[keep], run[keep], y[keep], by_force[keep]
+        time = None if time is None else time[keep]
         _require_line(e.where, x, run)
-    lines = fit_lines(x, y, run, by_force)
+    lines = fit_lines(x, y, run, by_force, time)
     covariance, dof = _covariance(lines, run_scatter, notes)
     t = t_quantile(level, dof)
     k, v = lines.slope

@@ -53,6 +53,8 @@ def against_design(
     readings: CalibrationReadings, rows: Sequence[ElementCalibration], cell: LoadCell, source: str
 ) -> list[str]:
     """Warnings where stiffness or signal of a calibration is far from what its design predicts."""
+    from tactcad.design.family import taken_as
+    from tactcad.design.tree import Design
     from tactcad.lab.array_estimate import estimate  # a calibration without a design needs no part
     from tactcad.mechanics.ladder import DEFAULT_RUNG
     from tactcad.mechanics.readout import volts_per_strain
@@ -60,7 +62,8 @@ def against_design(
     from tactcad.parts.array.layout import Layout
     from tactcad.parts.designs import load
 
-    design, force_below_yield = load(source), 1e-6  # N: no strain is estimated above yield
+    design = taken_as(load(source), Design, "calibrate --design")
+    force_below_yield = 1e-6  # N: no strain is estimated above yield
     try:
         estimates = {e.number: e for e in estimate(Layout(design), DEFAULT_RUNG, force_below_yield)}
     except CheckFailure:  # beyond the estimator's range

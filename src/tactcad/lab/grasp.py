@@ -30,7 +30,7 @@ from tactcad.design.messages import InputError
 from tactcad.lab.column_units import LOAD, unlikely
 from tactcad.lab.combine import Interval, Slopes, combine, hull, scatter
 from tactcad.lab.readings import GraspReadings
-from tactcad.lab.regression import require_level, t_quantile
+from tactcad.lab.regression import TOLD_FROM_TIME, require_level, t_quantile
 from tactcad.report.plain import plain
 
 from .calibration_file import Sensitivity
@@ -40,6 +40,7 @@ SCHEMA = "tactcad-stiffness-1"
 STRAY = 1e-4  # probability, over all elements, below which an element is reported not to follow the others
 SURELY = 3.0  # standard errors below zero from which on an element's force is said to fall; chosen
 TOUCHES = 1e-3  # of the largest force on a pad, from which on a pad is said to touch
+ROUNDED = 1e-9  # below which a singular value of unit columns is nought but rounding
 COUPLED = (0.25, 0.5, 1.0)  # tried shares of the coupling: K_obj need not be most extreme at the full one
 
 
@@ -145,8 +146,18 @@ def evaluate(
             value=f"{len(readings.element)} elements at {int(touching.sum())} loads above zero",
             legal="two elements and three loads at least",
         )
-    signal = readings.signal[:, touching]
-    slopes, noise = common_slopes(readings.element, signal, calibration)
+    signal, terms = readings.signal[:, touching], None
+    notes = []
+    if readings.time is not None:
+        terms = drift_terms(readings.load, readings.time)
+        if terms is None:
+            notes.append(
+                "the load goes with time: no drift can be told from it; read without load before and after, "
+                "or the loads up and down"
+            )
+        else:
+            signal = readings.signal
+    slopes, noise = common_slopes(readings.element, signal, calibration, terms)
     smallest = np.finfo(float).tiny ** 0.5  # its square still has digits
     for constant in slopes.element[np.abs(slopes.s) < smallest][:1]:
         raise InputError(
@@ -163,23 +174,26 @@ def evaluate(
         )
     r = int(np.flatnonzero(readings.element == number)[0])
     others = [i for i in np.argsort(-slopes.f / slopes.s, kind="stable") if i != r]
-    limits = _limits(readings.element, signal, calibration, slopes, coupling)
+    limits = _limits(readings.element, signal, calibration, slopes, coupling, terms)
     everywhere = [at for group in limits.values() for at in group]
     pairs = tuple(_pair(slopes, everywhere, int(m), r, level) for m in others)
     combined, p, widened = combine(slopes, level)
     by_limits = tuple(
         (name, hull(combined, [combine(at, level)[0] for at in group])) for name, group in limits.items()
     )
-    notes = []
     dropped = int((~touching).sum())
-    if dropped:
+    if terms is not None:
+        notes.append(f"drift of every signal is taken off, as told by {signal.shape[1]} readings over time")
+    elif dropped:
         notes.append(
             f"{dropped} of {len(touching)} loads are zero and left out: before contact the pads' heights "
             "enter"
         )
-    notes += _strays(readings.element, signal)
+    notes += _strays(readings.element, signal, terms)
     load = readings.load[touching]
-    wrong, rise = _wrong_forces(load, signal, calibration, slopes, noise, overload_force)
+    wrong, rise = _wrong_forces(
+        load, readings.signal[:, touching], calibration, slopes, noise, overload_force
+    )
     notes += wrong
     borne = float(np.ptp(load)) * min(len(signal) / max(elements, 1), 1.0)
     sums, (load_name, signal_name) = [(abs(rise), borne)] if borne else [], readings.columns
@@ -230,9 +244,12 @@ def on_layers(
     reference = grasp.pairs[0].reference
     where = f"{readings.path}: sample {readings.sample}"
     explained, one = [], len(layers) == 1
+    time = readings.time
+    if time is not None and drift_terms(readings.load, time) is None:
+        time = None  # as noted
     for at in layers if one or not grasp.warnings else ():  # in another unit, no layer explains them
         with suppress(np.linalg.LinAlgError):  # of readings in a wrong unit, say
-            found = fit(at, number, readings.load, readings.signal[None], known, level, reference)
+            found = fit(at, number, readings.load, readings.signal[None], known, level, reference, time)
             pressing = found.force[0] > TOUCHES * found.force[0].max()
             touching = tuple(int(n) for n in at.number[pressing])
             read = sorted(set(touching) & set(number.tolist()))
@@ -301,6 +318,7 @@ def _limits(
     calibration: Sensitivity,
     slopes: Slopes,
     coupling: np.ndarray | None,
+    terms: np.ndarray | None,
 ) -> dict[str, list[Slopes]]:
     """The slopes at the limits of each quantity that acts on all elements, by its name; each entry also
     includes the limits of the entries before it."""
@@ -308,7 +326,8 @@ def _limits(
     cells = [slopes]
     if (calibration.load_cell_half_width > 0).any():
         cells += [
-            common_slopes(element, signal, calibration.at_load_cell_limit(sign))[0] for sign in (-1.0, 1.0)
+            common_slopes(element, signal, calibration.at_load_cell_limit(sign), terms)[0]
+            for sign in (-1.0, 1.0)
         ]
         at["with the load cell's limits"] = cells[1:]
     if coupling is not None:
@@ -328,7 +347,26 @@ def _even(coupling: np.ndarray) -> np.ndarray:
     return np.full((n, n), (coupling.sum() - np.trace(coupling)) / (n * (n - 1)))
 
 
-def common_slopes(element: np.ndarray, signal: np.ndarray, calibration: Sensitivity) -> tuple[Slopes, float]:
+def drift_terms(load: np.ndarray, time: np.ndarray) -> np.ndarray | None:
+    """What every signal is made of besides the approach, an orthonormal basis [term, state]: offsets in
+    contact and before it, and time; None where the load goes with time, so that no drift can be told."""
+    touching = load > 0
+    terms = np.array([touching, ~touching, time - time.mean()], dtype=float)[[True, not touching.all(), True]]
+    rising = np.where(touching, load - load[touching].mean(), 0.0)
+    _, size, basis = np.linalg.svd(terms / np.linalg.norm(terms, axis=1)[:, None], full_matrices=False)
+    left = rising - (rising @ basis.T) @ basis
+    told = size[-1] > ROUNDED and len(load) > len(terms) + 1
+    return basis if told and rising @ rising < TOLD_FROM_TIME * (left @ left) else None
+
+
+def _without(signal: np.ndarray, terms: np.ndarray | None) -> np.ndarray:
+    """What offsets, and drifts where there are terms, leave of the signals."""
+    return signal - (signal.mean(1, keepdims=True) if terms is None else (signal @ terms.T) @ terms)
+
+
+def common_slopes(
+    element: np.ndarray, signal: np.ndarray, calibration: Sensitivity, terms: np.ndarray | None = None
+) -> tuple[Slopes, float]:
     """Slopes of all elements over their common approach, and the noise of one signal (V).
 
     signal[element, state] less each element's mean is g p + noise, with equal noise in every channel: g p is
@@ -342,6 +380,8 @@ def common_slopes(element: np.ndarray, signal: np.ndarray, calibration: Sensitiv
         V, in contact.
     calibration : Sensitivity
         Of these elements at least.
+    terms : array, [term, state], optional
+        Of `drift_terms`; the signals are then those of all states.
 
     Returns
     -------
@@ -354,14 +394,18 @@ def common_slopes(element: np.ndarray, signal: np.ndarray, calibration: Sensitiv
     InputError
         An element without calibration.
     """
-    centred = signal - signal.mean(1, keepdims=True)
+    centred = _without(signal, terms)
     u, size, vt = np.linalg.svd(centred, full_matrices=False)
-    dof = (len(element) - 1) * (signal.shape[1] - 2)
+    dof = (len(element) - 1) * (signal.shape[1] - 1 - _count(terms))
     variance = float((size[1:] ** 2).sum()) / dof
     k_v = calibration.signal_per_deflection[[_row(calibration, int(n)) for n in element]]
     p = vt[0] * np.sign((u[:, 0] / k_v).sum() or 1.0)
     g = centred @ p  # V per unit approach; p has unit length, so each g has the variance of one signal
     return slopes_of(element, g, calibration, variance, dof), variance**0.5
+
+
+def _count(terms: np.ndarray | None) -> int:
+    return 1 if terms is None else len(terms)
 
 
 def slopes_of(
@@ -382,13 +426,13 @@ def slopes_of(
     return Slopes(element, s, f, signal_part, part, dof, calibration.dof[rows])
 
 
-def _strays(element: np.ndarray, signal: np.ndarray) -> list[str]:
+def _strays(element: np.ndarray, signal: np.ndarray, terms: np.ndarray | None) -> list[str]:
     """A note for each element whose signal does not follow the approach that the others share: an F test of
     its residual against the others' noise."""
-    n, each = len(element), signal.shape[1] - 2
+    n, each = len(element), signal.shape[1] - 1 - _count(terms)
     if n < 3:
         return []
-    centred = signal - signal.mean(1, keepdims=True)
+    centred = _without(signal, terms)
     notes = []
     for i, number in enumerate(element):
         rest = np.delete(centred, i, 0)

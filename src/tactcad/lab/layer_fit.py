@@ -1,10 +1,11 @@
 """Modulus of a layer from all elements' signals at all loads, with the inclination of its face.
 
-Signal of element i at load t = offset_i + K_v,i sink_i(t). The sinks are those of rigid pads at rest on the
-layer (contact.rigid_pads) at an approach of their own for each load. Free: modulus, both slopes of the face,
-offsets, approaches. Known within limits, and fitted with these as priors: K and K_v by the calibration's
-covariance, heights of the pads, the layer's thickness, and the stiffness of pads that press unread. Readings
-before contact fix the offsets. The load is hardly used: friction and relaxation go into the approaches.
+Signal of element i at load t = offset_i + K_v,i sink_i(t), and + rate_i time(t) where times are known. The
+sinks are those of rigid pads at rest on the layer (contact.rigid_pads) at an approach of their own for each
+load. Free: modulus, both slopes of the face, offsets, approaches. Known within limits, and fitted with these
+as priors: K and K_v by the calibration's covariance, heights of the pads, the layer's thickness, and the
+stiffness of pads that press unread. Readings before contact fix the offsets. The load is hardly used:
+friction and relaxation go into the approaches.
 
 Least squares by Gauss and Newton; noise by what the fit leaves where K and K_v are as good as free. Errors of
 the estimate are followed back to each element, whose own covariance and degrees of freedom then count, as in
@@ -134,9 +135,14 @@ class _Model:
     """Signals and forces of many grasps by the parameters, and their derivatives."""
 
     def __init__(
-        self, at: LayeredArray, rows: np.ndarray, calibration: Sensitivity, load: np.ndarray
+        self,
+        at: LayeredArray,
+        rows: np.ndarray,
+        calibration: Sensitivity,
+        load: np.ndarray,
+        time: np.ndarray | None,
     ) -> None:
-        self.at, self.rows, self.load = at, rows, load
+        self.at, self.rows, self.load, self.time = at, rows, load, time
         self.K = at.drawn.copy()
         self.K[rows] = calibration.stiffness
         self.K_v = calibration.signal_per_deflection
@@ -145,6 +151,7 @@ class _Model:
             "E": 1,
             "slope": 2,
             "offset": m,
+            "rate": 0 if time is None else m,
             "approach": t,
             "height": n,
             "K": n,
@@ -173,7 +180,10 @@ class _Model:
         r, g, d, J = contact.rest(M, b, b if start is None else start)
         sink = E[..., None] * np.einsum("gtni,ni->gtn", g, contact.move) / K
         force = E[..., None] * g[..., 0]
-        signal = q[:, part["offset"], None] + K_v[..., None] * sink[..., rows].swapaxes(1, 2)
+        resting = q[:, part["offset"], None]
+        if self.time is not None:
+            resting = resting + q[:, part["rate"], None] * self.time
+        signal = resting + K_v[..., None] * sink[..., rows].swapaxes(1, 2)
         if not columns:
             return signal, force.sum(-1), r, force
         # by approach, slopes, heights, K, own modulus: right-hand sides of J dr
@@ -215,7 +225,9 @@ class _Model:
         # all springs softer alike is a stiffer body, but for the size of the forces
         A[..., 0], B[..., 0] = -A[..., part["K"]].sum(-1), force.sum(-1) - B[..., part["K"]].sum(-1)
         A[:, e, :, part["offset"].start + e] = 1.0
-        A[:, e, :, part["K_v"].start + e] = (signal - q[:, part["offset"], None]).swapaxes(0, 1)
+        if self.time is not None:
+            A[:, e, :, part["rate"].start + e] = self.time
+        A[:, e, :, part["K_v"].start + e] = (signal - resting).swapaxes(0, 1)
         if at.thicker is not None:
             step = np.log1p(THICKER)
             A[..., part["thickness"].start] = (
@@ -233,6 +245,7 @@ def fit(
     calibration: Sensitivity,
     level: float = 0.95,
     reference: int | None = None,
+    time: np.ndarray | None = None,
 ) -> LayerFit:
     """Evaluate grasps that were read alike.
 
@@ -252,10 +265,14 @@ def fit(
         Of the intervals.
     reference
         Number of the element that pairs refer to; by default the stiffest.
+    time
+        Of the loads, in any unit; with it every signal drifts at a rate of its own.
     """
+    if time is not None:  # from 0 to 1, so that rates are volts
+        time = (time - time.min()) / max(float(np.ptp(time)), 1e-300)
     with np.errstate(all="ignore"):  # readings that nothing explains run out of the numbers' range
         parts = [
-            _fit(at, element, load, signal[i : i + BATCH], calibration, level, reference)
+            _fit(at, element, load, signal[i : i + BATCH], calibration, level, reference, time)
             for i in range(0, len(signal), BATCH)
         ]
     return LayerFit(*(np.concatenate([getattr(p, name) for p in parts]) for name in vars(parts[0])))
@@ -269,11 +286,13 @@ def _fit(
     calibration: Sensitivity,
     level: float,
     reference: int | None,
+    time: np.ndarray | None,
 ) -> LayerFit:
     place = {int(n): i for i, n in enumerate(at.number)}
     rows = np.array([place[int(n)] for n in element])
     touching = load > 0
-    model = _Model(at, rows, calibration, load[touching])
+    model = _Model(at, rows, calibration, load[touching], None if time is None else time[touching])
+    resting = np.zeros(0) if time is None else time[~touching]
     part, size, m = model.part, model.size, len(rows)
     free = np.arange(part["own"].start)
     priors = _priors(model, calibration)
@@ -290,6 +309,8 @@ def _fit(
         """Of grasps i; what is left of signals and of loads."""
         off, over = pressed[i] - state[0], load[touching] - state[1]
         zero = before[i] - q[:, part["offset"], None]
+        if time is not None:
+            zero = zero - q[:, part["rate"], None] * resting
         squares = (off**2).sum((1, 2)) + (zero**2).sum((1, 2))
         known = np.einsum("gi,ij,gj->g", q, weigh, q) + (over**2).sum(1) * load_weight
         return squares / noise[i] ** 2 + known, off, over
@@ -305,7 +326,16 @@ def _fit(
         down += (B.swapaxes(1, 2) @ (over[..., None] * load_weight**0.5))[..., 0]
         o = np.arange(part["offset"].start, part["offset"].stop)
         N[:, o, o] += rests / sigma[:, None] ** 2
-        down[:, o] += rests * (unloaded[i] - q[:, part["offset"]]) / sigma[:, None] ** 2
+        if time is None:
+            down[:, o] += rests * (unloaded[i] - q[:, part["offset"]]) / sigma[:, None] ** 2
+        else:
+            p = np.arange(part["rate"].start, part["rate"].stop)
+            left = before[i] - q[:, part["offset"], None] - q[:, part["rate"], None] * resting
+            down[:, o] += left.sum(2) / sigma[:, None] ** 2
+            down[:, p] += left @ resting / sigma[:, None] ** 2
+            N[:, p, p] += resting @ resting / sigma[:, None] ** 2
+            N[:, o, p] += resting.sum() / sigma[:, None] ** 2
+            N[:, p, o] += resting.sum() / sigma[:, None] ** 2
         return N, down - q @ weigh
 
     every = np.arange(G)

@@ -11,7 +11,7 @@ from tactcad.contact.press import THINNEST, Pads
 from tactcad.design.family import family_of
 from tactcad.design.messages import CheckFailure, InputError
 from tactcad.design.text_values import as_number
-from tactcad.design.tree import Design
+from tactcad.design.tree import CommonTables, Design
 from tactcad.lab.layer_fit import LAYERS, LayeredArray, layer
 from tactcad.lab.readings import GraspReadings
 from tactcad.mechanics import gauge_signal, ladder, readout
@@ -36,7 +36,7 @@ def places(layout: Layout) -> tuple[np.ndarray, np.ndarray]:
     return side * layout.design.array.row_pitch / 2, side * y
 
 
-def stiffness_per_modulus(design: Design, thickness: float, where: str) -> float:
+def stiffness_per_modulus(design: CommonTables, thickness: float, where: str) -> float:
     """K_obj under one pad over the Young's modulus of an incompressible layer, N/mm for each MPa.
 
     Parameters
@@ -111,7 +111,7 @@ def refuse_strangers(source: str, readings: GraspReadings) -> None:
             )
 
 
-def layers(design: Design, thickness: str | None, poisson: float | None) -> list[LayeredArray]:
+def layers(design: CommonTables, thickness: str | None, poisson: float | None) -> list[LayeredArray]:
     """The array on the layer that is named, "6" or "6+-0.3" mm (inf: a half-space), else on layers from the
     thinnest that rigid pads take to the half-space.
 
@@ -146,7 +146,7 @@ def layers(design: Design, thickness: str | None, poisson: float | None) -> list
             raise InputError("--thickness", "out of range", value=thickness, legal=legal)
         pairs = [(h, half)]
     nu = SOFT if poisson is None else poisson
-    return [layer(number, pads, design.tolerance.pad_height, nu, h, half) for h, half in pairs]
+    return [layer(number, pads, of.limit(design), nu, h, half) for h, half in pairs]
 
 
 @lru_cache(maxsize=4)
@@ -160,6 +160,11 @@ def pads_of(design: Design) -> tuple[np.ndarray, np.ndarray, np.ndarray, float, 
     layout = Layout(design)
     number = np.array([p.number for p in layout.elements])
     return *places(layout), number, design.element.pad_length, design.sheet.thickness
+
+
+def limit_of(design: Design) -> float:
+    """By how much the pads of facing rows may stand above or below their plane, mm."""
+    return design.tolerance.pad_height
 
 
 def springs_of(design: Design) -> tuple[Pads, np.ndarray]:

@@ -1,11 +1,13 @@
 """A lab's own readings from CSV: calibration runs and grasps.
 
-Columns may carry their unit (displacement_um, force_N, signal_mV); a plain name is in mm, N, V.
+Columns may carry their unit (displacement_um, force_N, signal_mV); a plain name is in mm, N, V. With a column
+of time (time_s) a state may be read as often as one likes: readings that follow each other are averaged, and
+one that returns later is another reading, from which drift is told.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -14,6 +16,7 @@ from tactcad.design.csv_table import Field, Rows, Table, numeric, read_table, re
 from tactcad.design.messages import InputError
 from tactcad.lab.regression import steps
 
+KIND = "readings (CSV)"
 ELEMENT = Field("element", "1", 1, 100_000, integer=True)
 RUN = Field("run", "1", 0, 1_000_000, integer=True)
 SAMPLE = Field("sample", "1", 0, 1_000_000, integer=True)
@@ -26,6 +29,7 @@ UNITS = {
     "load": ({"": 1.0, "_N": 1.0, "_mN": 1e-3}, "N", 1000.0),
     "signal": ({"": 1.0, "_V": 1.0, "_mV": 1e-3}, "V", 1000.0),
 }
+TIME = Field("time_s", "s", -1e12, 1e12)
 
 
 @dataclass(frozen=True)
@@ -40,6 +44,7 @@ class CalibrationReadings:
     line: np.ndarray  # in the file
     path: str = "readings"
     columns: tuple[str, ...] = ("displacement", "force", "signal")  # their names in the file
+    time: np.ndarray | None = None  # s
 
 
 @dataclass(frozen=True)
@@ -53,6 +58,7 @@ class GraspReadings:
     signal: np.ndarray  # V, [element, state]
     path: str = "readings"
     columns: tuple[str, ...] = ("load", "signal")  # their names in the file
+    time: np.ndarray | None = None  # s, [state]
 
 
 def calibration(path: str | Path) -> CalibrationReadings:
@@ -74,28 +80,39 @@ def calibration(path: str | Path) -> CalibrationReadings:
         A malformed table, a displacement twice in a run, too few readings of an element, displacements with
         their sign reversed; with file, line and column.
     """
-    rows, scaled = _read(path, (ELEMENT, RUN), ("displacement", "force", "signal"))
-    refuse_duplicates(
-        rows,
-        ("element", "run", scaled["displacement"][0]),
-        "each displacement once a run; number an upward and a downward stroke as two runs",
-    )
+    return calibration_of(read_table(path, KIND))
+
+
+def calibration_of(table: Table) -> CalibrationReadings:
+    """`calibration` of a table that was read."""
+    rows, scaled = _read(table, (ELEMENT, RUN), ("displacement", "force", "signal"), (TIME,))
+    timed = TIME.name in rows.columns
+    if not timed:
+        refuse_duplicates(
+            rows,
+            ("element", "run", scaled["displacement"][0]),
+            "each displacement once a run; number the ways up and down as two runs, or give time_s",
+        )
     displacement, force, signal = (rows.values(name) * factor for name, factor in scaled.values())
+    element, run = (rows.values(name).astype(int) for name in ("element", "run"))
     out = CalibrationReadings(
-        rows.values("element").astype(int),
-        rows.values("run").astype(int),
+        element,
+        run,
         displacement,
         force,
         signal,
         rows.lines,
         rows.path,
-        tuple(rows.columns)[2:],  # behind element and run
+        tuple(rows.columns)[2:5],  # behind element and run
+        rows.values(TIME.name) if timed else None,
     )
+    if timed:
+        out = _averaged(out)
     for number, own in groups(out.element):
         runs, at = len(np.unique(out.run[own])), np.unique(steps(out.displacement[own]))
         if len(own) < runs + 3 or len(at) < 3:
             raise InputError(
-                rows.where(int(own[-1]), "element"),
+                table.where(int(out.line[own[-1]]), "element"),
                 f"too few readings of element {number}",
                 value=len(own),
                 legal="three more than runs, at three displacements at least",
@@ -103,12 +120,37 @@ def calibration(path: str | Path) -> CalibrationReadings:
         least = int(own[np.argmin(out.displacement[own])])
         if -out.displacement[least] > out.displacement[own].max():
             raise InputError(
-                rows.where(least, scaled["displacement"][0]),
+                table.where(int(out.line[least]), scaled["displacement"][0]),
                 f"element {number} is pressed to negative displacements: the column's sign is reversed",
                 value=f"{out.displacement[least]:g} mm",
                 legal="displacement and force both grow as the element is pressed",
             )
     return out
+
+
+def _averaged(r: CalibrationReadings) -> CalibrationReadings:
+    """Readings of one element, run and displacement that follow each other in time as their mean."""
+    assert r.time is not None
+    order = np.lexsort((r.time, r.element))
+    key = np.column_stack([r.element, r.run, steps(r.displacement)])[order]
+    visit = np.cumsum(np.concatenate([[0], (key[1:] != key[:-1]).any(1)]))
+    count, first = np.bincount(visit), np.unique(visit, return_index=True)[1]
+    back = np.argsort(order[first], kind="stable")  # as the file has them
+
+    def mean(v: np.ndarray) -> np.ndarray:
+        return (np.bincount(visit, v[order]) / count)[back]
+
+    kept = order[first][back]
+    return replace(
+        r,
+        element=r.element[kept],
+        run=r.run[kept],
+        displacement=r.displacement[kept],
+        force=mean(r.force),
+        signal=mean(r.signal),
+        line=r.line[kept],
+        time=mean(r.time),
+    )
 
 
 def groups(number: np.ndarray) -> list[tuple[int, np.ndarray]]:
@@ -138,17 +180,27 @@ def grasps(path: str | Path) -> list[GraspReadings]:
     InputError
         A malformed table, a reading twice or missing; with file, line and column.
     """
-    rows, scaled = _read(path, (ELEMENT,), ("load", "signal"), optional=(RUN, SAMPLE))
+    return grasps_of(read_table(path, KIND))
+
+
+def grasps_of(table: Table) -> list[GraspReadings]:
+    """`grasps` of a table that was read."""
+    rows, scaled = _read(table, (ELEMENT,), ("load", "signal"), (RUN, SAMPLE, TIME))
     run, sample = (
         rows.values(n).astype(int) if n in rows.columns else np.ones(len(rows), int)
         for n in ("run", "sample")
     )
-    (load_name, _), _ = scaled.values()
-    refuse_duplicates(rows, (*(n for n in ("sample", "run") if n in rows.columns), load_name, "element"))
     element = rows.values("element").astype(int)
     load, signal = (rows.values(name) * factor for name, factor in scaled.values())
+    timed = TIME.name in rows.columns
+    if not timed:
+        once = (*(n for n in ("sample", "run") if n in rows.columns), scaled["load"][0], "element")
+        refuse_duplicates(rows, once, "each once, or give time_s")
+    time = rows.values(TIME.name) if timed else np.zeros(len(rows))
     return [
-        _grasp(rows, number, own, element[own], load[own], run[own], signal[own])
+        _grasp(
+            rows, number, own, element[own], load[own], run[own], signal[own], time[own] if timed else None
+        )
         for number, own in groups(sample)
     ]
 
@@ -161,15 +213,21 @@ def _grasp(
     load: np.ndarray,
     run: np.ndarray,
     signal: np.ndarray,
+    time: np.ndarray | None,
 ) -> GraspReadings:
     """One sample's signals, [element, state], from its `own` rows; elements and states in the order of their
-    first rows."""
-    state = np.empty(len(own), [("run", int), ("load", float)])
-    state["run"], state["load"] = run, load
+    first rows. With time a state is a visit to a load: of an element's readings in their order, those of one
+    load that follow each other."""
+    state = np.empty(len(own), [("visit", int), ("run", int), ("load", float)])
+    state["visit"], state["run"], state["load"] = 0, run, load
+    if time is not None:
+        state["visit"] = _visits(element, state[["run", "load"]], time)
     elements, row = _numbered(element)
     states, column = _numbered(state)
-    grid = np.full((len(elements), len(states)), np.nan)
-    grid[row, column] = signal
+    place = row * len(states) + column
+    count = np.bincount(place, minlength=len(elements) * len(states))
+    with np.errstate(invalid="ignore"):  # a reading that is missing
+        grid = (np.bincount(place, signal, len(count)) / count).reshape(len(elements), len(states))
     if np.isnan(grid).any():
         e, s = np.argwhere(np.isnan(grid))[0]
         raise InputError(
@@ -178,7 +236,20 @@ def _grasp(
             legal="every element at every load",
         )
     columns = tuple(rows.columns)[1:3]  # behind the element
-    return GraspReadings(sample, elements, states["load"], states["run"], grid, rows.path, columns)
+    at = None if time is None else np.bincount(column, time) / np.bincount(column)
+    return GraspReadings(sample, elements, states["load"], states["run"], grid, rows.path, columns, at)
+
+
+def _visits(element: np.ndarray, load: np.ndarray, time: np.ndarray) -> np.ndarray:
+    """Of every reading how many changes of load its element saw before, by time."""
+    order = np.lexsort((time, element))
+    another, changed = np.diff(element[order]) != 0, load[order][1:] != load[order][:-1]
+    visit = np.concatenate([[0], np.cumsum(changed & ~another)])
+    first = np.concatenate([[0], np.flatnonzero(another) + 1])
+    counted = visit - np.repeat(visit[first], np.diff([*first, len(visit)]))
+    out = np.empty(len(element), int)
+    out[order] = counted
+    return out
 
 
 def _numbered(keys: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -189,10 +260,9 @@ def _numbered(keys: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _read(
-    path: str | Path, fixed: tuple[Field, ...], measured: tuple[str, ...], optional: tuple[Field, ...] = ()
+    table: Table, fixed: tuple[Field, ...], measured: tuple[str, ...], optional: tuple[Field, ...] = ()
 ) -> tuple[Rows, dict[str, tuple[str, float]]]:
     """The table's rows, and for each measured quantity its column's name and factor to mm, N or V."""
-    table = read_table(path, "readings (CSV)")
     scaled = {quantity: _column_of(table, quantity) for quantity in measured}
     fields = []
     for quantity, (name, factor) in scaled.items():

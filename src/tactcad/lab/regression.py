@@ -70,8 +70,15 @@ def spare_steps(x: np.ndarray, run: np.ndarray) -> int:
     return int(different.sum()) - int(another_run.sum()) - 1
 
 
-def fit_lines(x: np.ndarray, y: np.ndarray, run: np.ndarray, weight: np.ndarray | None = None) -> Lines:
-    """Weighted least squares of y[:, k] = intercept[run, k] + slope[k] x.
+def fit_lines(
+    x: np.ndarray,
+    y: np.ndarray,
+    run: np.ndarray,
+    weight: np.ndarray | None = None,
+    time: np.ndarray | None = None,
+) -> Lines:
+    """Weighted least squares of y[:, k] = intercept[run, k] + slope[k] x, and + drift[k] time where there is
+    time.
 
     Parameters
     ----------
@@ -82,6 +89,9 @@ def fit_lines(x: np.ndarray, y: np.ndarray, run: np.ndarray, weight: np.ndarray 
         Number of the reading's run.
     weight : array, [reading], optional
         Proportional to 1/variance; by default equal.
+    time : array, [reading], optional
+        With it, every response drifts at a rate of its own, one for all runs. Displacement and responses are
+        then what time leaves of them (Frisch and Waugh), and the slopes the same as with time in the fit.
 
     Returns
     -------
@@ -100,11 +110,18 @@ def fit_lines(x: np.ndarray, y: np.ndarray, run: np.ndarray, weight: np.ndarray 
     parts = [centred(column) for column in y.T]
     yc = np.column_stack([p[0] for p in parts])
     y_mean = np.column_stack([p[1] for p in parts])
+    of_time: np.ndarray | float = 0.0
+    if time is not None:
+        tc, t_mean = centred(time)
+        stt = float(w @ tc**2)
+        x_rate, y_rate = (w * tc) @ xc / stt, (w * tc) @ yc / stt
+        xc, yc, of_time = xc - x_rate * tc, yc - np.outer(tc, y_rate), w * tc**2 / stt
+        x_mean, y_mean = x_mean - x_rate * t_mean, y_mean - np.outer(t_mean, y_rate)
     sxx = np.bincount(index, w * xc * xc)
     sxy = np.column_stack([np.bincount(index, w * xc * column) for column in yc.T])
     slope = sxy.sum(0) / sxx.sum()
     residual = yc - np.outer(xc, slope)
-    dof = len(x) - len(runs) - 1
+    dof = len(x) - len(runs) - 1 - (time is not None)
     scatter = (residual * w[:, None]).T @ residual / dof
     has_slope = sxx > 0
     run_slope = sxy[has_slope] / sxx[has_slope, None]
@@ -116,13 +133,32 @@ def fit_lines(x: np.ndarray, y: np.ndarray, run: np.ndarray, weight: np.ndarray 
         scatter / sxx.sum(),
         (y_mean - np.outer(x_mean, slope)).mean(0),
         residual,
-        w / total[index] + w * xc * xc / sxx.sum(),
+        w / total[index] + w * xc * xc / sxx.sum() + of_time,
         w,
         dof,
         run_slope,
         share,
         between,
     )
+
+
+# Largest factor on the variance of a slope by fitting drift too. Beyond it displacement or load goes with
+# time, and a drift cannot be told from it. Chosen: twice the standard error.
+TOLD_FROM_TIME = 4.0
+
+
+def told_from_time(x: np.ndarray, time: np.ndarray, run: np.ndarray) -> bool:
+    """Whether readings at displacements x tell a drift from a slope, with an intercept for each run."""
+    index = np.unique(run, return_inverse=True)[1]
+    xc, tc = (v - (np.bincount(index, v) / np.bincount(index))[index] for v in (x, time))
+    stt, sxx = float(tc @ tc), float(xc @ xc)
+    return stt > 0 and sxx < TOLD_FROM_TIME * (sxx - float(xc @ tc) ** 2 / stt)
+
+
+def drifts(x: np.ndarray, y: np.ndarray, run: np.ndarray, time: np.ndarray) -> np.ndarray:
+    """Rate of every response y[:, k], in its unit a second, by least squares with `fit_lines`' slope; [k]."""
+    left = fit_lines(time, y, run, time=x)  # the same fit: what displacement leaves of time
+    return left.slope
 
 
 def rounding(y: np.ndarray) -> np.ndarray:

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from tactcad.lab.simulate import Noise, Truth, calibration_rows, grasp_signals
+from tactcad.lab.simulate import Noise, Truth, approach, calibration_rows, grasp_signals
 from tactcad.paper import published
 
 SEED = 20260102
@@ -19,6 +19,8 @@ READING_NOISE = 0.0002  # V, of ten averaged samples
 SAMPLES = (3.85, 3000.0)  # N/mm
 PAD_HEIGHT = 0.005  # mm, standard deviation
 LOADS = 8  # weights added to the moving weight
+LOG_RATE, LOG_STEP, LOG_CHANGE = 10.0, 4.0, 0.8  # Hz; s of a step, and of it while the load changes
+LOG_DRIFT, LOG_NOISE = 0.0004, 0.0005  # V: of a channel over the log, and of one sample
 
 
 def truth() -> Truth:
@@ -68,12 +70,80 @@ def grasp_csv(rng: np.random.Generator) -> str:
     return "\n".join(lines) + "\n"
 
 
+def grasp_log(rng: np.random.Generator) -> str:
+    """The log of a grasp of the first sample, as a lab's card writes it: the loads up and down, no load
+    before and after; channels that drift, and the fifth dead, as in the paper."""
+    figure, array = published.load().figure, truth()
+    up = figure["moving_weight"] + figure["added_mass"] * 9.80665e-3 * np.arange(LOADS + 1)
+    held = np.concatenate([[0.0], up, up[-2::-1], [0.0]])
+    rows = round(LOG_RATE * LOG_STEP)
+    change = round(LOG_RATE * LOG_CHANGE)
+    place = np.arange(rows * len(held)) / rows
+    whole = np.minimum(place.astype(int), len(held) - 1)
+    way = np.clip((place - whole) * rows / change, 0.0, 1.0)  # the load changes at the beginning of a step
+    load = held[np.maximum(whole - 1, 0)] * (1 - way) + held[whole] * way
+    time = np.arange(len(load)) / LOG_RATE
+    _, deflection = approach(load, array.stiffness, SAMPLES[0])
+    clean = array.zero_signal[:, None] + array.signal_per_deflection[:, None] * deflection
+    drift = LOG_DRIFT * rng.standard_normal((len(clean), 1)) * time / time[-1]
+    signal = clean + drift + LOG_NOISE * rng.standard_normal(clean.shape)
+    force = load + 0.002 * rng.standard_normal(len(load))
+    by_number = dict(zip(array.element.tolist(), signal))
+    dead = np.zeros(len(time))
+    columns = [by_number.get(n, dead) for n in range(1, 11)]
+    lines = [
+        "# SIMULATED log, not a measured one (python -m tactcad.paper.examples).",
+        f"# Truth: the paper's Table 1 on {SAMPLES[0]:g} N/mm under one pad; drift +-{LOG_DRIFT * 1e3:g} mV, "
+        f"noise {LOG_NOISE * 1e3:g} mV a sample.",
+        "Time (s);Fz (N);" + ";".join(f"Dev1/ai{i}" for i in range(len(columns))),
+    ]
+    for row in zip(time, force, *columns):
+        lines.append(
+            ";".join([f"{row[0]:.2f}", f"{row[1]:.3f}", *(f"{v:.4f}" for v in row[2:])]).replace(".", ",")
+        )
+    return "\n".join(lines) + "\n"
+
+
+GRASP_MAP = (
+    """\
+# What grasp-log.csv holds: `tactcad readings grasp-log.csv --map grasp-map.toml --out readings.csv`.
+
+[log]
+kind = "grasp"
+time = "Time (s)"
+
+[signal]
+unit = "V"
+least = -5.0    # the converter's range: what reaches it is saturated
+most = 5.0
+
+[channels]      # column = element
+"""
+    + "".join(f'"Dev1/ai{i}" = {i + 1}\n' for i in range(10))
+    + """
+[steps]
+by = "plateau"
+column = "Fz (N)"
+apart = 0.3     # N, a third of a weight
+hold = 2.0      # s, the shortest plateau
+settle = 0.5    # s left out at its beginning
+
+[load]
+column = "Fz (N)"
+unit = "N"
+least = 0.05    # N, below which the array hangs free
+"""
+)
+
+
 def write(folder: Path) -> None:
-    """calibration.csv and grasp.csv."""
+    """calibration.csv, grasp.csv, grasp-log.csv and grasp-map.toml."""
     rng = np.random.default_rng(SEED)
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "calibration.csv").write_text(calibration_csv(rng), "utf-8")
     (folder / "grasp.csv").write_text(grasp_csv(rng), "utf-8")
+    (folder / "grasp-log.csv").write_text(grasp_log(rng), "utf-8")
+    (folder / "grasp-map.toml").write_text(GRASP_MAP, "utf-8")
 
 
 if __name__ == "__main__":

@@ -5,12 +5,12 @@ from __future__ import annotations
 from pathlib import Path
 
 from tactcad.design.load import read
-from tactcad.design.tree import Design
+from tactcad.design.tree import CommonTables
 
 from .rules import refuse_broken
 
 
-def load(source: str | Path) -> Design:
+def load(source: str | Path) -> CommonTables:
     """A design, checked against every rule between its fields.
 
     Parameters

@@ -11,7 +11,7 @@ from tactcad.checks.described.goes_together import check_assembly
 from tactcad.checks.shop import load_shop
 from tactcad.design.files import refuse_overwriting, scratch_folder
 from tactcad.design.messages import CheckFailure
-from tactcad.design.tree import Design
+from tactcad.design.tree import CommonTables
 from tactcad.export.contents import sha256_of
 from tactcad.export.formats import ExportOptions, part_formats
 from tactcad.export.golden_file import check_golden, golden_path
@@ -58,7 +58,7 @@ class Terms:
 
 
 def looked_up(
-    design: Design, design_file: Path, out: str | Path, shop_file: Path, terms: Terms
+    design: CommonTables, design_file: Path, out: str | Path, shop_file: Path, terms: Terms
 ) -> tuple[list[Path], Mapping[str, Foreign]]:
     """Places of a release's zips, the whole one's first, and what `places.looked_at` finds there."""
     stem = ReleaseContents(design, (), (), (), terms.draft, terms.sample).stem
@@ -69,7 +69,12 @@ def looked_up(
 
 
 def release(
-    design: Design, design_file: Path, out: str | Path, shop_file: Path, progress: Progress, terms: Terms
+    design: CommonTables,
+    design_file: Path,
+    out: str | Path,
+    shop_file: Path,
+    progress: Progress,
+    terms: Terms,
 ) -> Released:
     """Write a design's release, `<design>-<revision>.zip`, and beside it a zip for each way of making
     (packages.py), `<design>-<revision>-<way>.zip`; the revision is followed by SAMPLE for a sample and by
@@ -168,7 +173,7 @@ def release(
     )
 
 
-def golden_faults(design: Design, design_file: Path) -> list[str]:
+def golden_faults(design: CommonTables, design_file: Path) -> list[str]:
     """Why the golden file does not allow a release of this revision; empty where it holds just this geometry,
     or where the design stands in no hardware/ and can have none."""
     path = golden_path(design_file, design)
@@ -183,7 +188,7 @@ class NotReleased(CheckFailure):
         super().__init__(f"{name}: not released, {len(failures)} reasons; nothing was written")
 
 
-def _refuse(design: Design, failures: Sequence[str], draft: bool, progress: Progress) -> None:
+def _refuse(design: CommonTables, failures: Sequence[str], draft: bool, progress: Progress) -> None:
     if failures and not draft:
         for failure in failures:
             progress.line(failure)

@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 from tactcad.checks.shop import Feed, Shop
-from tactcad.design.tree import Design
+from tactcad.design.tree import CommonTables
 from tactcad.drawing.engine.extent import part_box
 from tactcad.export import inspection
 from tactcad.export.contents import sha256_of
@@ -75,7 +75,7 @@ def _belongs(package: Package, line: OrderLine) -> bool:
 
 
 def _files_of(
-    package: Package, line: OrderLine, design: Design, files: Mapping[str, bytes]
+    package: Package, line: OrderLine, design: CommonTables, files: Mapping[str, bytes]
 ) -> dict[str, str]:
     """The part's files that the package takes, by kind; of the board what it is laid out by."""
     revision = design.design.revision

@@ -9,7 +9,7 @@ from functools import cached_property
 from typing import Literal
 
 from tactcad.design.messages import InputError
-from tactcad.design.tree import Design, Identity
+from tactcad.design.tree import CommonTables, Identity
 from tactcad.parts.language.description import NOT_ORDERED, Part
 from tactcad.parts.language.finding import Finding
 from tactcad.scenes.bom import BomRow, bom_rows
@@ -30,7 +30,7 @@ class ReleaseContents:
     not), whether it is a sample without owner, and how many sets are ordered.
     """
 
-    design: Design
+    design: CommonTables
     scenes: Sequence[Scene]
     flags: Sequence[Finding]
     failures: Sequence[str]
@@ -121,7 +121,7 @@ def _own(scene: Scene, bill: Mapping[str, BomRow], array: Set[str]) -> Iterator[
             yield number, row.qty - sum(counts.get(number, 0) for counts in ready)
 
 
-def owned(design: Design, owner: str | None, contact: str | None, sample: bool) -> Design:
+def owned(design: CommonTables, owner: str | None, contact: str | None, sample: bool) -> CommonTables:
     """The design with the owner and contact that are given in place of its own.
 
     Raises InputError where one of them is unusable as text, or, but for a sample, there is none.

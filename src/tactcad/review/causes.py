@@ -14,7 +14,7 @@ from typing import Any, Literal
 from tactcad.design.family import all_families, family_with, optional_tables
 from tactcad.design.load import from_table
 from tactcad.design.messages import InputError
-from tactcad.design.tree import Design
+from tactcad.design.tree import CommonTables
 from tactcad.export.difference import shown
 
 FieldPath = tuple[str, ...]
@@ -77,7 +77,7 @@ def causes(old: Table, new: Table) -> list[Cause]:
     return [cause for cause in _causes(list(_edits(old, new))) if _matters(cause, old, before)]
 
 
-def _matters(cause: Cause, old: Table, before: Design) -> bool:
+def _matters(cause: Cause, old: Table, before: CommonTables) -> bool:
     try:
         return from_table(cause.applied(old)) != before
     except InputError:

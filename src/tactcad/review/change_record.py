@@ -9,7 +9,7 @@ from hashlib import sha256
 from typing import TYPE_CHECKING, Any
 
 from tactcad import __version__
-from tactcad.design.tree import Design
+from tactcad.design.tree import CommonTables
 from tactcad.export.difference import Change
 from tactcad.export.shapes import Shapes
 from tactcad.export.sides import Side, not_compared
@@ -31,7 +31,7 @@ BEHIND = 100
 
 def change_record(
     sides: tuple[Side, Side],
-    designs: tuple[Design, Design],
+    designs: tuple[CommonTables, CommonTables],
     shapes: tuple[Shapes, Shapes],
     differences: Sequence[Change],
     meaning: Meaning,
@@ -143,7 +143,7 @@ def _scene(name: str, placed: Sequence[dict[str, Any]], pieces: Mapping[str, Sce
     return {"name": name, "placed": placed, "cover": same, **nothing}
 
 
-def _identity(designs: tuple[Design, Design]) -> dict[str, str]:
+def _identity(designs: tuple[CommonTables, CommonTables]) -> dict[str, str]:
     before, after = (design.design for design in designs)
 
     def both(a: str, b: str) -> str:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from tactcad.design.messages import CheckFailure
-from tactcad.design.tree import Design
+from tactcad.design.tree import CommonTables
 from tactcad.export.shapes import Shapes
 from tactcad.parts.language.description import Part, Vector, vector
 from tactcad.scenes import chosen_scenes, make_scene
@@ -67,7 +67,9 @@ class ScenePiece:
 
 
 def changed_scenes(
-    designs: tuple[Design, Design], shapes: tuple[Shapes, Shapes], say: Callable[[int, int, str], None]
+    designs: tuple[CommonTables, CommonTables],
+    shapes: tuple[Shapes, Shapes],
+    say: Callable[[int, int, str], None],
 ) -> dict[str, list[ScenePiece]]:
     """Every scene that both designs have, in pieces; loads the kernel.
 
@@ -96,7 +98,7 @@ def changed_scenes(
 
 
 def changed_scene(
-    designs: tuple[Design, Design], scenes: tuple[Scene, Scene], shapes: tuple[Shapes, Shapes]
+    designs: tuple[CommonTables, CommonTables], scenes: tuple[Scene, Scene], shapes: tuple[Shapes, Shapes]
 ) -> list[ScenePiece]:
     """Every piece of the scene, before and after; loads the kernel.
 
@@ -144,7 +146,7 @@ def _solid(part: Part) -> tuple[object, ...]:
 
 
 def _pairs(
-    designs: tuple[Design, Design], scenes: tuple[Scene, Scene]
+    designs: tuple[CommonTables, CommonTables], scenes: tuple[Scene, Scene]
 ) -> list[tuple[Placement | None, Placement | None]]:
     """What each placement became: elements by their order in their row, then what stayed as it is under
     whatever designator, the rest by designator."""

@@ -13,7 +13,7 @@ from typing import Any, Literal
 
 from tactcad.design.load import from_table
 from tactcad.design.messages import CheckFailure, InputError
-from tactcad.design.tree import Design
+from tactcad.design.tree import CommonTables
 from tactcad.export.difference import Change
 from tactcad.export.sides import Side, comparable
 from tactcad.parts.rules import refuse_broken
@@ -113,7 +113,7 @@ def meaning(old: Side, new: Side) -> Meaning:
     return Meaning(tuple(ranked), together, True, tuple(_interactions(told, together)))
 
 
-def kept_designs(old: Side, new: Side) -> tuple[Design, Design]:
+def kept_designs(old: Side, new: Side) -> tuple[CommonTables, CommonTables]:
     """Both sides' designs by the present code. Raises InputError where one tells none, or breaks a rule."""
     for side in (old, new):
         if side.table is None:
@@ -123,7 +123,7 @@ def kept_designs(old: Side, new: Side) -> tuple[Design, Design]:
     return _kept(old.table or {}), _kept(new.table or {})
 
 
-def _loaded(side: Side) -> Design | str | None:
+def _loaded(side: Side) -> CommonTables | str | None:
     """The side's design by the present code, None where it tells none; why it is refused."""
     if side.table is None:
         return None
@@ -133,17 +133,17 @@ def _loaded(side: Side) -> Design | str | None:
         return f"the present code refuses the design of {side.source}: {error}"
 
 
-def _kept(table: Table) -> Design:
+def _kept(table: Table) -> CommonTables:
     """A design that keeps its rules. Raises InputError where it does not."""
     design = from_table(table)
     refuse_broken(design)
     return design
 
 
-def _other_arrays(old: Design, new: Design) -> bool:
+def _other_arrays(old: CommonTables, new: CommonTables) -> bool:
     """Whether virtual arrays may come out otherwise: more differs than names, sources, read-out and leads."""
 
-    def rest(design: Design) -> dict[str, Any]:
+    def rest(design: CommonTables) -> dict[str, Any]:
         return {k: v for k, v in vars(design).items() if k not in ("design", "origin", "readout", "wiring")}
 
     return rest(old) != rest(new)
@@ -213,7 +213,7 @@ def _recorded(old: Side, new: Side, untold: Sequence[str]) -> Meaning:
     return Meaning(together=found, untold=tuple(untold))
 
 
-def _difference(old: Side, new: Side, design: Design | None) -> SensorEffect | None:
+def _difference(old: Side, new: Side, design: CommonTables | None) -> SensorEffect | None:
     """Of two records, of one design where it is given; None where one of them does not hold what that
     takes."""
     try:

@@ -82,6 +82,36 @@ function boxOf(boxes) {
   return [low, high];
 }
 
+// Colours of stiffness, soft to stiff, at equal steps of its logarithm: the scale viridis of matplotlib (CC0), turned round.
+const STIFFNESS = [[253, 231, 37], [94, 201, 98], [33, 145, 140], [59, 82, 139], [72, 36, 117]];
+
+function stiffnessColour(share) {
+  const at = Math.round(50 * share) / 50 * (STIFFNESS.length - 1);  // in steps: a small change colours nothing anew
+  const n = Math.min(Math.floor(at), STIFFNESS.length - 2);
+  const mixed = STIFFNESS[n].map((v, k) => Math.round(v + (at - n) * (STIFFNESS[n + 1][k] - v)));
+  return `#${mixed.map((v) => v.toString(16).padStart(2, '0')).join('')}`;
+}
+
+// Gives the parts of elements the colour of their stiffness; least and largest K, N/mm, null where none is known.
+function colouredByStiffness(record, parts) {
+  const known = Object.entries(record.array?.elements ?? {}).filter(([, e]) => e.estimate).map(([d, e]) => [d, e.estimate.stiffness]);
+  if (!known.length) return null;
+  const [low, high] = [Math.min(...known.map(([, k]) => k)), Math.max(...known.map(([, k]) => k))];
+  const of = new Map(known);
+  for (const {designator, part_no: number} of record.scenes.flatMap((s) => s.placed)) {
+    const k = of.get(designator);
+    if (k) Object.assign(parts.get(number), {senses: true, colour: stiffnessColour(high > low ? Math.log(k / low) / Math.log(high / low) : 0.5)});
+  }
+  return [low, high];
+}
+
+function stiffnessScale([low, high]) {
+  const bar = el('div', {className: 'scale', 'aria-hidden': 'true'});
+  bar.style.background = `linear-gradient(to right, ${STIFFNESS.map((c) => `rgb(${c.join(' ')})`).join(', ')})`;
+  const ends = high > low ? [low, Math.sqrt(low * high), high] : [low];
+  return [el('p', {}, 'Stiffness K, N/mm'), ...(high > low ? [bar] : []), el('div', {className: 'ends'}, ...ends.map((k) => el('span', {}, figures(k, 3))))];
+}
+
 // Numbers as the page shows them.
 const mm = (value) => Number(value).toFixed(3);
 const figures = (value, digits = 4) => (value === 0 ? '0' : Number(Number(value).toPrecision(digits)).toString());

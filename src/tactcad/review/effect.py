@@ -18,7 +18,7 @@ from tactcad.checks.check_report import Report
 from tactcad.checks.described.goes_together import COUNT
 from tactcad.design.family import family_of
 from tactcad.design.messages import CheckFailure
-from tactcad.design.tree import Design
+from tactcad.design.tree import CommonTables, Design
 from tactcad.export.difference import SHARE, differences
 from tactcad.export.geometry import Record, geometry
 from tactcad.mechanics import readout
@@ -83,7 +83,7 @@ class SensorState:
     size: Vector | None = None
 
 
-def recorded_state(record: Record, design: Design | None) -> SensorState:
+def recorded_state(record: Record, design: CommonTables | None) -> SensorState:
     """What a record of geometry tells; the rated force follows with the design's rating."""
     parts, rating = record["parts"], getattr(design, "rating", None)
 
@@ -117,7 +117,7 @@ class Reviewed:
     """A design that keeps its rules, by the present code; `known` keeps findings of parts that designs
     share, `told` is its record of geometry where that was made already."""
 
-    design: Design
+    design: CommonTables
     known: dict[str, tuple[Part, list[Finding]]] = field(default_factory=dict, repr=False)
     told: Record | None = None
 
@@ -280,7 +280,7 @@ class SensorEffect:
         return max(map(abs, changes), default=0.0)
 
 
-def same_elements(old: Design, new: Design) -> Pairs:
+def same_elements(old: CommonTables, new: CommonTables) -> Pairs:
     """Which element of the new array is which of the old one, in their order: place by place in rows that are
     as long as they were; else by their arms, so that one put in between moves no other."""
     before, after = (family_of(d).layout(d).elements for d in (old, new))

@@ -14,7 +14,7 @@ from typing import Any
 
 from tactcad.design.family import family_of
 from tactcad.design.messages import CheckFailure
-from tactcad.design.tree import Design
+from tactcad.design.tree import CommonTables
 from tactcad.drawing.guide import exploded
 from tactcad.export.inputs import digest, source_digest
 from tactcad.export.shapes import Shapes
@@ -85,7 +85,7 @@ class SceneFacts:
     bill: tuple[dict[str, Any], ...]
 
 
-def scene_facts(design: Design, scene: Scene) -> SceneFacts:
+def scene_facts(design: CommonTables, scene: Scene) -> SceneFacts:
     """The facts of one scene."""
     ways = _ways(scene)
     steps = {d: n for n, step in enumerate(scene.steps) for d in step.designators}
@@ -136,7 +136,7 @@ def _motion(motion: Motion, groups: Mapping[str, frozenset[str]]) -> MotionFact:
     return MotionFact(motion.name, ways, _rest(motion))
 
 
-def _pose(design: Design, scene: Scene, pose: Pose) -> PoseFact:
+def _pose(design: CommonTables, scene: Scene, pose: Pose) -> PoseFact:
     there = {p.designator: p.origin for p in make_scene(design, scene.name, pose).placements}
     groups: dict[Vector, list[str]] = {}
     for p in scene.placements:
@@ -244,7 +244,7 @@ def part_facts(part: Part, variables: dict[str, DimensionLimits], lines: Sequenc
     part
         Its description.
     variables, lines
-        Of the assembled sensor, as `assembly.virtual_build.Sensor` has them: what depends on the part.
+        Of the assembled sensor, as `stacks.virtual_build.Sensor` has them: what depends on the part.
     """
     return PartFacts(
         part_no=part.part_no,
@@ -288,8 +288,7 @@ def _feature(name: str, piece: Piece) -> FeatureFact:
 
 def _of_element(v: DimensionLimits, part: Part) -> tuple[tuple[str, str], ...]:
     """The limit of an element that a variable is of: it names no part, being the same of every length."""
-    is_element = {"pad_face", "stop_land"} <= part.feature_names
-    found = is_element and v.element in {c.name for c in part.characteristics}
+    found = part.kind == "element" and v.element in {c.name for c in part.characteristics}
     return ((part.part_no, v.element),) if found else ()
 
 
@@ -364,18 +363,20 @@ class ElementFacts:
     fit: FitFacts
 
 
-def element_facts(design: Design, scenes: tuple[Scene, ...]) -> tuple[ElementFacts, Sensor, list[StackLine]]:
+def element_facts(
+    design: CommonTables, scenes: tuple[Scene, ...]
+) -> tuple[ElementFacts, Sensor, list[StackLine]]:
     """The facts, and the sensor with its stack from which those of the parts are read."""
     made = sensor(design, scenes)
     return _facts(design, made.built(BUILT)), made, made.stack()
 
 
-def estimate_facts(design: Design) -> ElementFacts:
+def estimate_facts(design: CommonTables) -> ElementFacts:
     """The facts without virtual builds: of no array."""
     return _facts(design, Builds(0, SEED, {}, {}, ()))
 
 
-def _facts(design: Design, builds: Builds) -> ElementFacts:
+def _facts(design: CommonTables, builds: Builds) -> ElementFacts:
     family, why_not = family_of(design), ""
     layout, estimate = family.layout(design), family.estimate.rows
     rows: list[ElementEstimate] = []
@@ -444,7 +445,7 @@ class FindingFact:
 
 
 def finding_facts(
-    design: Design, scenes: Sequence[Scene], shapes: Shapes, say: Callable[[int, int, str], None]
+    design: CommonTables, scenes: Sequence[Scene], shapes: Shapes, say: Callable[[int, int, str], None]
 ) -> list[FindingFact]:
     """Every finding of every check on these scenes, failures first; kept in the cache of the shapes."""
     names = [scene.name for scene in scenes]

@@ -19,7 +19,7 @@ from tactcad import shutdown
 from tactcad.design.family import family_of
 from tactcad.design.files import scratch_folder
 from tactcad.design.messages import CheckFailure, InputError
-from tactcad.design.tree import NO_TABLES, Design
+from tactcad.design.tree import NO_TABLES, CommonTables
 from tactcad.export.shapes import Shapes
 from tactcad.lab.array_estimate import ELEMENT
 from tactcad.mechanics.ladder import DEFAULT_RUNG
@@ -39,9 +39,9 @@ ESTIMATES = (
     ELEMENT["number"].said(heading="element"),
     *ELEMENT.some("arm", "load_arm", "stiffness", "expected_error", "stiffness_ratio", "force"),
     ELEMENT["deflection"].said(unit="mm", scale=1.0),
-    ELEMENT["gauge_strain"].said(heading="gauge strain", unit="microstrain"),
+    ELEMENT["gauge_strain"].said(unit="microstrain"),
     ELEMENT["stress"],
-    ELEMENT["rated_force"].said(heading="rated force"),
+    ELEMENT["rated_force"],
     ELEMENT["rated_deflection"].said(heading="rated deflection", unit="mm", scale=1.0),
 )
 
@@ -68,7 +68,7 @@ def refuse_no_document(out: str) -> None:
 
 
 def freecad_document(
-    design: Design, scene_names: Sequence[str], shapes: Shapes, say: Callable[[int, int, str], None]
+    design: CommonTables, scene_names: Sequence[str], shapes: Shapes, say: Callable[[int, int, str], None]
 ) -> bytes:
     """The document.
 
@@ -101,7 +101,10 @@ def freecad_document(
 
 
 def freecad_record(
-    design: Design, scenes: Sequence[SceneFacts], parts: Mapping[str, Part], findings: Sequence[FindingFact]
+    design: CommonTables,
+    scenes: Sequence[SceneFacts],
+    parts: Mapping[str, Part],
+    findings: Sequence[FindingFact],
 ) -> dict[str, Any]:
     """The record; `file` of each part, its shape as BREP, is `part_file` of its place in `parts`."""
     identity = design.design
@@ -133,7 +136,7 @@ def part_file(number: int) -> str:
     return f"{number}.brep"
 
 
-def parameter_rows(design: Design) -> list[Row]:
+def parameter_rows(design: CommonTables) -> list[Row]:
     """Every field of the design that has a value: path, value, unit, meaning and origin."""
     rows: list[Row] = []
     for section in dataclasses.fields(design):
@@ -163,7 +166,7 @@ def _listed(value: Any) -> str:
     return ", ".join(f"{k}: {v}" if named else str(v) for k, v in pairs)
 
 
-def estimate_rows(design: Design) -> list[Row]:
+def estimate_rows(design: CommonTables) -> list[Row]:
     """A heading and a row for each element; one row that says why where the estimator does not reach."""
     try:
         family = family_of(design)
@@ -228,7 +231,7 @@ def _where(finding: FindingFact, placed: PlacedFact | None) -> Vector:
 
 
 def freecad_changes(
-    designs: tuple[Design, Design],
+    designs: tuple[CommonTables, CommonTables],
     shapes: tuple[Shapes, Shapes],
     changes: Sequence[Row],
     say: Callable[[int, int, str], None],
@@ -258,7 +261,7 @@ def freecad_changes(
 
 
 def changes_record(
-    designs: tuple[Design, Design], scenes: dict[str, list[ScenePiece]], changes: Sequence[Row]
+    designs: tuple[CommonTables, CommonTables], scenes: dict[str, list[ScenePiece]], changes: Sequence[Row]
 ) -> tuple[dict[str, Any], list[bytes]]:
     """The record, and the shapes (BREP) of its parts; equal shapes stand in it once."""
     from tactcad.solids.step import to_bytes

@@ -24,7 +24,7 @@ from typing import Any
 from tactcad.design.files import read_text
 from tactcad.design.load import MOST_BYTES, parse
 from tactcad.design.messages import CheckFailure, InputError
-from tactcad.design.tree import Design
+from tactcad.design.tree import CommonTables
 from tactcad.export.inputs import flattened
 from tactcad.export.shapes import Shapes
 from tactcad.lab.array_estimate import ELEMENT
@@ -48,7 +48,7 @@ HEADERS = {
     "Cross-Origin-Resource-Policy": "same-origin",
 }
 # Of each element, as the page's panel calls them.
-NUMBERS = (*ELEMENT.some("stiffness", "rated_force"), ELEMENT["yield_force"].said(heading="yields at"))
+NUMBERS = ELEMENT.some("stiffness", "rated_force", "yield_force")
 LEFT_OUT = "Left out while live; `tactcad review` has it."
 
 
@@ -138,7 +138,7 @@ class Live:
     def _read(self) -> str:
         return read_text(self.path, MOST_BYTES, "a design file (TOML)")
 
-    def _made(self, text: str) -> tuple[Design, dict[str, Any], bytes]:
+    def _made(self, text: str) -> tuple[CommonTables, dict[str, Any], bytes]:
         design = parse(text, str(self.path))
         refuse_broken(design)
         (scene,) = chosen_scenes(design, [self.scene])
@@ -155,7 +155,7 @@ class Live:
             s = self.shown
             self._tell(LiveState(s.version + 1, s.model, s.file, s.seconds, message, s.changes))
 
-    def _take(self, text: str, made: tuple[Design, dict[str, Any], bytes], started: float) -> None:
+    def _take(self, text: str, made: tuple[CommonTables, dict[str, Any], bytes], started: float) -> None:
         design, record, block = made
         changes = number_changes((self.design, self.record), (design, record))
         self._text, self._trouble, s = text, "", self.shown
@@ -174,7 +174,7 @@ class Live:
             self.changed.notify_all()
 
 
-def live_record(design: Design, scene_name: str, shapes: Shapes) -> tuple[dict[str, Any], bytes]:
+def live_record(design: CommonTables, scene_name: str, shapes: Shapes) -> tuple[dict[str, Any], bytes]:
     """As `review_record` of one scene, without what takes seconds: checks, virtual builds and with them each
     requirement's variance, pictures of strain.
 
@@ -208,7 +208,7 @@ def live_record(design: Design, scene_name: str, shapes: Shapes) -> tuple[dict[s
 
 
 def number_changes(
-    old: tuple[Design, Mapping[str, Any]], new: tuple[Design, Mapping[str, Any]]
+    old: tuple[CommonTables, Mapping[str, Any]], new: tuple[CommonTables, Mapping[str, Any]]
 ) -> list[NumberChange]:
     """What differs between two designs and their records: fields first, then the elements' estimates, equal
     changes of several elements as one, then masses."""

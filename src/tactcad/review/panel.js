@@ -19,6 +19,20 @@ function section(title, ...children) {
   return el('details', {open: true}, el('summary', {}, title), ...children);
 }
 
+// Numbers of a sentence, but not those of names such as E4 or AW-7075.
+const NUMBER = /(?<![\w.-])\d+(?:\.\d+)?(?:e[+-]?\d+)?(?![\w.]*[A-Za-z_])/g;
+
+// Sentences that differ in their numbers as one: where they differ stands from which to which.
+function together(sentences) {
+  const all = sentences.map((s) => s.match(NUMBER) ?? []);
+  let n = 0;
+  return sentences[0].replace(NUMBER, () => {
+    const here = all.map((numbers) => numbers[n]).sort((a, b) => a - b);
+    n += 1;
+    return here[0] === here.at(-1) ? here[0] : `${here[0]} to ${here.at(-1)}`;
+  });
+}
+
 class Panel {
   constructor(record, parts, on) {
     Object.assign(this, {record, parts, on});
@@ -219,13 +233,26 @@ class Panel {
     ];
   }
 
+  // Findings that differ in their numbers alone are one sentence, with a button for each.
   findingList(found) {
-    return el('ul', {className: 'findings'}, ...found.map((f) => {
-      const button = el('button', {type: 'button', className: `finding ${f.severity === 'fail' ? 'fail' : 'flag'}`},
-        el('b', {}, f.severity), ' ', el('span', {}, f.about), el('small', {}, words(f.check).replaceAll('-', ' ')), el('p', {}, f.message));
-      button.addEventListener('click', () => this.on.finding(f));
-      return el('li', {}, button);
+    const groups = new Map();
+    for (const f of found) {
+      const key = [f.severity, f.check, f.scene, f.message.replace(NUMBER, '#')].join('\u0000');
+      groups.set(key, [...(groups.get(key) ?? []), f]);
+    }
+    return el('ul', {className: 'findings'}, ...[...groups.values()].map((group) => {
+      const {severity, check} = group[0];
+      return el('li', {className: `finding ${severity === 'fail' ? 'fail' : 'flag'}`},
+        el('b', {}, group.length > 1 ? `${group.length} ${severity}s` : severity), el('small', {}, words(check).replaceAll('-', ' ')),
+        el('p', {}, together(group.map((f) => f.message))),
+        el('div', {}, ...group.flatMap((f) => [this.findingLink(f), ' '])));
     }));
+  }
+
+  findingLink(f) {
+    const button = el('button', {type: 'button', className: 'link', title: `${f.about}: ${f.message}`}, f.designators.slice(0, 6).join(' ') || f.about);
+    button.addEventListener('click', () => this.on.finding(f));
+    return button;
   }
 
   array() {
@@ -234,10 +261,11 @@ class Panel {
     const missed = Object.entries(fit.failures).flatMap(([name, failed]) => Object.entries(failed).map(([r, n]) => [name, r, n]));
     return [
       el('h2', {}, 'The array'),
-      ...(whyNot ? [el('p', {}, whyNot)] : [section('Elements', table(['', 'arm', 'K, N/mm', 'within', 'rated, N', 'gauge, \u00b5\u03b5', 'yield, N'],
-        rows.map(([d, {estimate: e, gauge_per_newton: g}]) => [this.link(d), figures(e.arm), figures(e.stiffness), e.expected_error === null ? '' : percent(e.expected_error),
+      ...(whyNot ? [el('p', {}, whyNot)] : [section('Elements', table(['element', 'arm, mm', 'K, N/mm', 'rated force, N', 'gauge strain, \u00b5\u03b5', 'yield force, N'],
+        rows.map(([d, {estimate: e, gauge_per_newton: g}]) => [this.link(d), figures(e.arm),
+          e.expected_error === null ? figures(e.stiffness) : el('span', {}, figures(e.stiffness), el('small', {}, `\u00b1${percent(e.expected_error)}`)),
           figures(e.rated_force, 3), g === null ? '' : figures(1e6 * g * e.rated_force), figures(e.yield_force, 3)]),
-        ['', 'n', 'n', 'n', 'n', 'n', 'n'])),
+        ['', 'n', 'n', 'n', 'n', 'n'])),
       section('Pair by pair', pairs.length ? this.pairTable(pairs) : el('p', {}, 'All elements are equally stiff: no pair tells an object.'),
         el('p', {className: 'hint'}, 'An element measures with the stiffest one. Best for: the object, N/mm, that the pair finds best; '
           + 'error x: its relative error there over that of the ratio of deflections. Gauge: strain at the rated force.'))]),
@@ -254,8 +282,9 @@ class Panel {
   }
 
   bill() {
-    const rows = this.scene.bill.map((r) => [r.item, this.designators(r), r.qty, r.unit, r.description, r.part_no, r.make_buy, r.material]);
-    return [el('h2', {}, `Bill of ${this.scene.name}`), table(['', 'designators', '', '', '', 'part number', '', 'material'], rows, ['n', 'small', 'n', '', '', 'small', '', 'small'])];
+    const part = (r) => el('span', {}, r.description, el('small', {}, r.part_no), el('small', {}, [r.make_buy, r.material].filter(Boolean).join(', ')));
+    const rows = this.scene.bill.map((r) => [r.item, `${r.qty} ${r.unit}`, part(r), this.designators(r)]);
+    return [el('h2', {}, `Bill of ${this.scene.name}`), table(['item', 'quantity', 'part', 'designators'], rows, ['n', 'n', 'part', 'small'])];
   }
 
   designators(row) {

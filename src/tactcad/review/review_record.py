@@ -11,7 +11,7 @@ import numpy as np
 from tactcad import __version__
 from tactcad.design.family import family_of
 from tactcad.design.messages import CheckFailure
-from tactcad.design.tree import Design
+from tactcad.design.tree import CommonTables
 from tactcad.export.shapes import Shapes
 from tactcad.scenes import make_scene, overall_size, stated_size
 
@@ -23,7 +23,7 @@ IDENTITY = ("name", "title", "revision", "date", "author", "organisation")
 
 
 def review_record(
-    design: Design,
+    design: CommonTables,
     scene_names: Sequence[str],
     shapes: Shapes,
     say: Callable[[int, int, str], None],
@@ -72,13 +72,13 @@ def review_record(
     return record, block
 
 
-def record_head(design: Design) -> dict[str, Any]:
+def record_head(design: CommonTables) -> dict[str, Any]:
     """What every record begins with."""
     identity = {name: getattr(design.design, name) or "" for name in IDENTITY}
     return {"schema": SCHEMA, "tactcad": __version__, "design": identity}
 
 
-def _strains(design: Design, pack: MeshPack) -> tuple[dict[str, Any], bytes]:
+def _strains(design: CommonTables, pack: MeshPack) -> tuple[dict[str, Any], bytes]:
     """By element part number the strain field's arrays in the block, which it continues."""
     family, block = family_of(design), pack.block
     layout, strain_field = family.layout(design), family.estimate.strain

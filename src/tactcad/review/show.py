@@ -10,10 +10,9 @@ from html import escape
 from importlib.util import find_spec
 from pathlib import Path
 from types import ModuleType
-from typing import cast
 
 from tactcad.design.messages import CheckFailure, InputError
-from tactcad.design.tree import CommonTables, Design
+from tactcad.design.tree import CommonTables
 from tactcad.export.inputs import flattened, nested
 from tactcad.export.sides import compare_sides, design_side
 from tactcad.parts.rules import refuse_broken
@@ -54,7 +53,7 @@ class ShownPage:
         )
 
 
-def show(design: str | Path | Design, scene: str = "array") -> ShownPage:
+def show(design: str | Path | CommonTables, scene: str = "array") -> ShownPage:
     """The review page of one scene of a design.
 
     Parameters
@@ -79,7 +78,7 @@ def show(design: str | Path | Design, scene: str = "array") -> ShownPage:
     return ShownPage(_title(read), review_page(record, block, library))
 
 
-def show_changes(before: str | Path | Design, after: str | Path | Design) -> ShownPage:
+def show_changes(before: str | Path | CommonTables, after: str | Path | CommonTables) -> ShownPage:
     """The page of what changed between two designs, and what each change means.
 
     Parameters
@@ -107,7 +106,7 @@ def show_changes(before: str | Path | Design, after: str | Path | Design) -> Sho
     return ShownPage(record["design"]["title"], review_page(record, block, library))
 
 
-def show_in_vscode(design: str | Path | Design, scene: str = "array") -> None:
+def show_in_vscode(design: str | Path | CommonTables, scene: str = "array") -> None:
     """The parts of one scene in OCP CAD Viewer: a tree of sub-assemblies and designators, with colours.
 
     Parameters
@@ -149,11 +148,11 @@ def _listening() -> ModuleType:
     return package
 
 
-def _read(design: str | Path | Design) -> tuple[Design, Mapping[str, str]]:
+def _read(design: str | Path | CommonTables) -> tuple[CommonTables, Mapping[str, str]]:
     """The design, which keeps its rules, and the drawing sheets (SVG by part number) that lie with it."""
     if isinstance(design, CommonTables):
-        refuse_broken(cast(Design, design))
-        return cast(Design, design), {}
+        refuse_broken(design)
+        return design, {}
     if not isinstance(design, str | Path):
         legal = "a path, a name in hardware/, or a design; of a scene its name, as show(design, scene)"
         raise InputError("design", "no design", value=type(design).__name__, legal=legal)
@@ -161,11 +160,11 @@ def _read(design: str | Path | Design) -> tuple[Design, Mapping[str, str]]:
     return seen.design, seen.sheets
 
 
-def _named(design: str | Path | Design, otherwise: str) -> str:
-    return otherwise if isinstance(design, Design) else str(design)
+def _named(design: str | Path | CommonTables, otherwise: str) -> str:
+    return otherwise if isinstance(design, CommonTables) else str(design)
 
 
-def _title(design: Design) -> str:
+def _title(design: CommonTables) -> str:
     return f"{design.design.title}, revision {design.design.revision}"
 
 

@@ -1,7 +1,16 @@
 // Puts the page together.
-const DIRECTIONS = [['iso', 'Corner'], ['front', 'Front'], ['rear', 'Back'], ['left', 'Left'], ['right', 'Right'], ['top', 'Above'], ['bottom', 'Below']];
+const DIRECTIONS = [['iso', 'Corner'], ['under', 'Corner below'], ['front', 'Front'], ['rear', 'Back'], ['left', 'Left'], ['right', 'Right'], ['top', 'Above'], ['bottom', 'Below']];
+
+// One column on a narrow screen and inside another page.
+function columns() {
+  const narrow = matchMedia('(max-width: 60rem)');
+  const set = () => document.documentElement.classList.toggle('column', narrow.matches || self !== top);
+  narrow.addEventListener('change', set);
+  set();
+}
 
 async function start() {
+  columns();
   const record = JSON.parse(new TextDecoder().decode(await unpacked('data')));
   const [parts, meshes, strains] = [new Map(), new Map(), new Map()];
 
@@ -14,6 +23,9 @@ async function start() {
       parts.set(part.part_no, part);
       meshes.set(part.part_no, arrays(block, part.mesh));
     }
+    const stiffness = colouredByStiffness(given, parts);
+    byId('stiffness-scale').hidden = !stiffness;
+    if (stiffness) byId('stiffness-scale').replaceChildren(...stiffnessScale(stiffness));
     for (const [number, s] of Object.entries(given.strains)) {
       strains.set(number, s.why_not ? s : {...s, ...arrays(block, {points: s.points, moved: s.moved, strain: s.strain, quads: s.quads})});
     }

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from tactcad.design.load import find, from_table
 from tactcad.design.messages import InputError
-from tactcad.design.tree import Design
+from tactcad.design.tree import CommonTables
 from tactcad.export.cache import Cache, default_root
 from tactcad.export.formats import ExportOptions
 from tactcad.export.inputs import Inputs, digest, inputs_from_json, inputs_of, nested, reasons
@@ -27,7 +27,7 @@ class Subject:
     """A design that keeps its rules, the file or folder that it was read from, the scenes that an export
     holds (None: all of the design's), and the sheets that lie there, SVG by part number."""
 
-    design: Design
+    design: CommonTables
     path: Path
     scenes: tuple[str, ...] | None
     sheets: Mapping[str, str]
@@ -67,14 +67,14 @@ def _exported(source: str, folder: Path) -> Subject:
     return Subject(design, folder, tuple(scenes), sheets)
 
 
-def shapes_of(design: Design, say: Callable[[str], None]) -> Shapes:
+def shapes_of(design: CommonTables, say: Callable[[str], None]) -> Shapes:
     """Makes solids, or takes them from the cache that a full export fills; `say` hears of damaged entries."""
     inputs = inputs_of(design, ROOMS, (*LIBRARIES, *DRAWN_WITH))
     return Shapes(Cache(default_root(), relayed(say)), digest((inputs.sources, inputs.libraries)))
 
 
 def drawn_sheets(
-    design: Design, scenes: Sequence[Scene], shapes: Shapes, say: Callable[[int, int, str], None]
+    design: CommonTables, scenes: Sequence[Scene], shapes: Shapes, say: Callable[[int, int, str], None]
 ) -> dict[str, str]:
     """The drawing sheet of every part made here, as SVG by part number."""
     plan = Plan(design, ExportOptions(tuple(scene.name for scene in scenes)), scenes, shapes)

@@ -54,7 +54,14 @@ class View {
     this.lightFromEye();
     this.thinLines();
     for (const p of scene.placed) this.setBehind(this.group(p.designator), this.parts.get(p.part_no).behind ?? 0);
-    this.lookFrom('iso');
+    this.lookFrom(this.padsBelow() ? 'under' : 'iso');
+  }
+
+  // Whether the elements' pads point down and nothing lies below them: then the scene opens on that side.
+  padsBelow() {
+    const elements = this.scene.placed.filter((p) => this.parts.get(p.part_no).senses);
+    if (!elements.length || turned(elements[0].rotation, [0, -1, 0])[2] > -0.9) return false;
+    return this.box(elements.map((p) => p.designator))[0][2] < this.rest[0][2] + 0.01;
   }
 
   // The viewer moves its light to the eye after each picture; it is to be there before.
@@ -195,8 +202,23 @@ class View {
   }
 
   lookFrom(direction) {
-    this.together(() => this.viewer.presetCamera(direction, 1));
+    this.together(() => {
+      this.viewer.presetCamera(direction === 'under' ? 'iso' : direction, 1);
+      if (direction === 'under') this.mirrorEye();
+    });
     this.fit();
+  }
+
+  // From as far below as it was above.
+  mirrorEye() {
+    const v = this.viewer;
+    const target = v.getCameraTarget();
+    const [x, y, z] = minus(v.getCameraPosition(), target);
+    const ahead = times([x, y, -z], 1 / Math.hypot(x, y, z));
+    const right = times([-ahead[1], ahead[0], 0], 1 / Math.hypot(x, y) * Math.hypot(x, y, z));
+    const up = [ahead[1] * right[2] - ahead[2] * right[1], ahead[2] * right[0] - ahead[0] * right[2], ahead[0] * right[1] - ahead[1] * right[0]];
+    v.setCameraPosition(plus(target, [x, y, -z]), false, false);
+    v.setCameraQuaternion(quaternion([0, 1, 2].map((k) => [right[k], up[k], ahead[k]])), false);
   }
 
   // Turns nothing: moves and zooms so that these designators fill the view; by default all that are shown.

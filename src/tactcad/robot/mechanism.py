@@ -15,7 +15,7 @@ from typing import Literal
 import numpy as np
 
 from tactcad.design.messages import InputError
-from tactcad.design.tree import Design
+from tactcad.design.tree import CommonTables
 from tactcad.parts.language.description import Vector
 from tactcad.scenes.scene import Placement, rotation
 
@@ -79,7 +79,7 @@ class Mechanism:
     Raises InputError for a name that XML cannot hold, and for an element without stiffness or way.
     """
 
-    design: Design
+    design: CommonTables
     fixed: tuple[Placement, ...]
     moving: tuple[Moving, ...]
 

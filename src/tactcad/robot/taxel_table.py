@@ -16,7 +16,7 @@ import numpy as np
 from tactcad.design.family import family_of
 from tactcad.design.files import read_json
 from tactcad.design.messages import InputError
-from tactcad.design.tree import Design
+from tactcad.design.tree import CommonTables
 from tactcad.stacks.stack import SEED
 from tactcad.stacks.variables import made
 from tactcad.stacks.virtual_build import sensor
@@ -80,7 +80,7 @@ class Taxels:
         return np.array([getattr(t, name) for t in self.taxels])
 
 
-def as_made(design: Design, taxels: Iterable[Taxel]) -> Taxels:
+def as_made(design: CommonTables, taxels: Iterable[Taxel]) -> Taxels:
     """The table with the covariance of K (N/mm) and pad height (mm) over virtual builds."""
     stack, array = family_of(design).stack, sensor(design, [])
     arrays = stack.built(array.layout, made(array.variables, BUILDS, "normal", np.random.default_rng(SEED)))

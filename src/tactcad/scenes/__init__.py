@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from tactcad.design.family import family_of
 from tactcad.design.messages import InputError, one_of
-from tactcad.design.tree import Design
+from tactcad.design.tree import CommonTables
 from tactcad.parts.language.description import Vector
 from tactcad.parts.language.finding import Finding
 from tactcad.parts.rules.rule import misfit
@@ -40,20 +40,20 @@ class LeftOut:
         return f"scene {self.scene} left out: {self.reason}"
 
 
-def scene_names(design: Design) -> tuple[str, ...]:
+def scene_names(design: CommonTables) -> tuple[str, ...]:
     """Names of the scenes that this design has: the tables are there, and the rig takes the array."""
     layout = family_of(design).layout(design)
     return tuple(rig.name for rig in _with_tables(design) if misfit(layout, rig.rules) is None)
 
 
-def left_out(design: Design) -> list[LeftOut]:
+def left_out(design: CommonTables) -> list[LeftOut]:
     """Scenes whose tables the design has and that are not among its scenes."""
     layout = family_of(design).layout(design)
     found = ((rig.name, misfit(layout, rig.rules)) for rig in _with_tables(design))
     return [LeftOut(name, why) for name, why in found if why is not None]
 
 
-def _with_tables(design: Design) -> list[Rig]:
+def _with_tables(design: CommonTables) -> list[Rig]:
     return [
         rig
         for rig in all_rigs(type(design)).values()
@@ -61,7 +61,7 @@ def _with_tables(design: Design) -> list[Rig]:
     ]
 
 
-def chosen_scenes(design: Design, wanted: list[str] | None) -> tuple[str, ...]:
+def chosen_scenes(design: CommonTables, wanted: list[str] | None) -> tuple[str, ...]:
     """The scenes asked for, each once, in the order of `all_rigs`; all of the design if none is asked for.
 
     Raises InputError for a scene that the design does not have.
@@ -76,7 +76,7 @@ def chosen_scenes(design: Design, wanted: list[str] | None) -> tuple[str, ...]:
     return tuple(name for name in names if not wanted or name in wanted)
 
 
-def make_scene(design: Design, name: str, pose: Pose | None = None) -> Scene:
+def make_scene(design: CommonTables, name: str, pose: Pose | None = None) -> Scene:
     """One scene of a design.
 
     Parameters
@@ -100,7 +100,7 @@ def make_scene(design: Design, name: str, pose: Pose | None = None) -> Scene:
         return with_added(scene, (added for added in design.added if added.scene == name))
 
 
-def overall_size(design: Design) -> Vector:
+def overall_size(design: CommonTables) -> Vector:
     """Length, width and height (mm) of the array as built: the box around all parts of its scene `array`."""
     return make_scene(design, ARRAY).size
 

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
+from typing import Any
 
 from tactcad.parts.bought import screws
 from tactcad.parts.bought.supply import Supply
@@ -17,6 +18,7 @@ from .scene import (
     Contact,
     ContactKind,
     Motion,
+    Move,
     Placement,
     Rotation,
     Scene,
@@ -106,33 +108,16 @@ class Builder:
         self.supplies += scene.supplies
 
     def step(
-        self,
-        title: str,
-        explode: Vector,
-        text: str,
-        fan: int = 0,
-        bench: bool = False,
-        aside: tuple[str, ...] = (),
-        tools: tuple[str, ...] = (),
-        elements: bool = False,
+        self, title: str, explode: Vector, text: str, order: Sequence[Move | Sequence[str]] = (), **more: Any
     ) -> None:
-        """Close a step: it takes what was placed since the step before; parts of a subassembly are ready."""
+        """Close a step: it takes what was placed since the step before; parts of a subassembly are ready.
+        What else there is to say of it: the fields of `Step`."""
         names = tuple(p.designator for p in self.placements[self._stepped :])
         self._stepped = len(self.placements)
+        ready = frozenset(self._ready & set(names))
+        moves = tuple(item if isinstance(item, Move) else tuple(item) for item in order)
         self.steps.append(
-            Step(
-                title,
-                names,
-                explode,
-                text,
-                fan,
-                bench,
-                aside,
-                frozenset(self._ready & set(names)),
-                self._unit,
-                tools,
-                elements,
-            )
+            Step(title, names, explode, text, ready=ready, unit=self._unit, order=moves, **more)
         )
 
     def scene(self, name: str, motions: Iterable[Motion] = (), cover: Iterable[str] = ()) -> Scene:

@@ -8,7 +8,7 @@ from typing import Any
 from tactcad.design.family import family_of
 from tactcad.design.messages import InputError, one_of
 from tactcad.design.text_values import as_number, as_whole
-from tactcad.design.tree import Design
+from tactcad.design.tree import CommonTables
 
 from .rig import rig_of
 from .scene import Pose
@@ -16,12 +16,12 @@ from .scene import Pose
 LEAST = 1e-3  # mm; less is more likely a typing error, and the CAD kernel drops edges that short
 
 
-def poses(design: Design, name: str) -> tuple[Pose, ...]:
+def poses(design: CommonTables, name: str) -> tuple[Pose, ...]:
     """Every pose of a scene that is checked, apart from its rest pose."""
     return tuple(rig_of(design, name).poses(design))
 
 
-def pose_of(given: Sequence[str], design: Design) -> Pose | None:
+def pose_of(given: Sequence[str], design: CommonTables) -> Pose | None:
     """The pose that KEY=VALUE texts describe; None where there are none. Raises InputError where they
     describe none.
     """

@@ -16,6 +16,12 @@ Deviations = dict[str, "Array"]  # by variable: (arrays built, pieces) deviation
 Matters = Literal["pads", "plate", "neither", "joint"]
 # Least interference of a pressed pin, mm; chosen: what a plug gauge tells from none.
 LEAST_PRESS = 0.002
+SHEET = "sheet: thickness"  # the variable of the one sheet that all elements are cut from
+
+
+def of_element(limit: str) -> str:
+    """The variable of an element's limit, by the limit's name."""
+    return f"element: {limit}"
 
 
 @dataclass(frozen=True)

@@ -15,7 +15,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from tactcad.design.family import all_families
-from tactcad.design.tree import CommonTables, Design
+from tactcad.design.tree import CommonTables
 from tactcad.parts.array.layout import Layout
 from tactcad.parts.array.stiffness_table import Lines
 from tactcad.parts.rules.rule import Rule
@@ -46,13 +46,13 @@ class Rig:
 
     name: str
     tables: tuple[str, ...]
-    make: Callable[[Design, Pose], Scene]
-    poses: Callable[[Design], Iterable[Pose]]
-    under_sensor: Callable[[Design], Iterable[Pose]]
+    make: Callable[[Any, Pose], Scene]
+    poses: Callable[[Any], Iterable[Pose]]
+    under_sensor: Callable[[Any], Iterable[Pose]]
     rules: tuple[Rule, ...]
     deflections: Lines
     requirements: Callable[[Layout, dict[str, DimensionLimits]], list[Requirement]]
-    checks: tuple[tuple[str, Callable[[Design, Scene], list[Finding]]], ...]
+    checks: tuple[tuple[str, Callable[[Any, Scene], list[Finding]]], ...]
 
     def __post_init__(self) -> None:
         if wrong := [r.name for r in self.rules if not (isinstance(r, Rule) and r.fit)]:
@@ -64,7 +64,7 @@ def none(*_: Any) -> tuple[()]:
     return ()
 
 
-def all_rigs(spec: type[CommonTables] = Design) -> dict[str, Rig]:
+def all_rigs(spec: type[CommonTables]) -> dict[str, Rig]:
     """Every rig of the family whose designs are of that class, by name: the array, then in the order in which
     their tables stand in a design."""
     return _rigs(next(f.name for f in all_families().values() if f.spec is spec))

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from tactcad.design.fields import present
 from tactcad.parts.array.clamp import pressed
+from tactcad.parts.array.element import SLOT
 from tactcad.parts.array.layout import Layout
 from tactcad.parts.bought.standard_parts import BORE, LEAST_PLAY, OUTSIDE, dowel_limits
 from tactcad.parts.language.fits import deviations, general
@@ -27,7 +28,7 @@ from tactcad.parts.rigs.bonding_fixture import (
 from tactcad.parts.rigs.cart import AXLES, AXLES_OVER, LOOSE_WHEEL, cart_layout
 from tactcad.parts.rigs.force_gauge import SEAT, SEAT_RADIUS, seat_radius
 
-from .requirement import LEAST_PRESS, Built, DimensionLimits, Requirement, summed, variable
+from .requirement import LEAST_PRESS, SHEET, Built, DimensionLimits, Requirement, of_element, summed, variable
 
 if TYPE_CHECKING:
     from tactcad.mechanics.section import Array
@@ -129,7 +130,7 @@ def _on_hinge(
     play = np.array([rig.play for rig in rigs])[kind]
 
     def room(a: Built) -> Array:
-        loose = play + a.made["element: slot length"] - a.made[TONGUE_][:, kind]
+        loose = play + a.made[of_element(SLOT)] - a.made[TONGUE_][:, kind]
         return allowed - np.abs(a.made[SHARE] * loose / 2 + a.made[EYE])
 
     return Requirement(PLACE_ON_HINGE, "mm", 0.0, inf, room, fields=("bonding.sight", "bonding.signal_share"))
@@ -148,7 +149,7 @@ def _between_pins(rig: BondingLayout, known: dict[str, DimensionLimits]) -> Requ
     at, pin = _pins(rig, known)
     air = 2 * rig.pin_y - rig.pin_d - rig.design.sheet.thickness
     # each of a pair takes half of its zone and of its own thickness
-    terms = ((at, 1.0), (pin, -0.5), ("sheet: thickness", -1.0))
+    terms = ((at, 1.0), (pin, -0.5), (SHEET, -1.0))
     return summed(f"element enters between the fixture's pins{_kind(rig)}", 0.0, inf, air, terms)
 
 

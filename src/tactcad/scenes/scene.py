@@ -62,15 +62,49 @@ class Motion:
     ways: tuple[tuple[str, Vector, Vector], ...]
 
 
+STILL: Vector = (0.0, 0.0, 0.0)
+HAND = "hand"
+
+
+@dataclass(frozen=True)
+class Move:
+    """Parts that move as one on straight legs, not turned; a screw turns about its own axis.
+
+    start  where they are before: offset from their final place, mm, in the scene's directions
+    path   where they come by in turn, offsets likewise; at the last one they stay
+    by     hand, or the tool that moves them
+    """
+
+    designators: tuple[str, ...]
+    start: Vector
+    path: tuple[Vector, ...]
+    by: str = HAND
+
+
+@dataclass(frozen=True)
+class Need:
+    """Parts that a step needs to stand there, or `away`: not there yet; and why."""
+
+    what: tuple[str, ...]
+    why: str
+    away: bool = False
+
+
 @dataclass(frozen=True)
 class Step:
     """A step of the assembly: what is put in place, from which side (mm, for the exploded view), and how.
 
     `fan` spreads the step's parts over the outer half of that way, in their order, so many abreast; 0: all
-    come together. A `bench` step is done away from what stands already. `aside` parts are driven or taken out
-    of the way during the step; `ready` ones were put together before. `unit` names the sub-assembly of the
-    scene that the step belongs to; empty where the scene is one. `tools` are what it needs besides the
-    drivers of its screws. A step on `elements` handles them one by one: which is which must be seen.
+    come together. A `bench` step is done away from what stands already, which the next other step brings in.
+    `ready` ones were put together before. `unit` names the sub-assembly of the scene that the step belongs
+    to; empty where the scene is one. `tools` are what it needs besides the drivers of its screws. A step on
+    `elements` handles them one by one: which is which must be seen.
+
+    `order` states the moves that do not follow from the placements (scenes/moves.py), in turn: a Move; or
+    designators that come together on their usual way; () brings in what lies on the bench. The step's other
+    parts follow one by one. `at` is where its parts stay for now: an offset from their final place, mm.
+    `sets` and `leaves` say which freedoms it fixes and leaves, where contacts do not tell; `needs` what else
+    must be there or away.
     """
 
     title: str
@@ -79,11 +113,15 @@ class Step:
     text: str
     fan: int = 0
     bench: bool = False
-    aside: tuple[str, ...] = ()
     ready: frozenset[str] = frozenset()
     unit: str = ""
     tools: tuple[str, ...] = ()
     elements: bool = False
+    order: tuple[Move | tuple[str, ...], ...] = ()
+    at: Vector = STILL
+    sets: tuple[str, ...] = ()
+    leaves: tuple[str, ...] = ()
+    needs: tuple[Need, ...] = ()
 
 
 @dataclass(frozen=True)

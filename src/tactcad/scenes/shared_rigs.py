@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 from tactcad.design.fields import present
@@ -9,6 +10,7 @@ from tactcad.parts import rigs
 from tactcad.parts.array.supplies import supplies
 from tactcad.parts.bought import screws, standard_parts
 from tactcad.parts.bought.standard_parts import STAGES, bearing
+from tactcad.parts.language.description import Vector, vector
 from tactcad.parts.language.metric import METRIC
 from tactcad.parts.rigs.cart import LOOSE_WHEEL, CartLayout
 from tactcad.parts.rigs.force_gauge import GAUGE_SCREW_X, GAUGE_SCREW_Z, GAUGE_THREADS
@@ -26,13 +28,18 @@ from tactcad.parts.rigs.frame import (
 from tactcad.parts.rigs.stand import BASE_SCREW, POST_SCREWS, StandLayout
 
 from .builder import Builder
-from .scene import AGAINST_Y, ALONG_Y
+from .moves import APPROACH
+from .scene import AGAINST_Y, ALONG_Y, STILL, Move
 
 CORNERS = tuple((sx, sy) for sx in (-1, 1) for sy in (-1, 1))
 STAND = "BP1"  # the base plate
 AXIS_LIFT = 200.0  # exploded views: the vertical axis over everything else
 THREAD, LENGTH, UNDER = PLATE_SCREW
 SQUARE = "precision square, 100 mm"
+SHIMS = "shim foil, 0.01 and 0.02 mm, scissors"
+BESIDE: Vector = (-300.0, 0.0, 2.0)  # where the cart is put together, mm from its place on the base plate
+OVER: Vector = (0.0, 0.0, 2.0)
+RAISED = 6.0  # mm that the force axis is driven up while something is brought in under it
 JAM_SPANNER = f"spanner {screws.JAM_NUT[2][0]:g} mm: the tip's jam nut"
 
 
@@ -50,34 +57,29 @@ def place_stand(b: Builder, rig: StandLayout, stages: bool) -> str:
         "Stand",
         (0, 0, 0) if stages else (0, 0, -60),
         "Screw the post on the base plate from below. Before the last turn, check with a square on the upper "
-        "face that the post's front stands square within 0.02 mm on 100 mm, both ways."
-        + (
-            ""
-            if stages
-            else " Set the cart on the plate: it must roll at a breath, and stand still where it is left."
-        ),
-        tools=(SQUARE,),
+        "face that the post's front stands square within 0.02 mm on 100 mm, both "
+        "ways; where it does not, lay shim foil under its foot.",
+        tools=(SQUARE, SHIMS),
     )
     return post
 
 
-def place_cart(
-    b: Builder, rig: CartLayout, roll: float, dents: tuple[tuple[float, float], ...] = (), depth: float = 0.0
-) -> str:
-    """Cart for the base plate, with holder and sample; returns the sample's designator."""
+def place_cart(b: Builder, rig: CartLayout, roll: float) -> str:
+    """Cart with holder, put together beside the base plate; returns the lid's designator."""
     b.group("cart")
     b.unit("cart with holder and sample")
     c, bear = rig.cart, rig.bearing
     plate = b.place("CT", rigs.cart_plate(rig), (roll, 0, c.clearance))
     shim, wheel = rigs.axle_shim(rig), bearing(c.bearing)
     side, outer = c.width / 2, c.width / 2 + c.shim + bear.B
-    b.step("Cart plate", (0, 0, 25), "Lay the cart plate ready, holder's threads up.")
+    b.step("Cart plate", (0, 0, 25), "Lay the cart plate ready, holder's threads up.", bench=True, at=BESIDE)
     for sy, which in ((-1, "front"), (1, "back")):
         xs, z = [roll + sx * c.wheel_base / 2 for sx in (-1, 1)], rig.axle_z
 
         def y(start: float, thick: float, sy: int = sy) -> float:
             return start if sy > 0 else -start - thick
 
+        order = []
         inner = [b.place("SH", shim, (x, y(side, c.shim), z), ALONG_Y) for x in xs]
         balls = [b.place("BB", wheel, (x, y(side + c.shim, bear.B), z), ALONG_Y) for x in xs]
         far = [b.place("SH", shim, (x, y(outer, c.shim), z), ALONG_Y) for x in xs]
@@ -89,6 +91,7 @@ def place_cart(
             b.meet(ball, beyond)
             b.meet(axle, ball, "press")
             b.meet(ball, STAND)
+            order.append((axle, near, ball, beyond))
         b.step(
             f"Wheels, {which}",
             (0, sy * 70, 25),
@@ -96,14 +99,17 @@ def place_cart(
             "does not pass."
             + (
                 " Then stand the cart on a surface plate, press lightly on its middle so that all four "
-                "wheels touch, and tighten the axles in that state, crosswise: the axles' play in the bores "
-                "takes up the threads' error. No wheel may be loose over a "
-                f"{LOOSE_WHEEL:g} mm feeler gauge. Every outer "
-                f"ring must turn at a breath: it has {c.shim:g} mm of air to plate and head."
+                "wheels touch, and tighten the axles in that state, crosswise: the axles' play in the "
+                f"bores takes up the threads' error. No wheel may be loose over a {LOOSE_WHEEL:g} mm "
+                f"feeler gauge. Every outer ring must turn at a breath: it has {c.shim:g} mm of air to "
+                "plate and head."
                 if sy > 0
                 else ""
             ),
+            order=order,
             fan=2,
+            bench=True,
+            at=BESIDE,
             tools=("surface plate, grade 1 or better", f"feelers, {LOOSE_WHEEL * 1e3:g} um"),
         )
     h, (length, under) = rig.holder_screw, present(rig.holder_fixing)
@@ -119,6 +125,8 @@ def place_cart(
         (0, 0, 60),
         "Grease the O-ring with a trace of silicone grease and lay it in the body's groove.",
         fan=1,
+        bench=True,
+        at=BESIDE,
     )
     fitting = b.place(
         "HF", rigs.hose_fitting(), (roll, -rig.holder_side / 2, top - rig.port_depth), AGAINST_Y
@@ -128,6 +136,8 @@ def place_cart(
         "Hose fitting",
         (0, -40, 45),
         "Screw the hose fitting in by hand and a quarter turn more; its washer seals.",
+        bench=True,
+        at=BESIDE,
     )
     lid = b.place("HL", rigs.holder_lid(rig), (roll, 0, top))
     b.meet(body, lid)
@@ -142,22 +152,60 @@ def place_cart(
         "the pump shut off, the vacuum must not fall by more than a tenth in a minute. The hose hangs slack "
         "in a loop: it may not pull the cart.",
         fan=1,
-    )
-    object_ = b.place("SA", rigs.sample(rig, dents, depth), (roll, 0, rig.lid_top))
-    b.meet(lid, object_)
-    b.step(
-        "Sample", (0, 0, 82), "Lay the sample on the middle of the lid, clean and dry, and open the vacuum."
+        bench=True,
+        at=BESIDE,
     )
     b.supplies += supplies("vacuum", {}, vacuum=rig.holder.vacuum)
+    b.group(None)
+    return lid
+
+
+def cart_on_base(b: Builder, before: Sequence[Move] = (), text: str = "") -> None:
+    """The step that brings the cart in over the base plate, from the side."""
+    cart = tuple(b.groups["cart"])
+    b.step(
+        "Cart on the base plate",
+        (0, 0, 0),
+        "Bring the cart in from the side and set it down on the base plate: it must roll at a breath, and "
+        f"stand still where it is left. {text}".rstrip(),
+        order=[*before, Move(cart, BESIDE, (OVER, STILL))],
+        sets=("wheels on BP1: along z, turn about x and y",),
+        leaves=("cart: rolls along x",),
+    )
+
+
+def place_sample(
+    b: Builder,
+    rig: CartLayout,
+    roll: float,
+    lid: str,
+    dents: tuple[tuple[float, float], ...] = (),
+    depth: float = 0.0,
+    above: float = 2 * APPROACH,
+) -> str:
+    """The sample on the holder's lid, brought in from the front under what hangs `above` mm over its place;
+    returns its designator."""
+    b.group("cart")
+    b.unit("cart with holder and sample")
+    object_ = b.place("SA", rigs.sample(rig, dents, depth), (roll, 0, rig.lid_top))
+    b.meet(lid, object_)
+    front, high = -200.0, min(APPROACH, above / 2)
+    b.step(
+        "Sample",
+        (0, 0, 82),
+        "Lay the sample on the middle of the lid, clean and dry, and open the vacuum.",
+        order=[Move((object_,), (0.0, front, high), ((0.0, 0.0, high), STILL))],
+        sets=(f"{object_} on {lid}: all, by the vacuum",),
+    )
     b.group(None)
     return object_
 
 
 def place_force_axis(
     b: Builder, rig: StandLayout, post: str, touch: float, height: float, roller: bool
-) -> str:
+) -> tuple[str, list[Move]]:
     """Vertical stage with the force gauge, tip at z = touch + height; returns the tip's (or roller's)
-    designator."""
+    designator, and the moves that put jam nut and tip on its shaft."""
     b.unit("force axis")
     travel = present(rig.design.calibration).axis_travel
     stage = replace(STAGES[0], travel=travel, maker="", part_no="", verified=False)
@@ -166,9 +214,15 @@ def place_force_axis(
     y = POST_Y
     fixed = b.place("SF", rigs.stage_fixed(stage), (0, y, zs), AGAINST_Y)
     b.meet(post, fixed)
-    for sx, sy in CORNERS:
-        at = (sx * STAGE_HOLE, y - UNDER, zs + sy * STAGE_HOLE)
-        b.screw(THREAD, LENGTH, at, (0, 1, 0), fixed, post)
+    fixings = [
+        (
+            sy,
+            b.screw(
+                THREAD, LENGTH, (sx * STAGE_HOLE, y - UNDER, zs + sy * STAGE_HOLE), (0, 1, 0), fixed, post
+            ),
+        )
+        for sx, sy in CORNERS
+    ]
     head = b.place("MM", rigs.micrometer(travel, resolution), (0, y - STAGE_PLATE / 2, zs + 30.0))
     b.meet(fixed, head)
     b.group("axis")
@@ -179,10 +233,11 @@ def place_force_axis(
         "Vertical stage",
         (0, -40, AXIS_LIFT),
         "Turn the moving half up by its micrometer until two screws are free, fix the fixed half on the "
-        f"post's rows at z = {zs - STAGE_HOLE:g} and {zs + STAGE_HOLE:g} mm, then the other two. It must run "
-        "square to the base plate: 0.01 mm on the whole travel against a square.",
-        aside=(moving,),
-        tools=(SQUARE, "lever indicator, 1 um, on a stand"),
+        f"post's rows at z = {zs - STAGE_HOLE:g} and {zs + STAGE_HOLE:g} mm, then drive it down and fix "
+        "the other two. It must run square to the base plate: 0.01 mm on the whole travel against a "
+        "square; where it does not, lay shim foil between post and fixed half.",
+        order=driven((fixed, moving, head), moving, fixings, (0.0, 0.0, 1.0), travel, z - height - zs),
+        tools=(SQUARE, SHIMS, "lever indicator, 1 um, on a stand"),
     )
     b.group("axis")
     back = y - 2 * STAGE_PLATE
@@ -234,7 +289,41 @@ def place_force_axis(
     b.meet(tip, nut)
     b.meet(gauge, nut, "thread")
     b.group(None)
-    return contact
+    under = [(0.0, -120.0, -15.0), (0.0, 0.0, -15.0), STILL]  # in from the front under the shaft, then up
+    order = [
+        Move(names, under[0], tuple(under[1:])) for names in ((nut,), tuple(dict.fromkeys((tip, contact))))
+    ]
+    return contact, order
+
+
+def raised(b: Builder, down: bool = False) -> Move:
+    """The force axis driven up by RAISED, or down again."""
+    up = (0.0, 0.0, RAISED)
+    return Move(tuple(b.groups["axis"]), up if down else STILL, (STILL if down else up,), "its micrometer")
+
+
+def driven(
+    stage: tuple[str, ...],
+    moving: str,
+    fixings: Sequence[tuple[int, str]],
+    axis: Vector,
+    travel: float,
+    off: float = 0.0,
+) -> list[Move | tuple[str, ...]]:
+    """A stage is fixed: it comes whole; its moving half is driven to one end, the screws of the side that is
+    then free go in, then those of the other side, and it is driven back.
+
+    `fixings` are the screws, each with the side along the axis that it is on; `off` is how far, mm, the
+    moving half stands from the middle of its travel at last.
+    """
+    by, here = "its micrometer", STILL
+    moves: list[Move | tuple[str, ...]] = [stage]
+    for side in (-1, 1):
+        there = vector((-side * travel - off) * a for a in axis)
+        moves.append(Move((moving,), here, (there,), by))
+        moves += [(name,) for on, name in fixings if on == side]
+        here = there
+    return [*moves, Move((moving,), here, (STILL,), by)]
 
 
 def roller_length(rig: StandLayout) -> float:

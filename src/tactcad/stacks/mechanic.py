@@ -21,20 +21,42 @@ from tactcad.mechanics import ladder, strain
 from tactcad.mechanics.section import Array, HingeSection
 from tactcad.mechanics.strength import back_share, stress_share, tip_compliance
 from tactcad.parts.array.clamp import SQUARE, lean
-from tactcad.parts.array.element import PAD_HEIGHT
+from tactcad.parts.array.element import (
+    ARM_LENGTH,
+    DOWEL_HOLE,
+    LEDGE,
+    PAD_HEIGHT,
+    PAD_LENGTH,
+    STOP_GAP,
+    TIP_PLACE,
+)
 from tactcad.parts.array.hinge_section import hinge_section
 from tactcad.parts.array.layout import Layout
 from tactcad.parts.array.measurements import WAYS
 from tactcad.parts.array.stop_gap import stop_gap
 from tactcad.scenes.requirement import Deviations, DimensionLimits
 
-from .variables import IN_PLAY, MODULUS, SHEET
+from .variables import (
+    BLANK_LEDGE,
+    FLATNESS,
+    IN_PLAY,
+    MODULUS,
+    PIN,
+    SHEET,
+    Axis,
+    Plate,
+    bore_in,
+    of_element,
+    own_holes,
+    pair_holes,
+    squareness,
+)
 
 CUT = 100.0  # stress over yield strength, at most; chosen: whatever is beyond it is gone
-PAD = f"element: {PAD_HEIGHT}"
+PAD = of_element(PAD_HEIGHT)
 # The field of HingeSection that a variable sets; the load arm follows from two others.
 HINGE = {
-    SHEET if field == "width" else f"element: {name}": field
+    SHEET if field == "width" else of_element(name): field
     for name, (field, *_) in WAYS.items()
     if field not in ("", "load_arm")
 }
@@ -97,21 +119,21 @@ class Assembled:
 
     # --- pins and the pads on the surface plate ---
 
-    def holes(self, which: str, axis: str) -> Array:
+    def holes(self, which: Plate, axis: Axis) -> Array:
         """How far the first dowel holes of both rows are off in the `tapped` or `head` plate, (arrays, 2)."""
-        pair = self.made[f"end plates: dowel holes along {axis}"]
-        own = self.made[f"end plate, {which}: dowel holes against the pair's along {axis}"]
+        pair = self.made[pair_holes(axis)]
+        own = self.made[own_holes(which, axis)]
         return (pair + own)[:, self.first_pins]
 
-    def pin(self, axis: str, y: Array | float) -> Array:
+    def pin(self, axis: Axis, y: Array | float) -> Array:
         """How far the first pins of both rows are off along an axis at y, (arrays, 2)."""
         layout = self.layout
         # as a share of the squareness's zone, which is as wide as SQUARE
-        zone = self.made[f"end plate, tapped: dowel holes' squareness along {axis}"][:, self.first_pins]
+        zone = self.made[squareness(axis)][:, self.first_pins]
         slope = lean(layout) / (layout.stack + layout.design.clamp.end_plate_thickness)
         return self.holes("tapped", axis) + zone / (SQUARE / 2) * slope * (layout.stack / 2 - y)
 
-    def _pin_at_elements(self, axis: str) -> Array:
+    def _pin_at_elements(self, axis: Axis) -> Array:
         at = {y: self.pin(axis, y) for y in sorted(set(self.y))}
         return np.column_stack([at[y][:, r] for y, r in zip(self.y, self.row)])
 
@@ -122,8 +144,8 @@ class Assembled:
         return (
             h.dowel_hole
             - size
-            + self.made["element: dowel hole diameter"]
-            - self.made["dowel pin: diameter"][:, self.first_pins][:, self.row]
+            + self.made[of_element(DOWEL_HOLE)]
+            - self.made[PIN][:, self.first_pins][:, self.row]
         )
 
     @cached_property
@@ -155,7 +177,7 @@ class Assembled:
     def head_play(self) -> Array:
         """Radial play of the head plate on the tighter of its pins, (arrays, 1)."""
         m = self.made
-        play = m["end plate, head: dowel hole diameter"] - m["dowel pin: diameter"]
+        play = m[bore_in("head")] - m[PIN]
         return play.min(axis=1, keepdims=True) / 2
 
     @property
@@ -171,7 +193,7 @@ class Assembled:
     @property
     def press(self) -> Array:
         """By how much each pin is larger than its hole in the tapped plate, (arrays, pins)."""
-        return self.made["dowel pin: diameter"] - self.made["end plate, tapped: dowel hole diameter"]
+        return self.made[PIN] - self.made[bore_in("tapped")]
 
     @property
     def tilt(self) -> Array:
@@ -182,7 +204,8 @@ class Assembled:
         layout = self.layout
         y = layout.stack / 2 + layout.design.clamp.end_plate_thickness / 2
         ends = {}  # heights of the upper edges over the pins, as drawn 0
-        for which, at in (("tapped", y), ("head", -y)):
+        sides: tuple[tuple[Plate, float], ...] = (("tapped", y), ("head", -y))
+        for which, at in sides:
             points = np.array([[self.dowel_x, at], [-self.dowel_x, at]])
             ends[which] = self.stands(points) + self.pin("z", at) - self.holes(which, "z")
         off = ends["head"] - ends["tapped"]
@@ -197,7 +220,7 @@ class Assembled:
     def tips(self) -> Array:
         """How far each tip is off along x, away from the middle, mm."""
         place = self.made[IN_PLAY] * self.play / 2
-        return self.side * self._pin_at_elements("x") + place - self.made["element: tip from dowel hole"]
+        return self.side * self._pin_at_elements("x") + place - self.made[of_element(TIP_PLACE)]
 
     @property
     def row_gaps(self) -> Array:
@@ -212,7 +235,7 @@ class Assembled:
     @cached_property
     def ledges(self) -> Array:
         """Height of each ledge over its nominal one, pads on the surface plate."""
-        return self.pads + self.made["element: ledge over the pad face"]
+        return self.pads + self.made[of_element(LEDGE)]
 
     @cached_property
     def plate(self) -> Array:
@@ -225,7 +248,7 @@ class Assembled:
             y = np.array([layout.position_y(index) for _, index in blanks])
             pins = self.stands(np.column_stack([way * self.dowel_x, y]))
             points = np.vstack([points, np.column_stack([way * seat, y])])
-            heights = np.hstack([heights, pins + self.made["blank: ledge over the dowel hole"]])
+            heights = np.hstack([heights, pins + self.made[BLANK_LEDGE]])
         return resting_plane(points, heights)
 
     @cached_property
@@ -233,13 +256,13 @@ class Assembled:
         """Stop plate over each element's own ledge, at its stop land."""
         land = self.layout.pad_inner + self.layout.design.stop.land_length / 2
         over = self.plate[:, :1] + self.plate[:, 1:2] * (self.side * land) + self.plate[:, 2:] * self.y
-        return over - self.ledges + self.made["stop plate: flatness"]
+        return over - self.ledges + self.made[FLATNESS]
 
     @cached_property
     def gaps(self) -> Array:
         """Stop gap of each element as assembled."""
         drawn = np.array([stop_gap(self.layout, p) for p in self.layout.elements])
-        return drawn + self.made["element: stop gap"] + self.lifts
+        return drawn + self.made[of_element(STOP_GAP)] + self.lifts
 
     # --- mechanics ---
 
@@ -249,7 +272,7 @@ class Assembled:
         drawn, m = hinge_section(self.layout, self.layout.elements), self.made
         zero = np.zeros(1)  # a full round has no fillet of its own
         changed = {f: getattr(drawn, f) + m.get(name, zero) for name, f in HINGE.items()}
-        arm = m["element: arm length"] - m["element: pad length"] / 2
+        arm = m[of_element(ARM_LENGTH)] - m[of_element(PAD_LENGTH)] / 2
         modulus = drawn.youngs_modulus * (1.0 + m[MODULUS])
         # nor does a fillet reach higher than the arm
         deep = (changed["arm_height"] - changed["hinge_thickness"]) / drawn.notch_sides

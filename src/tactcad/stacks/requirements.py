@@ -20,7 +20,7 @@ from tactcad.scenes.rig import rig_of
 from tactcad.scenes.scene import Scene
 
 from .screwed_joints import LENGTH, ScrewedJoint, joints, patterns, screwed, thickness
-from .variables import STACK_LENGTH, array_variables
+from .variables import SHEET, SPACER, STACK_LENGTH, STOP_PLATE, array_variables
 
 # Least engaged thread at any limits, in diameters: the torques of data/screws.csv are half of what the screw
 # bears, for which 1.5 d of aluminium are usual; bought parts have threads in steel.
@@ -90,13 +90,7 @@ def _array_requirements(layout: Layout, known: dict[str, DimensionLimits]) -> li
         Requirement(
             "gap between rows", "mm", gap - 2 * t.load_arm, gap + 2 * t.load_arm, lambda a: a.row_gaps
         ),
-        summed(
-            "neighbours free",
-            LEAST_BETWEEN,
-            inf,
-            layout.spacer,
-            (("spacer: thickness", 1.0), ("sheet: thickness", -1.0)),
-        ),
+        summed("neighbours free", LEAST_BETWEEN, inf, layout.spacer, ((SPACER, 1.0), (SHEET, -1.0))),
         Requirement("stop closes within the rated deflection", "mm", 0.0, inf, lambda a: limit - a.gaps),
         Requirement("stop keeps the hinge from yielding, as made", "", -inf, 1.0, lambda a: a.yield_shares),
         _carrier_mounts(layout, known),
@@ -109,13 +103,10 @@ def _carrier_mounts(layout: Layout, known: dict[str, DimensionLimits]) -> Requir
     d = layout.design.clamp
     hole = carrier_clearance(layout)
     room = round(hole - general(hole) - METRIC[d.screw].d, 9)
-    for name in ("end plates: carrier threads' places", "carrier: screw holes' places"):
+    threads, holes = "end plates: carrier threads' places", "carrier: screw holes' places"
+    for name in (threads, holes):
         known.setdefault(name, variable(name, -PLACE / 2, PLACE / 2, 2))
-    terms = (
-        (STACK_LENGTH, 1.0),
-        ("end plates: carrier threads' places", 1.0),
-        ("carrier: screw holes' places", 1.0),
-    )
+    terms = ((STACK_LENGTH, 1.0), (threads, 1.0), (holes, 1.0))
     return summed("carrier's screws enter the end plates", -room, room, 0.0, terms)
 
 
@@ -128,12 +119,7 @@ def _set_screws_sunk(layout: Layout, known: dict[str, DimensionLimits]) -> Requi
     length = layout.hold_down.length or 0.0
     screw = f"{d.screw}x{length:g} set screw: length"
     known.setdefault(screw, variable(screw, *deviations(LENGTH, length)))
-    terms = (
-        (thickness(carrier(layout), known), 1.0),
-        (name, 1.0),
-        (screw, -1.0),
-        ("stop plate: thickness", -1.0),
-    )
+    terms = ((thickness(carrier(layout), known), 1.0), (name, 1.0), (screw, -1.0), (STOP_PLATE, -1.0))
     return summed("set screws end below the carrier's top", 0.0, inf, SUNK, terms)
 
 

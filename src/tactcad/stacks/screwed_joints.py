@@ -19,6 +19,7 @@ import numpy as np
 
 from tactcad.mechanics.section import Array
 from tactcad.parts.array.clamp import HOLES
+from tactcad.parts.array.element import DOWEL_HOLE
 from tactcad.parts.array.layout import Layout
 from tactcad.parts.bought.standard_parts import dowel_limits
 from tactcad.parts.language.description import Extrusion, Hole, Part
@@ -271,7 +272,7 @@ def patterns(
 def _off_pins(layout: Layout, part: Part) -> float:
     """How far a part that hangs on pins may be off the plate that holds them, both ways, mm: by its play on
     them and the places of the pins."""
-    hole = next((c for c in part.characteristics if c.name == "dowel hole diameter"), None)
+    hole = next((c for c in part.characteristics if c.name == DOWEL_HOLE), None)
     return hole.upper - dowel_limits(layout.design.clamp.dowel)[0] + HOLES if hole else 0.0
 
 

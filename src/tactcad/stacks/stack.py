@@ -61,6 +61,9 @@ class StackLine:
         return max(0.0, r.lower - self.worst_low, self.worst_high - r.upper)
 
 
+FEW = 40  # pieces of the variables that matter to a value, for it to be climbed
+
+
 def stack(
     layout: Layout, variables: dict[str, DimensionLimits], wanted: Sequence[Requirement], count: int = 1000
 ) -> list[StackLine]:
@@ -136,7 +139,8 @@ def _behind_contacts(
     extreme = assembled(layout, {name: np.vstack([made_[name] for made_ in worst]) for name in variables})
     for n, r in enumerate(wanted):
         value, at = seen[r.name], instance[r.name]
-        ends = _at(r.value(extreme), at)[2 * n : 2 * n + 2]
+        ends = [*_at(r.value(extreme), at)[2 * n : 2 * n + 2]]
+        ends += _climbed(r, at, corners, value, effect[r.name], variables)
         yield StackLine(
             r,
             float(_at(r.value(middle), at)[0]),
@@ -146,6 +150,39 @@ def _behind_contacts(
             _kept(r, r.value(built)),
             _ranked(effect[r.name]),
         )
+
+
+def _climbed(
+    r: Requirement,
+    at: int,
+    corners: Assembled,
+    value: Array,
+    effect: dict[str, float],
+    variables: dict[str, DimensionLimits],
+) -> list[float]:
+    """Lowest and highest value by turning single pieces over, from the drawn arrays that are worst: where a
+    value falls to both sides of its middle no correlation points the way. Only where few pieces matter."""
+    names = [n for n, v in effect.items() if v > 0.0]
+    flips = [(name, i) for name in names for i in range(variables[name].pieces)]
+    if not 0 < len(flips) <= FEW:
+        return []
+    found = []
+    for sign in (-1.0, 1.0):
+        start = int(np.argmax(sign * value))
+        one = {name: v[start : start + 1] for name, v in corners.made.items()}
+        best = float(value[start])
+        for _ in range(len(flips)):
+            tried = {name: np.repeat(v, len(flips), axis=0) for name, v in one.items()}
+            for row, (name, i) in enumerate(flips):
+                v = variables[name]
+                tried[name][row, i] = v.upper[i] + v.lower[i] - tried[name][row, i]
+            reached = _at(r.value(type(corners)(corners.layout, tried)), at)
+            row = int(np.argmax(sign * reached))
+            if sign * (reached[row] - best) <= ROUNDING:
+                break
+            best, one = float(reached[row]), {name: v[row : row + 1] for name, v in tried.items()}
+        found.append(best)
+    return found
 
 
 def _at(value: Array, instance: int) -> Array:

@@ -16,15 +16,38 @@ from tactcad.parts.array.element import DOWEL_HOLE, LEDGE, PAD_HEIGHT, blank, el
 from tactcad.parts.array.layout import Layout
 from tactcad.parts.bought.standard_parts import dowel_limits
 from tactcad.parts.language.description import Part
-from tactcad.scenes.requirement import Deviations, DimensionLimits, Matters, variable
+from tactcad.scenes.requirement import SHEET, Deviations, DimensionLimits, Matters, of_element, variable
 
 # The stack's length once its spacers are chosen to the measured sheet.
 STACK_LENGTH = "stack: length, spacers to suit"
-IN_PLAY, SHEET, MODULUS = (
-    "element: place in its dowel hole's play, share",
-    "sheet: thickness",
-    "sheet: Young's modulus, relative",
-)
+IN_PLAY, MODULUS = "element: place in its dowel hole's play, share", "sheet: Young's modulus, relative"
+PIN, BLANK_LEDGE = "dowel pin: diameter", "blank: ledge over the dowel hole"
+SPACER, STOP_PLATE, FLATNESS = "spacer: thickness", "stop plate: thickness", "stop plate: flatness"
+Plate = Literal["tapped", "head"]
+Axis = Literal["x", "z"]
+AXES: tuple[Axis, Axis] = ("x", "z")
+
+
+def pair_holes(axis: Axis) -> str:
+    """Both end plates' dowel holes, which are made together."""
+    return f"end plates: dowel holes along {axis}"
+
+
+def squareness(axis: Axis) -> str:
+    """The tapped end plate's dowel holes."""
+    return f"end plate, tapped: dowel holes' squareness along {axis}"
+
+
+def own_holes(which: Plate, axis: Axis) -> str:
+    """An end plate's dowel holes against the pair's."""
+    return f"end plate, {which}: dowel holes against the pair's along {axis}"
+
+
+def bore_in(which: Plate) -> str:
+    """The diameter of an end plate's dowel holes."""
+    return f"end plate, {which}: dowel hole diameter"
+
+
 # What an element's limits matter to, by the limit; the others matter to neither contact.
 OF_ELEMENT: dict[str, Matters] = {PAD_HEIGHT: "pads", DOWEL_HOLE: "pads", LEDGE: "plate"}
 
@@ -49,40 +72,38 @@ def _array(layout: Layout) -> Iterable[DimensionLimits]:
         else:
             lower, upper = np.array(own).T
             matters = OF_ELEMENT.get(name, "neither")
-            yield DimensionLimits(f"element: {name}", lower, upper, element=name, matters=matters)
+            yield DimensionLimits(of_element(name), lower, upper, element=name, matters=matters)
     yield variable(IN_PLAY, -1.0, 1.0, len(places))
     modulus = present(d.tolerance.youngs_modulus)
     yield variable(MODULUS, -modulus, modulus)
     if layout.blanks():
-        yield _zone("blank: ledge over the dowel hole", "ledge", len(layout.blanks()), "plate", blank(layout))
-    yield _characteristic("spacer", spacer(layout), "thickness")
+        yield _zone(BLANK_LEDGE, "ledge", len(layout.blanks()), "plate", blank(layout))
+    yield _characteristic(SPACER, spacer(layout), "thickness")
     yield variable(STACK_LENGTH, -STACK, STACK)
     pins = 2 * len(layout.dowel_x)
     low, high = (limit - float(d.clamp.dowel) for limit in dowel_limits(d.clamp.dowel))
-    yield variable("dowel pin: diameter", low, high, pins, matters="pads")
+    yield variable(PIN, low, high, pins, matters="pads")
     pair = (end_plate(layout, False), end_plate(layout, True))
-    for which, part in zip(("tapped", "head"), pair):
-        name = f"end plate, {which}"
+    plates: tuple[tuple[Plate, Part], ...] = (("tapped", pair[0]), ("head", pair[1]))
+    for which, part in plates:
         on: Matters = "pads" if which == "tapped" else "neither"
         if (
             part is pair[0]
         ):  # the pair is made together: what it shares lies in one zone, its difference in another
-            for axis in "xz":
-                yield _zone(f"end plates: dowel holes along {axis}", "dowel holes", pins, "pads", *pair)
-                square = f"{name}: dowel holes' squareness along {axis}"
-                yield _zone(square, "dowel holes' squareness", pins, "pads", part)
-        for axis in "xz":
-            against = f"{name}: dowel holes against the pair's along {axis}"
-            yield _zone(against, "dowel holes of the pair", pins, on, part)
-        bore = next(c for c in part.characteristics if c.name == "dowel hole diameter")
+            for axis in AXES:
+                yield _zone(pair_holes(axis), "dowel holes", pins, "pads", *pair)
+                yield _zone(squareness(axis), "dowel holes' squareness", pins, "pads", part)
+        for axis in AXES:
+            yield _zone(own_holes(which, axis), "dowel holes of the pair", pins, on, part)
+        bore = next(c for c in part.characteristics if c.name == DOWEL_HOLE)
         size = float(d.clamp.dowel)  # pin and hole are both counted from it
         of = ((part.part_no, bore.name),)
-        yield variable(f"{name}: dowel hole diameter", bore.lower - size, bore.upper - size, pins, of, on)
+        yield variable(bore_in(which), bore.lower - size, bore.upper - size, pins, of, on)
     plate = stop_plate(layout)
     flat = next(g for g in plate.geometric if g.name == "flatness")
     of = ((plate.part_no, flat.name),)
-    yield variable("stop plate: flatness", 0.0, flat.zone, len(places), of)
-    yield _characteristic("stop plate", plate, "thickness")
+    yield variable(FLATNESS, 0.0, flat.zone, len(places), of)
+    yield _characteristic(STOP_PLATE, plate, "thickness")
 
 
 def _zone(name: str, limit: str, pieces: int, matters: Matters, *parts: Part) -> DimensionLimits:
@@ -91,10 +112,10 @@ def _zone(name: str, limit: str, pieces: int, matters: Matters, *parts: Part) ->
     return variable(name, -half, half, pieces, tuple((p.part_no, limit) for p in parts), matters)
 
 
-def _characteristic(who: str, part: Part, name: str, pieces: int = 1) -> DimensionLimits:
+def _characteristic(variable_name: str, part: Part, name: str, pieces: int = 1) -> DimensionLimits:
     c = next(c for c in part.characteristics if c.name == name)
     of = ((part.part_no, name),)
-    return variable(f"{who}: {name}", c.lower - c.nominal, c.upper - c.nominal, pieces, of)
+    return variable(variable_name, c.lower - c.nominal, c.upper - c.nominal, pieces, of)
 
 
 Distribution = Literal["normal", "uniform", "corners"]

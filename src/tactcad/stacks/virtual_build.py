@@ -12,8 +12,9 @@ from scipy.special import betaincinv
 
 from tactcad.design.family import Family, family_of
 from tactcad.design.load import paths
-from tactcad.design.tree import Design
+from tactcad.design.tree import CommonTables
 from tactcad.mechanics.section import Array
+from tactcad.parts.array.element import ARM_LENGTH, PAD_LENGTH
 from tactcad.parts.array.layout import Layout
 from tactcad.scenes import make_scene, scene_names
 from tactcad.scenes.requirement import DimensionLimits, Requirement
@@ -21,7 +22,7 @@ from tactcad.scenes.scene import Scene
 
 from .mechanic import Assembled
 from .stack import ROUNDING, SEED, StackLine, stack
-from .variables import Distribution, made
+from .variables import Distribution, made, of_element
 
 # Least share of arrays that meet all requirements; below it nothing is released.
 LEAST_YIELD = 0.995
@@ -162,7 +163,7 @@ class Sensor:
         )
 
 
-def sensor(design: Design, scenes: Sequence[Scene] | None = None) -> Sensor:
+def sensor(design: CommonTables, scenes: Sequence[Scene] | None = None) -> Sensor:
     """A design's array, and the rigs of these scenes (by default all), ready to be built virtually."""
     family = family_of(design)
     layout = family.layout(design)
@@ -178,7 +179,7 @@ def element_figures(arrays: Assembled) -> dict[str, Array]:
     return {
         "stiffness": arrays.stiffness,
         "pad_height_um": 1e3 * (arrays.pads - arrays.pads.min(axis=1, keepdims=True)),
-        "load_arm": arm + made_["element: arm length"] - made_["element: pad length"] / 2,
+        "load_arm": arm + made_[of_element(ARM_LENGTH)] - made_[of_element(PAD_LENGTH)] / 2,
         "stop_gap": arrays.gaps,
         "closes": arrays.closing_force,
     }

@@ -9,10 +9,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from tactcad.design.family import taken_as
 from tactcad.design.load import from_table
 from tactcad.design.materials import differences
 from tactcad.design.messages import InputError
-from tactcad.design.tree import Design
+from tactcad.design.tree import CommonTables, Design
 from tactcad.mechanics import ladder, strain
 from tactcad.mechanics.accuracy import expected_error_of
 from tactcad.mechanics.section import HingeSection
@@ -148,10 +149,10 @@ def alike(study: Study, columns: dict[str, Column], refused: Refused) -> Iterato
         if refused.valid[rows].any():
             for path, column in numbers.items():
                 design = with_value(design, path, column[rows])
-            yield rows, Layout(design)
+            yield rows, Layout(taken_as(design, Design, "measure.what: a rung"))
 
 
-def _misnamed(design: Design, material: dict[str, Floats]) -> Column:
+def _misnamed(design: CommonTables, material: dict[str, Floats]) -> Column:
     """Why these values may not bear the material's name, as when their file is read; "" where they may."""
     why = []
     for values in zip(*material.values()):

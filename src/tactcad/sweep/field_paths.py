@@ -11,13 +11,13 @@ from typing import Any
 from tactcad.design.family import family_of
 from tactcad.design.fields import NumberRows, Numbers, Spec
 from tactcad.design.load import paths
-from tactcad.design.tree import Design, Hinge
+from tactcad.design.tree import CommonTables, Hinge
 
 _PLACE = re.compile(r"(?P<field>[^\[\]]+)(?P<places>(?:\[(?:0|[1-9][0-9]{0,3})\])*)")
 _OVERRIDE = re.compile(r"override\.(?P<number>[1-9][0-9]{0,3})\.(?P<name>\w+)")
 
 
-def spec_at(design: Design, path: str) -> Spec | None:
+def spec_at(design: CommonTables, path: str) -> Spec | None:
     """What the field at that path takes; None where there is no such field, or no such place in its list."""
     found = _PLACE.fullmatch(path)
     if not found:
@@ -32,7 +32,7 @@ def spec_at(design: Design, path: str) -> Spec | None:
     return spec
 
 
-def value_at(design: Design, path: str) -> Any:
+def value_at(design: CommonTables, path: str) -> Any:
     """The design's own value there, None where it gives none."""
     field = path.partition("[")[0]
     known = paths(design)
@@ -44,7 +44,7 @@ def value_at(design: Design, path: str) -> Any:
     return value
 
 
-def placed(table: dict[str, Any], design: Design, path: str, value: Any) -> dict[str, Any]:
+def placed(table: dict[str, Any], design: CommonTables, path: str, value: Any) -> dict[str, Any]:
     """A copy of a design's table with that value at the path; what is not on the way to it is shared.
 
     Parameters
@@ -68,7 +68,7 @@ def placed(table: dict[str, Any], design: Design, path: str, value: Any) -> dict
     return out
 
 
-def with_value(design: Design, path: str, value: Any) -> Design:
+def with_value(design: CommonTables, path: str, value: Any) -> CommonTables:
     """A copy of a design with that value at the path, unchecked: for arithmetic it may be an array, and then
     it is many designs. The stop's own gaps stay as they are."""
     section, _, name = path.partition(".")
@@ -76,14 +76,14 @@ def with_value(design: Design, path: str, value: Any) -> Design:
     if own := _OVERRIDE.fullmatch(field):
         number = int(own["number"])
         changed = replace(table.override.get(number, Hinge()), **{own["name"]: value})
-        return replace(design, element=replace(table, override=table.override | {number: changed}))
+        return replace(design, **{section: replace(table, override=table.override | {number: changed})})
     if "." in field:
         return design
     new = _replaced(getattr(table, field), places, value) if places else value
     return replace(design, **{section: replace(table, **{field: new})})
 
 
-def _spec(design: Design, field: str) -> Spec | None:
+def _spec(design: CommonTables, field: str) -> Spec | None:
     section, _, name = field.partition(".")
     kind = family_of(design).tables.get(section)
     if kind is None:

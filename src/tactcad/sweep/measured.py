@@ -10,9 +10,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from tactcad.design.family import taken_as
 from tactcad.design.load import from_table
 from tactcad.design.messages import CheckFailure, InputError
-from tactcad.design.tree import Design
+from tactcad.design.tree import CommonTables, Design
 from tactcad.export.inputs import Inputs, first_installed, inputs_of
 from tactcad.mechanics.ladder import FINITE_ELEMENTS
 from tactcad.parts.array.layout import Layout
@@ -194,10 +195,10 @@ def measured_whole(study: Study, table: dict[str, Any], folder: Path) -> tuple[d
     return found, ""
 
 
-def _by_elements(study: Study, design: Design, rung: str) -> dict[str, float]:
+def _by_elements(study: Study, design: CommonTables, rung: str) -> dict[str, float]:
     from tactcad.lab.array_estimate import estimate
 
-    layout = Layout(design)
+    layout = Layout(taken_as(design, Design, "measure.what: a rung"))
     if max(study.elements) > len(layout.elements):
         raise CheckFailure(f"the design has no element {max(study.elements)}")
     wanted = {e.number: e for e in estimate(layout, rung, numbers=study.elements)}
@@ -209,7 +210,7 @@ def _by_elements(study: Study, design: Design, rung: str) -> dict[str, float]:
     return found
 
 
-def _builds(study: Study, design: Design) -> dict[str, Any]:
+def _builds(study: Study, design: CommonTables) -> dict[str, Any]:
     from tactcad.stacks.virtual_build import sensor
 
     builds = sensor(design).built(study.measure.arrays)
@@ -218,7 +219,7 @@ def _builds(study: Study, design: Design) -> dict[str, Any]:
     return {"yield": builds.share, "most_missed": worst}
 
 
-def _checks(_: Study, design: Design) -> dict[str, Any]:
+def _checks(_: Study, design: CommonTables) -> dict[str, Any]:
     from tactcad.checks.run import run_checks
     from tactcad.scenes import scene_names
 
@@ -232,7 +233,7 @@ def _checks(_: Study, design: Design) -> dict[str, Any]:
     }
 
 
-def _export(design: Design, folder: Path) -> dict[str, Any]:
+def _export(design: CommonTables, folder: Path) -> dict[str, Any]:
     from tactcad.export.contents import sha256_of
     from tactcad.export.formats import ExportOptions
     from tactcad.export.pipeline import export

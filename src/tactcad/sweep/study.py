@@ -16,7 +16,7 @@ from tactcad.design.load import DEFAULT_DESIGN, MOST_BYTES, find, from_table, pa
 from tactcad.design.messages import InputError
 from tactcad.design.schema import table_schema, table_text
 from tactcad.design.text_values import parse_toml
-from tactcad.design.tree import Design, Identity
+from tactcad.design.tree import CommonTables, Identity
 from tactcad.export.inputs import digest
 from tactcad.mechanics.ladder import CLOSED_FORMS, RUNGS
 
@@ -120,7 +120,7 @@ class Study:
     base: dict[str, Any]
 
     @cached_property
-    def design(self) -> Design:
+    def design(self) -> CommonTables:
         """The design with nothing varied."""
         return from_table(self.base)
 
@@ -244,7 +244,7 @@ def _varied(table: dict[str, Any], base: dict[str, Any]) -> dict[str, Varied]:
     return varied
 
 
-def _read_normal(design: Design, path: str, spec: Any, half: float) -> None:
+def _read_normal(design: CommonTables, path: str, spec: Any, half: float) -> None:
     middle = value_at(design, path)
     if middle is None:
         raise InputError(f"vary.{path}.normal", "the design gives no value to vary about", legal="a range")

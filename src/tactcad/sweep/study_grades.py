@@ -10,6 +10,7 @@ import numpy as np
 
 from tactcad.costs.grades import COUNTS, YIELD, counts, here, linear, published, seconds_each
 from tactcad.design.allowance import Allowance, Grade, Picked, pick
+from tactcad.design.family import family_of
 from tactcad.design.messages import CheckFailure, InputError
 from tactcad.mechanics.accuracy import CANDIDATES, MEASURED_FOR, Candidate, accuracy_data, zones
 from tactcad.mechanics.ladder import RUNGS
@@ -17,7 +18,6 @@ from tactcad.mechanics.register import rungs
 from tactcad.mechanics.section import HingeSection
 from tactcad.mechanics.validity import reasons
 from tactcad.parts.array.hinge_section import element_section
-from tactcad.parts.array.layout import Layout
 from tactcad.scenes import scene_names
 from tactcad.stacks.virtual_build import widest
 
@@ -111,10 +111,12 @@ def _sections(study: Study) -> Iterator[HingeSection]:
 def _seconds(study: Study, each: dict[Candidate, float], workers: int) -> float:
     """Of the whole study: its designs shared by the workers, and what one process does alone."""
     costs, measure, count = published(), study.measure, study.count
-    layout = Layout(study.design)
+    layout = family_of(study.design).layout(study.design)
     elements = {"element": float(len(layout.elements))}
     places = {p.number: p for p in layout.elements}
-    kinds = {(p.arm, p.hinge, p.body_length) for n, p in places.items() if n in study.elements}
+    kinds = {
+        (p.arm, p.hinge, p.body_length) for n, p in places.items() if measure.rungs and n in study.elements
+    }
     one = 0.0
     for rung in measure.rungs:
         closed = bool(rungs()[rung].compliance)

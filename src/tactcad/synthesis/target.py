@@ -11,7 +11,7 @@ from math import ceil, floor, inf
 from pathlib import Path
 from typing import Any
 
-from tactcad.design.family import family_of
+from tactcad.design.family import family_of, taken_as
 from tactcad.design.fields import Number, Numbers, OneOf, SomeOf, TextLine, Whole, given, shown_text
 from tactcad.design.files import read_text
 from tactcad.design.load import DEFAULT_DESIGN, MOST_BYTES, read, read_table, unknown_field
@@ -265,7 +265,7 @@ def _base(name: str, folder: Path) -> Design:
     try:
         base = read(folder / name if "/" in name or name.endswith(".toml") else name)
         family_of(base).must("variables", "target.base")
-        return base
+        return taken_as(base, Design, "target.base")
     except InputError as error:
         if error.where == "DESIGN":
             raise InputError("target.base", error.what, value=name, legal=error.legal) from error

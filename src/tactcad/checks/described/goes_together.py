@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from tactcad.design.tree import Design
+from tactcad.design.tree import CommonTables
 from tactcad.parts.language.finding import Finding
 from tactcad.scenes.scene import Scene
 from tactcad.stacks.stack import SEED
@@ -15,7 +15,9 @@ from ..check import Check
 COUNT = 1000
 
 
-def check_assembly(design: Design, scenes: Sequence[Scene] | None = None, seed: int = SEED) -> list[Finding]:
+def check_assembly(
+    design: CommonTables, scenes: Sequence[Scene] | None = None, seed: int = SEED
+) -> list[Finding]:
     """A finding where too many arrays fail, of the rigs those of `scenes` (by default all).
 
     `seed` of chance is the published one.

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Collection
 
-from tactcad.design.tree import Design
+from tactcad.design.tree import CommonTables
 from tactcad.parts.array.stiffness_table import Deflection
 from tactcad.parts.language.finding import Finding
 from tactcad.parts.rules.stiffness_remedy import remedy
@@ -17,7 +17,7 @@ from tactcad.scenes.rig import all_rigs, rig_of
 from ..check import Check
 
 
-def deflections(design: Design, scenes: Collection[str]) -> tuple[Deflection, ...]:
+def deflections(design: CommonTables, scenes: Collection[str]) -> tuple[Deflection, ...]:
     """The stiffness table of a design: the lines of these scenes, all of which it must have."""
     return tuple(
         line
@@ -27,7 +27,7 @@ def deflections(design: Design, scenes: Collection[str]) -> tuple[Deflection, ..
     )
 
 
-def check_rigidity(design: Design, scenes: Collection[str], table: list[Deflection]) -> list[Finding]:
+def check_rigidity(design: CommonTables, scenes: Collection[str], table: list[Deflection]) -> list[Finding]:
     """Findings on the lines that give way by more than is allowed; all lines into `table`."""
     table += deflections(design, scenes)
     return [
@@ -37,7 +37,7 @@ def check_rigidity(design: Design, scenes: Collection[str], table: list[Deflecti
     ]
 
 
-def _message(design: Design, line: Deflection) -> str:
+def _message(design: CommonTables, line: Deflection) -> str:
     path, value, legal = remedy(design, line, rig_of(design, line.scene).deflections)
     return f"{line} ({path} = {value:g}; legal: {legal})"
 

@@ -1,12 +1,13 @@
 """Whether a key or a socket reaches every screw and nut when the assembly's steps put them in.
 
 A tool is a cylinder out of the screw's socket, or over the nut, as long as a hand needs. Obstacles are the
-parts that stand after the screw's own step, except those that the step says are on the bench or driven aside.
+parts that stand when the screw goes in, each where it is at that time (scenes/moves.py).
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
+from dataclasses import replace
 from functools import cache
 from math import cos, pi
 
@@ -15,10 +16,11 @@ from OCP.TopoDS import TopoDS_Shape
 
 from tactcad.checks.on_solids.interference import TOUCH_MM
 from tactcad.contour import Contour, circle
-from tactcad.parts.language.description import Extrusion, Hole, Material, Part, Pocket, vector
+from tactcad.parts.language.description import Extrusion, Hole, Material, Part, Pocket, Vector, vector
 from tactcad.parts.language.finding import Finding
 from tactcad.parts.language.metric import SOCKET_WALL
-from tactcad.scenes.scene import Placement, Scene, Step, rotation
+from tactcad.scenes.moves import FASTENERS, moments
+from tactcad.scenes.scene import Placement, Scene, rotation
 from tactcad.solids.build import build
 from tactcad.solids.measure import Faces, bounding_box, boxed, faces_within, nearest
 
@@ -38,20 +40,23 @@ def check_tools(scene: Scene, shapes: Mapping[str, TopoDS_Shape]) -> list[Findin
     placed = {p.designator: p for p in scene.placements}
     known = cache(lambda number: (Faces(shapes[number]), bounding_box(shapes[number])))
     findings: list[Finding] = []
-    standing: list[str] = []
-    for step in scene.steps:
-        standing += step.designators
-        for fastener in (placed[name] for name in step.designators if name not in step.ready):
-            tool = _tool(fastener)
-            if tool is not None:
-                others = [placed[name] for name in _in_the_way(step, standing) if name != fastener.designator]
-                findings += _reached(fastener, tool, others, known)
+    for moment in moments(scene):
+        step, names = scene.steps[moment.step], moment.move.designators
+        if len(names) > 1 or names[0] in step.ready or names[0] not in step.designators:
+            continue
+        fastener = _shifted(placed[names[0]], moment.move.path[-1])
+        tool = _tool(fastener)
+        if tool is not None:
+            others = [_shifted(placed[name], at) for name, at in moment.standing.items()]
+            # all are put in before any is tightened
+            coming = (n for n in step.designators if n not in moment.standing and n != names[0])
+            others += [_shifted(placed[n], step.at) for n in coming if placed[n].part.kind in FASTENERS]
+            findings += _reached(fastener, tool, others, known)
     return findings
 
 
-def _in_the_way(step: Step, standing: list[str]) -> list[str]:
-    beside = list(step.designators) if step.bench else standing
-    return [name for name in beside if name not in step.aside]
+def _shifted(p: Placement, by: Vector) -> Placement:
+    return replace(p, origin=vector(o + d for o, d in zip(p.origin, by))) if any(by) else p
 
 
 def _reached(

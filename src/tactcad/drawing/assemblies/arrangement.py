@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from tactcad.design.family import family_of
 from tactcad.design.messages import CheckFailure
-from tactcad.design.tree import Design
+from tactcad.design.tree import CommonTables, Design
 from tactcad.parts.array import seating
 from tactcad.parts.array.layout import Layout
 from tactcad.parts.language.description import Kind
@@ -56,7 +56,9 @@ OVER_FACE, UNDER_PLAN = 14.0, 20.0  # for the dimensions of the sensing face, an
 LONGEST_ROW = 8  # elements named on the sheet
 
 
-def arrangement(design: Design, scene: Scene, shapes: Mapping[str, TopoDS_Shape], block: TitleBlock) -> Page:
+def arrangement(
+    design: CommonTables, scene: Scene, shapes: Mapping[str, TopoDS_Shape], block: TitleBlock
+) -> Page:
     """Front, plan below it, view from the left to its right; of the array its sensing face over the front."""
     from tactcad.solids.occt import placed_shape
 
@@ -182,7 +184,7 @@ def _lines(some: Sequence[Linear], box: Box, f: float) -> list[Item]:
     return [item for side in OUTWARDS for item in stacked(some, side, box, f, {}, 10.0)]
 
 
-def notes_of(design: Design, scene: Scene) -> tuple[str, ...]:
+def notes_of(design: CommonTables, scene: Scene) -> tuple[str, ...]:
     """Numbered notes: order, torques, the pads' coplanarity, what the numbers mean."""
     lines = []
     if scene.steps:
@@ -206,7 +208,7 @@ def notes_of(design: Design, scene: Scene) -> tuple[str, ...]:
         how = f"to {torques}" if torques else seating.words(layout)
         lines.append(f"Turn set screws in {how}, locked with thread lacquer")
     for step in scene.steps:
-        if step.title == COPLANAR:
+        if isinstance(design, Design) and step.title == COPLANAR:
             lines.append(f"All pads in one plane within {2 * design.tolerance.pad_height:g} mm. {step.text}")
     lines.append("Item numbers are those of the bill of materials; what has no solid has no balloon")
     lines.append(
@@ -216,7 +218,7 @@ def notes_of(design: Design, scene: Scene) -> tuple[str, ...]:
     return tuple(lines)
 
 
-def _torques(design: Design, scene: Scene, kind: Kind) -> str:
+def _torques(design: CommonTables, scene: Scene, kind: Kind) -> str:
     """ "M3 0.55 N·m, M4 1.2 N·m" of the screws or nuts of that kind."""
     torques = {part.thread: torque(part, design) or 0.0 for part in scene.parts if part.kind == kind}
     ascending = sorted(torques.items(), key=lambda pair: pair[1])

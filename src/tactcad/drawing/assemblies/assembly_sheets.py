@@ -11,7 +11,7 @@ from math import isclose
 from typing import TYPE_CHECKING
 
 from tactcad.design.messages import CheckFailure
-from tactcad.design.tree import Design
+from tactcad.design.tree import CommonTables
 from tactcad.scenes.bom import BomRow
 from tactcad.scenes.scene import Scene
 
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 
 def assembly_sheets(
-    design: Design,
+    design: CommonTables,
     scene: Scene,
     rows: Sequence[BomRow],
     shapes: Mapping[str, TopoDS_Shape],
@@ -75,7 +75,7 @@ def _list_pages(list_: Laid) -> list[Page]:
 class AssemblyOrder:
     """One scene to draw: its bill of materials, and every part's solid by number, as the kernel's text."""
 
-    design: Design
+    design: CommonTables
     scene: Scene
     rows: tuple[BomRow, ...]
     shapes: Mapping[str, bytes]

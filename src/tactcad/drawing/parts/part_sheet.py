@@ -13,7 +13,7 @@ from functools import cache
 from tactcad.design.family import family_of
 from tactcad.design.materials import ELECTROLYSIS, family
 from tactcad.design.messages import CheckFailure
-from tactcad.design.tree import Design
+from tactcad.design.tree import CommonTables
 from tactcad.parts.language.description import Characteristic, Extrusion, Part, Vector
 
 from ..engine.ink import Curve, DrawnSheet, preliminary
@@ -46,7 +46,7 @@ class MadeFrom:
 class Order:
     """One sheet to make: the part, its solid as the kernel's text, the files from which the shop makes it."""
 
-    design: Design
+    design: CommonTables
     part: Part
     shape: bytes
     files: tuple[MadeFrom, ...]
@@ -128,7 +128,7 @@ def _attempts(order: Order) -> Iterator[tuple[SheetPlan, Sequence[Paper], Sequen
     yield from ((plan, (paper,), SERIES) for paper in (A2, A1, A0) for plan in (*short, *whole))
 
 
-def title_of(design: Design, part: Part, draft: bool, sample: bool = False) -> TitleBlock:
+def title_of(design: CommonTables, part: Part, draft: bool, sample: bool = False) -> TitleBlock:
     block = block_of(design.design, part.part_no, part.name, draft, sample)
     material = str(part.material)
     return replace(block, document_type="Part drawing", material=material, mass=part.mass, finish=part.finish)

@@ -85,6 +85,8 @@ ARM_SHARE, PAD_SHARE = 0.8, 0.4
 PAD_HEIGHT = "pad height over the dowel hole's centre"
 LEDGE = "ledge over the pad face"
 DOWEL_HOLE = "dowel hole diameter"
+STOP_GAP, SLOT, ARM_LENGTH, PAD_LENGTH = "stop gap", "slot length", "arm length", "pad length"
+TIP_PLACE = "tip from dowel hole"
 
 
 def _limits(
@@ -100,18 +102,15 @@ def _limits(
     stated: tuple[Characteristic, ...] = (
         within("hinge thickness", e.t, t.hinge_thickness, True, floor),
         within(PAD_HEIGHT, d.holes.height + over, t.pad_height, True, ("pad_face", "dowel_hole")),
-        within("stop gap", gap, d.stop.tolerance, True, ("stop_land", "ledge")),
+        within(STOP_GAP, gap, d.stop.tolerance, True, ("stop_land", "ledge")),
         within(LEDGE, round(layout.ledge + over, 9), t.ledge, True, ("pad_face", "ledge")),
-        within("slot length", e.l, t.hinge_length, between=walls),
-        within("arm length", place.arm, round(ARM_SHARE * t.load_arm, 9), between=("tip", *walls)),
-        within("pad length", cut.pad_length, round(PAD_SHARE * t.load_arm, 9), between=("tip", "pad_side")),
+        within(SLOT, e.l, t.hinge_length, between=walls),
+        within(ARM_LENGTH, place.arm, round(ARM_SHARE * t.load_arm, 9), between=("tip", *walls)),
+        within(PAD_LENGTH, cut.pad_length, round(PAD_SHARE * t.load_arm, 9), between=("tip", "pad_side")),
         within("arm height", e.h, t.arm_height, between=("flat_face", "arm_back")),
         within("fillet radius", e.r, t.fillet_radius, between=fillets),
         within(
-            "tip from dowel hole",
-            round(min(layout.dowel_x) - layout.pad_inner, 9),
-            t.tip,
-            between=("tip", "dowel_hole"),
+            TIP_PLACE, round(min(layout.dowel_x) - layout.pad_inner, 9), t.tip, between=("tip", "dowel_hole")
         ),
         within("sheet thickness", d.sheet.thickness, t.sheet_thickness, between=FACES),
         dowel_hole_limits(d),

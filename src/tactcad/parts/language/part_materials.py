@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from tactcad.design.materials import ALLOYS
-from tactcad.design.tree import Design
+from tactcad.design.tree import CommonTables
 
 from .description import Material
 
@@ -18,9 +18,9 @@ STAINLESS = Material("X5CrNi18-10 (1.4301)", 7900, standard="EN 10088-3", magnet
 MAGNETIC_STAINLESS = Material("X46Cr13 (1.4034)", 7700, standard="EN 10088-3", magnetic="yes")
 
 
-def plate_material(design: Design) -> Material:
-    """End plates, carrier and the rigs' plates: the alloy of [clamp] plate_alloy."""
-    alloy = ALLOYS[design.clamp.plate_alloy]
+def plate_material(design: CommonTables) -> Material:
+    """End plates, carrier and the rigs' plates: the design's `plate_alloy`."""
+    alloy = ALLOYS[design.plate_alloy]
     return Material(alloy.name, alloy.density, standard=alloy.standard, magnetic=alloy.magnetic or "")
 
 

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from tactcad.design.tree import Design
+from tactcad.design.tree import CommonTables
 
 from .description import Extrusion, Feature, Hole, Part
 from .limits import FACES, Characteristic, DatumFeature, Geometric, within
@@ -26,7 +26,7 @@ ANODISED = "Ra 1.6, clear anodised after machining"
 
 
 def plate(
-    design: Design,
+    design: CommonTables,
     number: str,
     name: str,
     body: Extrusion,

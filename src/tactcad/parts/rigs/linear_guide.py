@@ -11,6 +11,7 @@ from tactcad.contour import chain, rectangle
 from tactcad.design.rigs import Grasping
 from tactcad.design.tree import Design
 
+from ..array.clamp import PRESS_FIT
 from ..array.layout import Layout
 from ..bought.standard_parts import dowel_diameter
 from ..language.description import Extrusion, Feature, Hole, Part, Purchase
@@ -221,9 +222,12 @@ def stop_below(rig: GuideLayout) -> float:
     return rig.grasping.rail_length / 2 + 2.0
 
 
-# The latch: a pin as the end stop's, by hand in a hole beside the rail, under the carriage's side; out of use
-# it stands beside the carriage. D10 leaves it 0.012 of play at least.
+# The latch: a pin by hand through a hole in the bar into a hole beside the rail, under the lifted
+# carriage's side; out of use it stands in a hole beside the bar. D10 leaves it 0.012 of play at least. It
+# stands out of the bar's front by 4 mm or more, which fingers pull it by; the bar's hole is 1 mm wider all
+# around.
 LATCH, LATCH_KEPT, LATCH_FIT = 7.25, 16.0, "D10"
+LATCH_LENGTH, LATCH_DEPTH, LATCH_AIR = 30.0, 6.0, 1.0
 
 
 def latch_above(rig: GuideLayout) -> float:
@@ -231,6 +235,12 @@ def latch_above(rig: GuideLayout) -> float:
     lowest = rig.carriage_middle + rig.grasping.lift - CARRIAGE_LENGTH / 2
     # to a tenth: the carriage comes down on it by less
     return floor(10 * (lowest - dowel_diameter(STOP_PIN) / 2 - rig.riser_middle)) / 10
+
+
+def latch_on_bar(rig: GuideLayout) -> float:
+    """How far the latch, with the carriage on it, stands over the bar's lower end, mm."""
+    lifted = rig.bar_bottom + rig.grasping.lift
+    return round(rig.riser_middle + latch_above(rig) - latch_lies() - lifted, 9)
 
 
 def latch_hole() -> float:
@@ -263,18 +273,27 @@ def riser(rig: GuideLayout) -> Part:
         sunk("post", "M4", (x, y, 0.0), (0, 0, 1), depth, min(RISER_UNDER_HEAD, depth))
         for x, y in corners(STAGE_HOLE, RISER_PITCH)
     ]
+    # through, so that air leaves and the reamer runs out; N7 holds every m6 pin
     pin = Hole(
         "end_stop",
         (0.0, -stop_below(rig), 0.0),
         (0, 0, 1),
         dowel_diameter(STOP_PIN),
-        STOP_DEPTH,
-        False,
-        drill_point=True,
-        tolerance="H7",
+        depth,
+        True,
+        tolerance=f"{PRESS_FIT}, the pin pressed in",
     )
     features += [
-        replace(pin, name="latch", at=(x, latch_above(rig), 0.0), diameter=latch_hole(), tolerance=LATCH_FIT)
+        Hole(
+            "latch",
+            (x, latch_above(rig), 0.0),
+            (0, 0, 1),
+            latch_hole(),
+            LATCH_DEPTH,
+            False,
+            drill_point=True,
+            tolerance=LATCH_FIT,
+        )
         for x in (LATCH, LATCH_KEPT)
     ]
     features += [pin, *(tapped_blind("rail", "M3", (0.0, y, 0.0), (0, 0, 1)) for y in rail_holes(length))]

@@ -8,12 +8,12 @@ from math import ceil
 
 from tactcad.contour import Contour, circle, rectangle
 
-from ..language.description import Extrusion, Feature, Part, Purchase
+from ..language.description import Extrusion, Feature, Hole, Part, Purchase
 from ..language.metric import METRIC, corners, sunk, tapped_blind, tapped_depth
 from ..language.part_materials import CARBON_STEEL, PLAIN_STEEL, plate_material
 from ..language.plate import plate
 from .frame import BAR_FRONT, BAR_WIDTH, BEHIND_BAR, FOOT, PIN, PLATFORM, carrier_pattern, under_carrier_screw
-from .linear_guide import GuideLayout
+from .linear_guide import LATCH, LATCH_AIR, STOP_PIN, GuideLayout, latch_on_bar
 
 BAR_SCREW_X = 7.0
 BAR_UNDER_HEAD = 3.6  # of the carriage's screws, M3x6: 2.4 mm in its 3 mm of thread, heads sunk
@@ -26,6 +26,7 @@ def bar(rig: GuideLayout) -> Part:
     |         |
     |  O   O  |   ^ z
     |  O   O  |   |     sunk M3 into the carriage
+    |      O  |   |     the latch's hole
     +--o---o--+   +-> x
     """
     t, z, top = rig.bar, rig.carriage_on_bar, rig.bar_height
@@ -33,6 +34,8 @@ def bar(rig: GuideLayout) -> Part:
         sunk("carriage", "M3", (px, z + py, 0.0), (0, 0, 1), t, BAR_UNDER_HEAD)
         for px, py in corners(7.5, 5.0)
     ]
+    passed = float(STOP_PIN) + 2 * LATCH_AIR
+    features.append(Hole("latch", (LATCH, latch_on_bar(rig), 0.0), (0, 0, 1), passed, t, True))
     for sx in (-1, 1):
         features.append(tapped_blind("foot", "M4", (sx * BAR_SCREW_X, 0.0, t / 2), (0, 1, 0)))
         features.append(tapped_blind("platform", "M4", (sx * BAR_SCREW_X, top, t / 2), (0, -1, 0)))

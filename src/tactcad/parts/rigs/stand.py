@@ -18,7 +18,7 @@ from ..language.description import Extrusion, Feature, Part, Purchase, Revolutio
 from ..language.limits import FACES, Geometric
 from ..language.metric import METRIC, corners, counterbore_diameter, sunk, tapped, tapped_blind
 from ..language.part_materials import ALUMINIUM, CARBON_STEEL
-from ..language.plate import plate
+from ..language.plate import BREAK_EDGES, plate
 from .cart import LOOSE_WHEEL, CartLayout, cart_layout
 from .frame import (
     BASE,
@@ -240,6 +240,9 @@ def post(rig: StandLayout) -> Part:
     )
 
 
+LONGER = 5.0  # mm that the mount is longer along x than the stage, each way: which way it lies is seen
+
+
 def array_mount(rig: StandLayout) -> Part:
     """Plate on the upper stage that holds the array on its back. z = 0 is the stage's side.
 
@@ -252,7 +255,7 @@ def array_mount(rig: StandLayout) -> Part:
     """
     thread, _, under = PLATE_SCREW
     stage = rig.stage
-    x = max(rig.array.carrier_size[0] / 2, stage.size / 2)
+    x = max(rig.array.carrier_size[0] / 2, stage.size / 2 + LONGER)
     features: list[Feature] = [
         sunk("stage", thread, (px, py, PLATE), (0, 0, -1), PLATE, under)
         for px, py in corners(stage.hole, stage.hole)
@@ -269,6 +272,7 @@ def array_mount(rig: StandLayout) -> Part:
         Extrusion(rectangle(-x, -stage.size / 2, x, stage.size / 2), PLATE),
         features,
         finish="Ra 1.6",
+        notes=(BREAK_EDGES, "mark x in the upper face at the end with positive x"),
         geometric=(Geometric("parallelism", "parallelism", 0.01, (FACES[1],), ("A",)),),
     )
 

@@ -13,7 +13,7 @@ from importlib import import_module
 
 from tactcad.design.family import family_of
 from tactcad.design.messages import InputError
-from tactcad.design.tree import Design
+from tactcad.design.tree import CommonTables
 
 from ..language.finding import Finding
 from .rule import Rule
@@ -39,7 +39,7 @@ def design_rules() -> dict[str, Rule]:
     return {r.name: r for r in every if not r.fit}
 
 
-def broken_rules(design: Design) -> list[Finding]:
+def broken_rules(design: CommonTables) -> list[Finding]:
     """The first finding of every rule of its family that the design breaks, in the order of the rules."""
     family = family_of(design)
     layout = family.layout(design)
@@ -52,7 +52,7 @@ def broken_rules(design: Design) -> list[Finding]:
     return broken
 
 
-def refuse_broken(design: Design) -> None:
+def refuse_broken(design: CommonTables) -> None:
     """Raise InputError for the first rule that the design breaks, naming the others."""
     broken = broken_rules(design)
     if broken:

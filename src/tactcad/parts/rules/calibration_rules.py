@@ -12,8 +12,9 @@ from ..array.layout import HOLE_WEB, Layout
 from ..bought.standard_parts import STAGES, dowel_diameter, dowel_lengths
 from ..language.finding import SAME, Finding
 from ..language.metric import METRIC, counterbore_diameter
-from ..rigs.frame import FOOT, LEAST_UNDER_HEAD, carrier_screw_length, under_carrier_screw
+from ..rigs.frame import FOOT, LEAST_UNDER_HEAD, STAGE, STAGE_HOLE, carrier_screw_length, under_carrier_screw
 from ..rigs.stand import (
+    AIR,
     StandLayout,
     calibration_stage,
     far,
@@ -41,6 +42,9 @@ def axis_reaches_contact(layout: Layout) -> Iterator[Finding]:
         need = max(rest + c.retract, down - rest)
         what = f"vertical axis rests {rest:+.3g} mm off its middle"
         yield from at_least("calibration.axis_travel", what, c.axis_travel, need, f"at least {need:.4g} mm")
+    free = STAGE / 2 - STAGE_HOLE + METRIC["M4"].head / 2 + AIR
+    what = "its moving half, driven to an end, covers the heads of its screws"
+    yield from at_least("calibration.axis_travel", what, c.axis_travel, free, f"at least {free:.4g} mm")
 
 
 @rule(after="stop_land_above_arm")

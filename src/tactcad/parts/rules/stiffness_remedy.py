@@ -8,7 +8,7 @@ from math import ceil, floor, log10
 from operator import attrgetter
 from typing import TypeVar
 
-from tactcad.design.tree import Design
+from tactcad.design.tree import CommonTables
 
 from ..array.layout import Layout
 from ..array.stiffness_table import Deflection, Lines
@@ -27,7 +27,7 @@ def too_much(layout: Layout, lines: Lines) -> Iterator[Finding]:
             yield wrong(path, str(line), value, legal)
 
 
-def remedy(design: Design, line: Deflection, lines: Lines) -> tuple[str, object, str]:
+def remedy(design: CommonTables, line: Deflection, lines: Lines) -> tuple[str, object, str]:
     """The first field that by itself brings a deflection, one of `lines`, below what is allowed.
 
     Returns
@@ -56,7 +56,7 @@ def remedy(design: Design, line: Deflection, lines: Lines) -> tuple[str, object,
     )
 
 
-def _nearest(design: Design, line: Deflection, lines: Lines, path: str, far: V, near: V) -> V:
+def _nearest(design: CommonTables, line: Deflection, lines: Lines, path: str, far: V, near: V) -> V:
     """The value nearest to `far` (which does not suffice) that still suffices, as `near` does; whole, or of
     four digits.
     """
@@ -73,7 +73,7 @@ def _nearest(design: Design, line: Deflection, lines: Lines, path: str, far: V, 
     return min(away, near) if near > far else max(away, near)
 
 
-def _helps(design: Design, line: Deflection, lines: Lines, path: str, value: float) -> bool:
+def _helps(design: CommonTables, line: Deflection, lines: Lines, path: str, value: float) -> bool:
     section, name = path.split(".")
     changed = replace(design, **{section: replace(getattr(design, section), **{name: value})})
     same = (d for d in lines(changed) if (d.part, d.model) == (line.part, line.model))

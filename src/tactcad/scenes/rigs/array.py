@@ -30,6 +30,7 @@ from tactcad.parts.array.supplies import array_supplies, electronic_supplies
 from tactcad.parts.bought import screws, standard_parts
 from tactcad.parts.bought.standard_parts import dowel_limits
 from tactcad.parts.language.description import Part
+from tactcad.parts.language.metric import METRIC
 from tactcad.parts.rules.bonding_rules import FITS as BONDING_FITS
 from tactcad.parts.rules.rule import misfit
 
@@ -270,9 +271,8 @@ def _gauges(layout: Layout) -> str:
         "says; lay its leads in the wire recess towards the rear end."
         if bonded
         else f"Bond a gauge on {face}, its grid centred on the hinge within 0.1 mm, carrier trimmed to "
-        f"{d.gauge.carrier_arm_side + d.gauge.carrier_body_side:g} mm; cure, coat, solder three "
-        f"leads, and lay "
-        "them in the wire recess towards the rear end."
+        f"{d.gauge.carrier_arm_side + d.gauge.carrier_body_side:g} mm; cure, coat, solder three leads, "
+        "and lay them in the wire recess towards the rear end."
     )
     return (
         f"Hold and lift an element by its rear body only, never by its arm: the hinge is {thinnest:g} mm "
@@ -346,15 +346,14 @@ def _coplanar(layout: Layout, c: Clamping) -> str:
         "to a micrometre"
     )
     return (
-        "Turn the stack over and set its pads down on a surface plate (grade 1 or better). Press the rear "
-        "bodies down with a bar of rubber so that every pad stands on the plate, then tighten "
-        f"{tight} crosswise, in three rounds: a third, two thirds, the whole torque. Before the last round "
-        "tap the head end plate until its upper edge is as high over the surface plate as the other's, at "
-        f"both ends within {LEVEL:g} mm. {gap}"
-        f"No pad may let a {2 * tolerance * 1e3:g} um feeler pass. Then turn the array on its back and read "
-        f"each pad with a lever indicator against the surface plate: all within {2 * tolerance * 1e3:g} um"
-        f"{same if d.calibration else ''}. Record them; loosen and repeat if one is off, and repeat it all "
-        "whenever the clamping was loosened."
+        "Turn the stack over and set its pads down on a surface plate (grade 1 or better). Press the "
+        "rear bodies down with a bar of rubber so that every pad stands on the plate, then tighten "
+        f"{tight} crosswise, in three rounds: a third, two thirds, the whole torque. Before the last "
+        "round tap the head end plate until its upper edge is as high over the surface plate as the "
+        f"other's, at both ends within {LEVEL:g} mm. {gap}No pad may let a {2 * tolerance * 1e3:g} um "
+        "feeler pass. Then turn the array on its back and read each pad with a lever indicator against "
+        f"the surface plate: all within {2 * tolerance * 1e3:g} um{same if d.calibration else ''}. Record "
+        "them; loosen and repeat if one is off, and repeat it all whenever the clamping was loosened."
     )
 
 
@@ -365,6 +364,11 @@ def flatness_tools(layout: Layout) -> tuple[str, ...]:
     if len(layout.design.array.row_arms) == ABREAST:
         feelers += f" and {2 * layout.pad_inner:g} mm"
     return "surface plate, grade 1 or better", "bar of rubber", feelers, "lever indicator, 1 um, on a stand"
+
+
+def carrier_tools(design: Design) -> tuple[str, ...]:
+    """What the carrier's screws are turned by."""
+    return (f"hex key {METRIC[design.clamp.screw].key:g} mm: the carrier's screws",)
 
 
 def _laying_stop_plate(layout: Layout) -> str:

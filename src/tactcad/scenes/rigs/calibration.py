@@ -26,21 +26,25 @@ from tactcad.parts.rules.calibration_rules import FITS
 from ..builder import Builder
 from ..rig import Rig
 from ..rig_requirements import roller
-from ..scene import AGAINST_Y, DOWN, REST, Motion, Pose, Rotation, Scene, whole_um
+from ..scene import AGAINST_Y, DOWN, REST, STILL, Motion, Move, Need, Pose, Rotation, Scene, Vector, whole_um
 from ..shared_rigs import (
     AXIS_LIFT,
     CORNERS,
     JAM_SPANNER,
     LENGTH,
+    RAISED,
     STAND,
     THREAD,
     UNDER,
+    driven,
     place_force_axis,
     place_stand,
+    raised,
 )
-from .array import array, flatness_tools
+from .array import array, carrier_tools, flatness_tools
 
 BACK_DOWN: Rotation = DOWN  # half a turn about x: pads up
+IN_FRONT: Vector = (0.0, -250.0, RAISED / 2)  # where the mount is put together, mm from its place
 OUT_OF_X: Rotation = ((0, 0, -1), (0, 1, 0), (1, 0, 0))  # local z runs along -x
 
 
@@ -61,31 +65,45 @@ def calibration(design: Design, pose: Pose = REST) -> Scene:
     b = Builder()
     post = place_stand(b, rig, stages=True)
     under = _stages(b, rig, dx, dy)
-    _mounted_array(b, rig, under, dx, dy, pose)
-    contact = place_force_axis(b, rig, post, rig.pads_up, pose.height - pose.deflection, roller=True)
+    contact, tip = place_force_axis(b, rig, post, rig.pads_up, pose.height - pose.deflection, roller=True)
     c = present(design.calibration)
     b.meet(contact, "TI1", "press")
     b.step(
         "Roller tip",
         (0, -130, AXIS_LIFT - 40),
-        "Bond the roller in the tip's seat, in the middle of its width. Screw the tip on the gauge's "
-        "shaft, roller along y: "
-        "lower it on a flat plate, which must show an even line of light; "
-        "the jam nut against the tip holds it so. Above a pad, "
-        "set x by the edge of "
-        f"the pad to {c.load_point:g} mm; {c.step * 1e3:g} um steps to {c.travel * 1e3:g} um. "
-        + _series(design),
-        tools=(JAM_SPANNER,),
+        "Bond the roller in the tip's seat, in the middle of its width and of its length within 0.15 mm. "
+        "Screw the tip on the gauge's shaft, roller along y: lay a flat parallel on the upper stage and "
+        "drive the roller down on it, which must show an even line of light; the jam nut against the tip "
+        "holds it so.",
+        order=tip,
+        tools=(JAM_SPANNER, "flat parallel", "epoxy adhesive, two parts"),
+        leaves=("RO1 in TI1: turn about z, until the jam nut is tight",),
     )
+    block = rig.pads_up - 2 * rig.stage.height
+    b.step(
+        "Stiffness of gauge and stand",
+        (0, 0, 0),
+        f"Set a steel block of {block:.0f} mm (gauge blocks) on the upper stage under the roller and "
+        f"measure the gauge in its stand on it. {_series(design)} Take the block away.",
+        tools=("gauge blocks, steel",),
+        needs=(
+            Need((contact, under), "the roller presses a block on the upper stage"),
+            Need(("CA1",), "the block stands where the array will", away=True),
+        ),
+    )
+    _mounted_array(b, rig, under, contact, dx, dy, pose)
     b.step(
         "Calibrate, then fit the stop plate",
         (0, 0, 0),
-        _limits(design)
-        + " Afterwards take the array off its mount and the carrier off the array. Read the pads' heights on "
-        "the surface plate again, as in the step Coplanar pads of the array's own guide, and go on there "
-        "with the step Stop plate. Zero every signal anew.",
-        tools=flatness_tools(rig.array),
+        f"Above a pad, set x by the edge of the pad to {c.load_point:g} mm; {c.step * 1e3:g} um steps to "
+        f"{c.travel * 1e3:g} um. {_limits(design)} Afterwards take the array off its mount, set it in the "
+        "setting fixture as in the step Coplanar pads of the array's own guide, its clamping screws "
+        "tight, and take the carrier off it there (hex key of its screws). Read the pads' heights on the "
+        "surface plate again and go on in that guide with the step Stop plate. Zero every signal anew.",
+        tools=(*flatness_tools(rig.array), *carrier_tools(design)),
         elements=True,
+        order=[raised(b, down=True)],
+        needs=(Need((contact, "E1"), "the roller presses its pads"),),
     )
     if pose.height == 0:
         b.meet(contact, f"E{pose.element}")
@@ -102,18 +120,15 @@ def _stages(b: Builder, rig: StandLayout, dx: float, dy: float) -> str:
     below, at = STAND, (0.0, 0.0)
     for level, (axis, out, side) in enumerate((("x", OUT_OF_X, (-1, 0)), ("y", AGAINST_Y, (0, -1)))):
         z = 2 * t * level
+        along = (1.0, 0.0, 0.0) if axis == "x" else (0.0, 1.0, 0.0)
         b.group(None if axis == "x" else "stage-x")
         low = b.place("SF", fixed, (*at, z))
         b.meet(below, low)
+        screws = []
         for sx, sy in CORNERS:
-            b.screw(
-                THREAD,
-                LENGTH,
-                (at[0] + sx * stage.hole, at[1] + sy * stage.hole, z + UNDER),
-                (0, 0, -1),
-                low,
-                below,
-            )
+            place = (at[0] + sx * stage.hole, at[1] + sy * stage.hole, z + UNDER)
+            name = b.screw(THREAD, LENGTH, place, (0, 0, -1), low, below)
+            screws.append((sx if axis == "x" else sy, name))
         micrometer = b.place("MM", head, (at[0] + side[0] * half, at[1] + side[1] * half, z + t / 2), out)
         b.meet(low, micrometer)
         at = (dx, 0.0) if axis == "x" else (dx, dy)
@@ -126,13 +141,18 @@ def _stages(b: Builder, rig: StandLayout, dx: float, dy: float) -> str:
             f"Drive the {axis} stage to one end until two screws are free, fix them; drive it to the other "
             "end and fix the other two. Then drive it to the middle of its travel."
             + (" Square to the x stage within 0.02 mm on 20 mm." if axis == "y" else ""),
-            aside=(high,),
+            order=driven(
+                (low, high, micrometer), high, screws, along, stage.travel, dx if axis == "x" else dy
+            ),
         )
         below = high
+    b.group(None)
     return below
 
 
-def _mounted_array(b: Builder, rig: StandLayout, under: str, dx: float, dy: float, pose: Pose) -> None:
+def _mounted_array(
+    b: Builder, rig: StandLayout, under: str, roller: str, dx: float, dy: float, pose: Pose
+) -> None:
     """The array on its mount, pads up, on the upper stage."""
     z = 2 * rig.stage.height
     b.group("stage-y")
@@ -140,34 +160,47 @@ def _mounted_array(b: Builder, rig: StandLayout, under: str, dx: float, dy: floa
     mount = b.place("AM", rigs.array_mount(rig), (dx, dy, z))
     b.meet(under, mount)
     carrier_top = rig.array.carrier_bottom + rig.design.clamp.carrier_thickness
-    roller = dowel_diameter(present(rig.design.calibration).roller) / 2
+    radius = dowel_diameter(present(rig.design.calibration).roller) / 2
     pressed = rig.array.elements[pose.element - 1]
     deflected = (
-        {pose.element: deflected_element(rig.array, pressed, pose.deflection, roller)}
+        {pose.element: deflected_element(rig.array, pressed, pose.deflection, radius)}
         if pose.deflection
         else {}
     )
-    b.subassembly(array(rig.design, deflected, stops=False), BACK_DOWN, (dx, dy, z + PLATE + carrier_top))
+    standing = array(rig.design, deflected, stops=False)
+    b.subassembly(standing, BACK_DOWN, (dx, dy, z + PLATE + carrier_top))
+    ready = tuple(p.designator for p in standing.placements)
     b.meet(mount, "CA1")
+    screws = []
     for x, y in carrier_pattern(rig.array):
         at = (dx + x, dy + y, z + PLATE - under_carrier_screw(rig.design))
-        b.screw(rig.design.clamp.mount_thread, carrier_screw_length(rig.design), at, (0, 0, 1), mount, "CA1")
+        thread, length = rig.design.clamp.mount_thread, carrier_screw_length(rig.design)
+        screws.append(b.screw(thread, length, at, (0, 0, 1), mount, "CA1"))
     b.step(
         "Array on its mount",
         (0, 0, 120),
-        "On the bench: lay the array (its own guide, but without stop plate and set screws: the stops would "
-        "close before the end of the travel) on the mount with its carrier down, and fix it by four screws "
-        "from below. Leads leave along x, loose.",
+        "On the bench: lay the array (its own guide, but without stop plate and set screws: the stops "
+        "would close before the end of the travel) on the mount with its carrier down, its rows across "
+        "the mount's longer side and row 1 at the end marked x, and fix it by four screws from below. "
+        "Leads leave along x, loose.",
         bench=True,
+        at=IN_FRONT,
     )
     for sx, sy in CORNERS:
         at = (dx + sx * rig.stage.hole, dy + sy * rig.stage.hole, z + UNDER)
         b.screw(THREAD, LENGTH, at, (0, 0, -1), mount, under)
+    high = (0.0, 0.0, RAISED / 2)
     b.step(
         "Mount on the stages",
         (0, 0, 145),
-        "Fix the mount on the upper stage, its rows along x: a pad's edge must stay under the roller within "
-        "0.02 mm over the whole y travel.",
+        f"Drive the roller up by {RAISED:g} mm, bring the mount in from the front under it and fix it on "
+        "the upper stage, its longer side along x and its mark at +x: the rows then run along y. The "
+        "stage's four threads fit a quarter turn off too: look at the mark. A pad's edge must stay under "
+        "the roller within 0.02 mm over the whole y travel; turn the mount in its holes' play before the "
+        "last turn of its screws.",
+        order=[raised(b), Move((*ready, mount, *screws), IN_FRONT, (high, STILL))],
+        needs=(Need((roller,), "a pad's edge is held against it"),),
+        leaves=("AM1 on SM2: turn about z, to its holes' play, until its screws are tight",),
     )
     b.group(None)
 
@@ -185,11 +218,8 @@ def _series(design: Design) -> str:
         seems = f": an arm of {stiffest.place.arm:g} mm would seem {softer * 100:.2g} % softer"
     return (
         f"Stand and mount give way by {give * 1e3:.2g} um/N in series with the gauge's "
-        f"{1e3 / cell:.3g}{seems}. So before the "
-        "array stands there measure the gauge in its stand, the roller on the array mount: newtons over "
-        "millimetres of the "
-        "micrometer are calibration.load_cell_stiffness and --load-cell of tactcad calibrate, not what its "
-        "sheet says."
+        f"{1e3 / cell:.3g}{seems}. Newtons over millimetres of the micrometer are "
+        "calibration.load_cell_stiffness and --load-cell of tactcad calibrate, not what its sheet says."
     )
 
 

@@ -16,7 +16,7 @@ from tactcad.parts import rigs
 from tactcad.parts.array.clamp import carrier_screw
 from tactcad.parts.array.layout import Layout
 from tactcad.parts.bought.screws import cap_screw
-from tactcad.parts.bought.standard_parts import dowel
+from tactcad.parts.bought.standard_parts import dowel, dowel_diameter
 from tactcad.parts.language.finding import Finding
 from tactcad.parts.rigs.frame import (
     BAR_FRONT,
@@ -35,7 +35,9 @@ from tactcad.parts.rigs.frame import (
 )
 from tactcad.parts.rigs.linear_guide import (
     LATCH,
+    LATCH_DEPTH,
     LATCH_KEPT,
+    LATCH_LENGTH,
     RISER_SCREW,
     RISER_UNDER_HEAD,
     STOP_DEPTH,
@@ -63,8 +65,21 @@ from tactcad.parts.rules.rule import fits, wrong
 from ..builder import Builder
 from ..rig import Rig, none
 from ..rig_requirements import wheels
-from ..scene import AGAINST_Y, ALONG_Y, REST, UPRIGHT, Motion, Pose, Rotation, Scene, whole_um
-from ..shared_rigs import CORNERS, place_cart, place_stand
+from ..scene import (
+    AGAINST_Y,
+    ALONG_Y,
+    REST,
+    STILL,
+    UPRIGHT,
+    Motion,
+    Move,
+    Need,
+    Pose,
+    Rotation,
+    Scene,
+    whole_um,
+)
+from ..shared_rigs import CORNERS, SHIMS, SQUARE, cart_on_base, place_cart, place_sample, place_stand
 from .array import array, without_gaps
 
 # Relative difference allowed between the parts' weight and the design's: the ballast is turned to weight
@@ -81,14 +96,39 @@ def grasping(design: Design, pose: Pose = REST) -> Scene:
     b = Builder()
     pads = pad_middles(rig.array)
     dents = tuple((x - pose.cart, y) for x, y in pads) if pose.deflection else ()
-    sample = place_cart(b, rig.cart, pose.cart, dents, pose.deflection)
+    lid = place_cart(b, rig.cart, pose.cart)
     post = place_stand(b, StandLayout(design), stages=False)
     rail = _guide(b, rig, post, latched=pose.height == g.lift)
     lift = pose.height - pose.deflection
     below, z = place_axis(b, rig, rail, lift)
+    b.group(None)
+    up, lid_text = (0.0, 0.0, g.lift), "The array hangs on the latch over it."
+    cart_on_base(b, text=lid_text)
+    axis = tuple(b.groups["axis"])
+    b.unit("vertical axis")
+    b.step(
+        "Pads level with the lid",
+        (0, 0, 0),
+        "Lay a flat plate, as thick as the sample, on the lid in its place. Hold the bar, pull the latch "
+        "out by its front end, put it in its outer hole, and lower the array by hand on the plate: no "
+        "light may show under any pad; the signal of each element tells the rest. A tilt of "
+        f"{design.tolerance.tilt:g} degree is allowed, shim under the foot. Then lift it, set the latch "
+        "under the carriage again, and take the plate away.",
+        tools=("flat plate, as thick as the sample", SHIMS),
+        order=[*_latched(False), Move(axis, up, (STILL,)), Move(axis, STILL, (up,)), *_latched(True)],
+        needs=(
+            Need((lid, "CA1"), "the array is lowered on the lid"),
+            Need(("SA1",), "a plate lies there", away=True),
+        ),
+    )
+    sample = place_sample(b, rig.cart, pose.cart, lid, dents, pose.deflection, g.lift)
+    b.group("axis")
+    b.unit("platform with weights")
     disc = rigs.disc_weight(rig)
+    discs = []
     for _ in range(weights):
         name = b.place("WT", disc, (0, 0, z))
+        discs.append(name)
         b.meet(below, name)
         below, z = name, z + disc.extrusion.thickness
     b.group(None)
@@ -96,17 +136,17 @@ def grasping(design: Design, pose: Pose = REST) -> Scene:
         b.step(
             "Weights",
             (0, 0, 330),
-            "Lift the array by its platform and set the latch under the carriage. Once cart and sample stand "
-            "below, hold the platform, put the latch back in its outer hole, and lower the array by hand. "
-            "One disc a loading step, laid on without a "
-            "knock; each is weighed before. Without any, the "
+            "Hold the platform, put the latch back in its outer hole, and lower the array by hand. One "
+            "disc a loading step, laid on without a knock; each is weighed before. Without any, the "
             f"grasping force is the moving weight: {g.moving_weight:g} N.",
+            order=[*_latched(False), Move(axis, up, (STILL,))],
+            needs=(Need((sample,), "the array is lowered on it"),),
         )
     if pose.height == 0:
         for place in rig.array.elements:
             b.meet(place.designator, sample)
     c = rig.cart.cart
-    up, still = (0.0, 0.0, g.lift), (0.0, 0.0, 0.0)
+    still = (0.0, 0.0, 0.0)
     motions = (
         Motion("array down to the sample", (("axis", up, still),)),
         Motion(
@@ -120,6 +160,15 @@ def grasping(design: Design, pose: Pose = REST) -> Scene:
     )
     elements = {p.designator for p in rig.array.elements}
     return b.scene("grasping", motions, cover=set(b.groups["axis"]) - elements)
+
+
+def _latched(on: bool) -> list[Move]:
+    """The latch by hand from its outer hole into the inner one, under the carriage, or back."""
+    side = LATCH_KEPT - LATCH
+    out, over, inner = (0.0, -LATCH_LENGTH, 0.0), (side, -LATCH_LENGTH, 0.0), (side, 0.0, 0.0)
+    if on:
+        return [Move(("LP1",), STILL, (out, over, inner))]
+    return [Move(("LP1",), inner, (over, out, STILL))]
 
 
 def _guide(b: Builder, rig: GuideLayout, post: str, latched: bool) -> str:
@@ -136,18 +185,23 @@ def _guide(b: Builder, rig: GuideLayout, post: str, latched: bool) -> str:
     b.step(
         "Riser",
         (0, -50, 110),
-        "Screw the riser on the post's rows, its front upright within 0.01 mm on 100 mm against a square "
-        "on the base plate.",
+        f"Screw the riser on the post's rows at z = {z - RISER_PITCH:g} and {z + RISER_PITCH:g} mm over "
+        "the base plate, its front upright within 0.01 mm on 100 mm against a square on the base plate: "
+        "lay shim foil between post and riser at its upper or its lower screws until it is.",
+        tools=(SQUARE, SHIMS),
     )
     rail = b.place("RL", rigs.rail(length), (0, front, z), AGAINST_Y)
     b.meet(riser, rail)
-    for dz in rail_holes(length):
-        b.screw("M3", 8.0, (0, front - 3.0, z + dz), (0, 1, 0), rail, riser)
-    pin, y = dowel(STOP_PIN, STOP_LENGTH), front + STOP_DEPTH - STOP_LENGTH
-    stop = b.place("ES", pin, (0, y, z - stop_below(rig)), ALONG_Y)
-    hole = -LATCH if latched else -LATCH_KEPT
-    latch = b.place("LP", pin, (hole, y, z + latch_above(rig) - latch_lies()), ALONG_Y)
-    b.meet(riser, stop, "press")
+    rail_screws = [
+        b.screw("M3", 8.0, (0, front - 3.0, z + dz), (0, 1, 0), rail, riser) for dz in rail_holes(length)
+    ]
+    y = front + STOP_DEPTH - STOP_LENGTH
+    stop = b.place("ES", dowel(STOP_PIN, STOP_LENGTH), (0, y, z - stop_below(rig)), ALONG_Y)
+    hole, y = -LATCH if latched else -LATCH_KEPT, front + LATCH_DEPTH - LATCH_LENGTH
+    latch = b.place(
+        "LP", dowel(STOP_PIN, LATCH_LENGTH), (hole, y, z + latch_above(rig) - latch_lies()), ALONG_Y
+    )
+    b.meet(stop, riser, "press")
     b.meet(riser, latch)
     b.step(
         "Guide rail",
@@ -156,7 +210,17 @@ def _guide(b: Builder, rig: GuideLayout, post: str, latched: bool) -> str:
         f"middle outwards. Press the end stop's pin in below the rail, {STOP_DEPTH:g} mm deep: it keeps the "
         "carriage on its rail. Put the latch, the pin that slides, by hand in the outer of the two holes "
         "beside the rail, where it is out of the way; in the inner one it holds the lifted carriage up.",
-        tools=("parallel, as long as the rail", "soft-faced hammer"),
+        tools=(
+            "parallel, as long as the rail",
+            f"vice, and a sleeve {STOP_LENGTH - STOP_DEPTH:g} mm long as stop",
+        ),
+        order=[
+            (rail,),
+            *((name,) for name in rail_screws),
+            (stop,),
+            Move((latch,), (0.0, -2 * LATCH_LENGTH, 0.0), (STILL,)),
+        ],
+        leaves=("LP1: slides along y, by hand",),
     )
     return rail
 
@@ -216,7 +280,8 @@ def place_axis(b: Builder, rig: GuideLayout, rail: str, lift: float) -> tuple[st
     pin = b.place("PN", rigs.pin(rig, thick), (0, 0, z))
     b.meet(platform, pin)
     b.screw(*PIN_SCREW, (0, 0, z - PLATFORM_UNDER_HEAD), (0, 0, 1), platform, pin)
-    b.step("Pin", (0, 0, 280), "Screw the pin on the platform from below.")
+    up = (0.0, 0.0, rig.grasping.lift)
+    b.step("Pin", (0, 0, 280), "Screw the pin on the platform from below.", at=up)
     if ballast <= 0:
         return platform, z
     disc = rigs.ballast(rig, ballast)
@@ -230,6 +295,7 @@ def place_axis(b: Builder, rig: GuideLayout, rail: str, lift: float) -> tuple[st
         f"{rig.grasping.moving_weight / NEWTON:.1f} g. Turn the ballast thinner until it is; then slide it "
         "back, on the latch.",
         tools=("balance, 0.1 g",),
+        at=up,
     )
     return name, z + disc.extrusion.thickness
 
@@ -292,12 +358,19 @@ def _place_carried(b: Builder, rig: GuideLayout, rail: str, lift: float, standin
     zc = rig.carriage_middle + lift
     carriage = b.place("CG", rigs.carriage(), (0, front + RAIL_HEIGHT, zc - CARRIAGE_LENGTH / 2), ALONG_RAIL)
     b.meet(rail, carriage)
+    lowest = rig.riser_middle - stop_below(rig) + dowel_diameter(STOP_PIN) / 2
+    fallen = (0.0, 0.0, round(lowest - (rig.carriage_middle - CARRIAGE_LENGTH / 2), 6))
     b.step(
         "Carriage",
         (0, -85, 200),
         "Slide the carriage from its transport rail on the guide, from above, seals taken off, one drop of "
         "thin oil, and let it down on the end stop. Keep the transport rail.",
+        order=[Move((carriage,), (0.0, 0.0, 2 * rig.grasping.rail_length), (fallen,))],
+        at=fallen,
+        leaves=(f"{carriage} on {rail}: slides along z",),
+        sets=(f"{carriage} on {rail}: all but z",),
     )
+    up = (0.0, 0.0, rig.grasping.lift)
     foot = b.place("FO", rigs.foot(rig), (0, 0, rig.foot_bottom + lift))
     bar = b.place("BR", rigs.bar(rig), (0, BAR_FRONT, rig.bar_bottom + lift), ALONG_Y)
     b.meet(foot, bar)
@@ -321,6 +394,7 @@ def _place_carried(b: Builder, rig: GuideLayout, rail: str, lift: float, standin
         "Screw the finished array (its own guide) under the foot. Leads leave along x in a loose loop to "
         "the post.",
         elements=True,
+        bench=True,
     )
     for sx in (-1, 1):
         for sy in (-1, 1):
@@ -330,13 +404,11 @@ def _place_carried(b: Builder, rig: GuideLayout, rail: str, lift: float, standin
     b.step(
         "Bar on the carriage",
         (0, -160, 0),
-        "Lift the carriage and set the latch under it, in the inner of its holes. Screw the bar on the "
-        "carriage. Take the sample off and lay a flat plate of its thickness on the lid in its place. Hold "
-        "the bar, put the latch back in its outer hole, and lower the array by hand on the plate: no light "
-        "may show under any pad; the signal of each element tells the rest. A tilt of "
-        f"{design.tolerance.tilt:g} degree is allowed, shim under the foot. Then lift it on the latch again; "
-        "it stays there until the weights.",
-        tools=("flat plate, as thick as the sample",),
+        "Lift the carriage and set the latch under it, in the inner of its holes. Bring the bar over the "
+        "latch, which passes its hole, and screw it on the carriage. It stays on the latch until the "
+        "pads are levelled.",
+        order=[Move((carriage,), fallen, (up,)), *_latched(True), ()],
+        at=up,
     )
     b.unit("platform with weights")
     under = PLATFORM_UNDER_HEAD
@@ -347,7 +419,7 @@ def _place_carried(b: Builder, rig: GuideLayout, rail: str, lift: float, standin
         b.screw(
             "M4", 10.0, (sx * BAR_SCREW_X, rig.bar_middle, z - PLATFORM + under), (0, 0, -1), platform, bar
         )
-    b.step("Platform", (0, 0, 250), "Screw the platform on the bar, heads sunk.")
+    b.step("Platform", (0, 0, 250), "Screw the platform on the bar, heads sunk.", at=up)
     return platform
 
 

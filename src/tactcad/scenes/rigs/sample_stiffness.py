@@ -12,8 +12,18 @@ from tactcad.parts.rules.grasping_rules import SAMPLE_FITS
 from ..builder import Builder
 from ..rig import Rig, none
 from ..rig_requirements import wheels
-from ..scene import REST, Motion, Pose, Scene
-from ..shared_rigs import AXIS_LIFT, JAM_SPANNER, place_cart, place_force_axis, place_stand
+from ..scene import REST, Motion, Need, Pose, Scene
+from ..shared_rigs import (
+    AXIS_LIFT,
+    JAM_SPANNER,
+    RAISED,
+    cart_on_base,
+    place_cart,
+    place_force_axis,
+    place_sample,
+    place_stand,
+    raised,
+)
 
 
 def sample_stiffness(design: Design, pose: Pose = REST) -> Scene:
@@ -24,17 +34,28 @@ def sample_stiffness(design: Design, pose: Pose = REST) -> Scene:
     b = Builder()
     s, gauge = present(design.sample), present(design.calibration)
     dents = ((-pose.cart, 0.0),) if pose.deflection else ()
-    sample = place_cart(b, cart, pose.cart, dents, pose.deflection)
+    lid = place_cart(b, cart, pose.cart)
     post = place_stand(b, rig, stages=False)
-    contact = place_force_axis(b, rig, post, cart.sample_top, pose.height - pose.deflection, roller=False)
+    contact, tip = place_force_axis(
+        b, rig, post, cart.sample_top, pose.height - pose.deflection, roller=False
+    )
     b.step(
         "Tip",
         (0, -130, AXIS_LIFT - 40),
         "Screw the flat tip on the gauge's shaft by hand, its long side along y; the jam nut against it "
-        "holds it so. Lower it until the gauge reads 0.01 N: that is zero. Then "
-        f"{s.step * 1e3:g} um steps to {s.travel * 1e3:g} um, three times; subtract the gauge's own "
-        f"{gauge.load_cell_stiffness:g} N/mm.",
+        "holds it so.",
+        order=tip,
         tools=(JAM_SPANNER,),
+    )
+    cart_on_base(b, [raised(b)])
+    sample = place_sample(b, cart, pose.cart, lid, dents, pose.deflection, RAISED)
+    b.step(
+        "Press",
+        (0, 0, 0),
+        f"Lower the tip until the gauge reads 0.01 N: that is zero. Then {s.step * 1e3:g} um steps to "
+        f"{s.travel * 1e3:g} um, three times; subtract the gauge's own {gauge.load_cell_stiffness:g} N/mm.",
+        order=[raised(b, down=True)],
+        needs=(Need((sample, contact), "the tip presses the sample"),),
     )
     if pose.height == 0:
         b.meet(contact, sample)

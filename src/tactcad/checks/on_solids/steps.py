@@ -1,0 +1,224 @@
+"""Whether the assembly's steps can be carried out: every move is made with the solids, past all that
+stands there by then, and every step finds what it needs.
+
+A pair is tried on meshes at PLACES or more of each leg, no further apart than a third of both parts'
+lengths along it: what is cut by more than FILM is in the way. What a screw or a pin shares with its hole at
+its place it may share on the way.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from math import ceil, pi
+from typing import Any
+
+import manifold3d
+import numpy as np
+from OCP.TopoDS import TopoDS_Shape
+
+from tactcad.parts.language.description import Vector
+from tactcad.parts.language.finding import Finding
+from tactcad.parts.language.metric import METRIC
+from tactcad.scenes.moves import Moment, entering, moments
+from tactcad.scenes.scene import HAND, STILL, Placement, Scene, Step
+from tactcad.solids.changed import closed
+from tactcad.solids.triangles import triangles
+
+from ..check import Check
+
+PLACES = 9  # on a leg, at least, from where the boxes of a pair meet to where they part; chosen
+FILM = 0.05  # mm3: what chords of two curved faces, 0.002 mm off, may share over a pin's length
+CHORD, TURN = 0.02, 0.1  # mm, rad: of the meshes
+# Two fingertips that hold a pin: each so thick and so wide (mm), over so much of its end. Chosen: half of an
+# adult's fingertip of 16 to 20 mm, which gives way.
+THICK, WIDE, GRIP = 10.0, 12.0, 4.0
+
+
+def check_steps(
+    scene: Scene, shapes: Mapping[str, TopoDS_Shape], known: dict[tuple, Any] | None = None
+) -> list[Finding]:
+    """Findings on the steps of a scene; shapes by part number. `known` keeps meshes and what was tried,
+    for the design's other scenes."""
+    return [*_Trial(scene, shapes, {} if known is None else known).findings()]
+
+
+class _Trial:
+    def __init__(self, scene: Scene, shapes: Mapping[str, TopoDS_Shape], known: dict[tuple, Any]) -> None:
+        self.scene, self.shapes, self.known = scene, shapes, known
+        self.placed = {p.designator: p for p in scene.placements}
+        self.kind = {frozenset((c.first, c.second)): c.kind for c in scene.contacts}
+        self.goes_into: dict[str, list[str]] = {}
+        for name, host in entering(scene):
+            self.goes_into.setdefault(name, []).append(host)
+        self.boxes: dict[str, np.ndarray] = {}
+
+    def findings(self) -> Iterator[Finding]:
+        at: dict[str, Vector] = {}
+        there: set[str] = set()
+        done = 0
+        for moment in moments(self.scene):
+            while done < moment.step:
+                yield from self._needed(done, there)
+                done += 1
+            step, move = self.scene.steps[moment.step], moment.move
+            there |= set(move.designators)
+            for name in move.designators:
+                for need in self.goes_into.get(name, ()):
+                    if name in step.designators and name not in step.ready and need not in there:
+                        yield from _order(step, name, f"goes into {need}, which is not there yet")
+            if any(name in at and at[name] != move.start for name in move.designators):
+                yield from _order(step, move.designators[0], "does not start where it was left")
+            yield from self._moved(step, moment)
+            if move.by == HAND and len(move.designators) == 1 and move.designators[0] in at:
+                yield from self._held(step, moment)
+            at |= dict.fromkeys(move.designators, move.path[-1])
+        for n in range(done, len(self.scene.steps)):
+            yield from self._needed(n, there)
+        for name, offset in at.items():
+            if offset != STILL:
+                yield from _order(self.scene.steps[-1], name, f"is left {np.linalg.norm(offset):.3g} mm off")
+
+    def _needed(self, number: int, there: set[str]) -> Iterator[Finding]:
+        step = self.scene.steps[number]
+        for need in step.needs:
+            wrong = [n for n in need.what if n in self.placed and (n in there) == need.away]
+            if wrong:
+                how = "is there already" if need.away else "is not there yet"
+                yield from _order(step, wrong[0], f"{how}: {need.why}")
+
+    def _mesh(self, p: Placement) -> manifold3d.Manifold:
+        """Turned, not moved."""
+        key = ("steps", p.part.part_no, p.rotation)
+        if key not in self.known:
+            points, corners = triangles(self.shapes[p.part.part_no], CHORD, TURN)
+            self.known[key] = closed((points @ np.array(p.rotation).T, corners))
+        return self.known[key]
+
+    def _box(self, p: Placement) -> np.ndarray:
+        if p.designator not in self.boxes:
+            ends = np.reshape(self._mesh(p).bounding_box(), (2, 3))
+            self.boxes[p.designator] = ends + np.array(p.origin)
+        return self.boxes[p.designator]
+
+    def _moved(self, step: Step, moment: Moment) -> Iterator[Finding]:
+        names = list(moment.standing)
+        if not names:
+            return
+        boxes = np.array([self._box(self.placed[n]) + moment.standing[n] for n in names])
+        legs = list(zip((moment.move.start, *moment.move.path[:-1]), moment.move.path))
+        for name in moment.move.designators:
+            own = self._box(self.placed[name])
+            for start, end in legs:
+                a, b = np.array(start), np.array(end)
+                low, high = own[0] + np.minimum(a, b), own[1] + np.maximum(a, b)
+                near = np.all((low < boxes[:, 1] - FILM) & (high > boxes[:, 0] + FILM), axis=1)
+                for i in np.flatnonzero(near):
+                    cut = self._cut(
+                        name, names[i], a - moment.standing[names[i]], b - moment.standing[names[i]]
+                    )
+                    if cut:
+                        yield self._in_the_way(step, name, names[i], *cut)
+                        break
+
+    def _in_the_way(self, step: Step, name: str, other: str, cut: float, off: float) -> Finding:
+        a, b = self.placed[name].part.part_no, self.placed[other].part.part_no
+        where = f"{off:.3g} mm before its place"
+        message = f"step '{step.title}': {name} ({a}) cuts {cut:.3g} mm3 into {other} ({b}), {where}"
+        return Finding("insertion", "fail", name, (), cut, FILM, message)
+
+    def _cut(self, name: str, other: str, start: np.ndarray, end: np.ndarray) -> tuple[float, float] | None:
+        """Largest volume that both share on the leg beyond what they may, mm3, and how far from the leg's
+        end."""
+        p, q = self.placed[name], self.placed[other]
+        apart = np.array(p.origin) - np.array(q.origin)
+        kind = self.kind.get(frozenset((name, other)), "touch")
+        numbers = ("steps", p.part.part_no, q.part.part_no, p.rotation, q.rotation, kind)
+        key = (*numbers, *np.round([*(apart + start), *(apart + end)], 6))
+        if key not in self.known:
+            self.known[key] = self._tried(p, q, apart, start, end, kind)
+        return self.known[key]
+
+    def _tried(
+        self, p: Placement, q: Placement, apart: np.ndarray, start: np.ndarray, end: np.ndarray, kind: str
+    ) -> tuple[float, float] | None:
+        moving, standing = self._mesh(p), self._mesh(q)
+        boxes = [np.reshape(m.bounding_box(), (2, 3)) for m in (moving, standing)]
+        allowed = FILM
+        screw = next((a.part for a in (p, q) if a.part.thread and a.part.kind), None)
+        if kind == "thread" and screw:  # as deep as what it goes through
+            m = METRIC[screw.thread]
+            host = boxes[1] if screw is p.part else boxes[0]
+            through = float((host[1] - host[0]) @ np.abs(end - start)) / float(np.linalg.norm(end - start))
+            allowed += pi / 4 * (m.d**2 - m.tap_drill**2) * through
+        elif kind != "touch":
+            allowed += (moving.translate(list(apart)) ^ standing).volume()
+        way = end - start
+        length = float(np.linalg.norm(way))
+        reach = sum(float((b[1] - b[0]) @ np.abs(way)) / length for b in boxes)
+        # the stretch on which their boxes meet: low <= start + t way <= high along every axis
+        low, high = boxes[1][0] - boxes[0][1] - apart - start, boxes[1][1] - boxes[0][0] - apart - start
+        moving_along = np.abs(way) > 0
+        ends = np.sort(np.stack([low, high])[:, moving_along] / way[moving_along], axis=0)
+        t0, t1 = max(0.0, ends[0].max()), min(1.0, ends[1].min())
+        if t0 > t1 or np.any((low > 0) | (high < 0), where=~moving_along):
+            return None
+        worst = (0.0, 0.0)
+        for t in np.linspace(t0, t1, max(PLACES, 1 + ceil(3 * length * (t1 - t0) / reach))):
+            cut = (moving.translate(list(apart + start + t * way)) ^ standing).volume()
+            if cut - allowed > worst[0]:
+                worst = (cut - allowed, length * (1.0 - float(t)))
+        return worst if worst[0] > 0.0 else None
+
+    def _held(self, step: Step, moment: Moment) -> Iterator[Finding]:
+        """Fingertips find room, from one side or the other, at the end by which a part is pulled out of its
+        hole, or is left in it."""
+        (name,) = moment.move.designators
+        at, pulled = moment.move.start, np.array(moment.move.path[0]) - moment.move.start
+        box = self._box(self.placed[name]) + at
+        k = int(np.argmax(np.abs(pulled)))
+        if max(side for i, side in enumerate(box[1] - box[0]) if i != k) > THICK:
+            return  # no pin: held by its faces
+        end, sign = (box[1][k], 1.0) if pulled[k] > 0 else (box[0][k], -1.0)
+        along = sorted((end - sign * (GRIP - FILM), end + sign * 2 * THICK))
+        names = [n for n in moment.standing if n != name]
+        for first, second in ((THICK, WIDE / 2), (WIDE / 2, THICK)):
+            middle, half = box.mean(axis=0), (box[1] - box[0]) / 2
+            sides = [i for i in range(3) if i != k]
+            low, high = middle.copy(), middle.copy()
+            for i, room in zip(sides, (first, second)):
+                wide = half[i] + room if room == THICK else room
+                low[i], high[i] = middle[i] - wide, middle[i] + wide
+            low[k], high[k] = along
+            hand = manifold3d.Manifold.cube(list(high - low)).translate(list(low))
+            if not any(self._meets(hand, low, high, n, moment.standing[n]) for n in names):
+                return
+        message = (
+            f"step '{step.title}': {name}: no room for fingertips, {2 * THICK:g} mm across and {WIDE:g} "
+            f"wide, on its last {GRIP:g} mm"
+        )
+        yield Finding("fingers", "fail", name, (), 0.0, GRIP, message)
+
+    def _meets(
+        self, hand: manifold3d.Manifold, low: np.ndarray, high: np.ndarray, name: str, at: Vector
+    ) -> bool:
+        p = self.placed[name]
+        box = self._box(p) + at
+        if np.any(low >= box[1]) or np.any(high <= box[0]):
+            return False
+        there = self._mesh(p).translate(list(np.array(p.origin) + at))
+        return (hand ^ there).volume() > FILM
+
+
+def _order(step: Step, part: str, what: str) -> Iterator[Finding]:
+    yield Finding("order", "fail", part, (), 0, 0, f"step '{step.title}': {part} {what}")
+
+
+CHECKS = (
+    Check(
+        "steps",
+        "scene",
+        lambda scene, job: check_steps(scene, job.shapes, job.meetings),
+        place=25,
+        applies=lambda scene: bool(scene.steps),
+    ),
+)

@@ -1,0 +1,97 @@
+"""tactcad readings FILE --map MAP --out CSV [--json]"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from tactcad.lab.log_readings import Taken
+
+EXAMPLES = """\
+  tactcad readings hardware/examples/grasp-log.csv --map hardware/examples/grasp-map.toml --out grasp.csv
+  tactcad readings run7.lvm --map map.toml --out calibration.csv --json
+  tactcad stiffness run8.tdms --map map.toml --calibration cal.csv     without a file in between
+
+FILE is a log of time and channels: CSV with any separator and either decimal sign, LabVIEW's .lvm, or .tdms.
+MAP says in TOML which column is which element, in what unit, and which rows are a step:
+
+  [log]
+  kind = "grasp"              # or "calibration"
+  time = "Time (s)"           # a log without time: rate = 1000.0 (Hz)
+  mains = 50                  # the mean is over whole periods of it
+  [signal]
+  unit = "mV"                 # of all channels: V, mV, uV
+  least = -5.0                # V; what reaches least or most is saturated
+  most = 5.0
+  [channels]
+  "Dev1/ai0" = 1              # column = element
+  "Dev1/ai1" = { element = 2, factor = -1.0 }
+  [steps]
+  by = "plateau"              # or "marks" of a column, or "times" = [[0, 9.5], [11, 20]]
+  column = "Fz"
+  apart = 0.3                 # least step of that column
+  hold = 4.0                  # s, shortest plateau
+  settle = 0.5                # s left out at its beginning
+  [load]                      # of a calibration: [element], [run], [displacement], [force]
+  column = "Fz"               # or values = [0, 3.235, 4.216], one a step; each = 7: seven steps share one
+  unit = "N"
+  least = 0.05                # less than that is no load
+
+Beside OUT an OUT.svg shows what was taken for what. A channel that is dead or saturated is named and its
+element left out."""
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("file", metavar="FILE", help="the log (CSV, .lvm, .tdms)")
+    parser.add_argument("--map", required=True, metavar="MAP", help="which column is what (TOML)")
+    parser.add_argument(
+        "-o",
+        "--out",
+        required=True,
+        metavar="CSV",
+        help="the readings, for `tactcad calibrate` or `tactcad stiffness`; the plot beside it ends in .svg",
+    )
+    parser.add_argument("--json", action="store_true", help="print what was taken for what as JSON")
+
+
+def run(args: argparse.Namespace) -> int:
+    from tactcad.design.files import refuse_overwriting, write_whole
+    from tactcad.lab import log_plot, log_readings
+
+    refuse_overwriting(args.out, args.file, args.map)
+    plot = Path(args.out).with_suffix(".svg")
+    refuse_overwriting(plot, args.file, args.map, args.out)
+    taken = from_log(args.file, args.map)
+    (log_readings.calibration if taken.kind == "calibration" else log_readings.grasps)(taken)  # they read it
+    picture = log_plot.picture(taken)
+    write_whole(args.out, taken.table.encode())
+    write_whole(plot, picture.encode())
+    if args.json:
+        sys.stdout.write(log_readings.to_json(taken))
+    else:
+        sys.stdout.write(log_readings.to_text(taken) + f"\n{args.out}, {plot}\n")
+    return 0
+
+
+def from_log(file: str, by: str) -> Taken:
+    """What a log holds by its map; elements left out are named on standard error."""
+    from tactcad.lab.log_files import read_log
+    from tactcad.lab.log_map import read_map
+    from tactcad.lab.log_readings import take
+
+    asked = read_map(by)
+    taken = take(read_log(file), asked)
+    for n, why in taken.left_out.items():
+        print(f"warning: {file}: element {n} ({taken.columns[n]}) left out: {why}", file=sys.stderr)
+    return taken
+
+
+def add_map(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--map",
+        metavar="MAP",
+        help="FILE is a lab's log (CSV, .lvm, .tdms); MAP says what its columns are: tactcad readings --help",
+    )

@@ -1,0 +1,432 @@
+"""From a lab's log to readings: its rows cut into steps, each averaged, with its time.
+
+A step is a plateau of a column (a window of `hold` seconds within which the column stays within `apart`), a
+run of rows with one mark, or a span of time. A channel that never changes, or stands at a limit, is named
+and its element left out; what would give wrong readings without a word is refused.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from math import floor
+
+import numpy as np
+from scipy.ndimage import maximum_filter1d, minimum_filter1d
+
+from tactcad.design.csv_table import Table
+from tactcad.design.messages import InputError, one_of
+from tactcad.lab import readings
+from tactcad.lab.column_units import VOLTAGES
+from tactcad.report.plain import plain
+
+from .log_files import LabLog
+from .log_map import NEEDED, SECONDS, LogMap, MappedQuantity
+
+GAP = 3.0  # times the longest usual interval from which on rows are missing; chosen
+USUAL = 0.98  # share of the intervals that are usual: bursts of up to fifty samples have one pause each
+FROM_MIDDLE = (
+    4.0  # standard deviations of a plateau's middle half from which on a row belongs to the way there
+)
+STUCK = 8  # samples of a step that all stand at a channel's own limit, from which on it is saturated; chosen
+NO_MARK = ("", "0", "-", "nan")
+# By how much more another channel changes than that of the pressed element, from which on they are swapped;
+# chosen: neighbours feel each other by a few per cents through what holds them.
+SWAPPED = 5.0
+
+
+@dataclass(frozen=True)
+class LogStep:
+    """Rows first to last of the log; time s, their mean; values: of every quantity, mm, N or number."""
+
+    first: int
+    last: int
+    time: float
+    values: Mapping[str, float]
+
+    @property
+    def rows(self) -> slice:
+        return slice(self.first, self.last + 1)
+
+    @property
+    def samples(self) -> int:
+        return self.last - self.first + 1
+
+
+@dataclass(frozen=True)
+class Taken:
+    """What was taken for what.
+
+    volts     signal of every kept element's channel, V, [element, row of the log]
+    left_out  elements whose channel tells nothing, each with why
+    table     the readings, as `calibrate` or `stiffness` reads them
+    """
+
+    kind: str
+    log: LabLog
+    time: np.ndarray
+    drive: np.ndarray | None
+    steps: tuple[LogStep, ...]
+    columns: Mapping[int, str]
+    volts: Mapping[int, np.ndarray]
+    left_out: Mapping[int, str]
+    noise: Mapping[int, float]
+    table: str
+
+    def as_table(self) -> Table:
+        lines = [line + "\n" for line in self.table.splitlines()]
+        start = next(i for i, line in enumerate(lines) if not line.startswith("#"))
+        header = lines[start].strip().split(",")
+        numbers = range(start + 2, len(lines) + 1)
+        return Table(self.log.path, ",", start + 1, header, lines[start + 1 :], numbers)
+
+
+def take(log: LabLog, by: LogMap) -> Taken:
+    """The readings that a log holds.
+
+    Raises
+    ------
+    InputError
+        A column that the log lacks; no steps; rows missing within one; a channel twice; a driving column that
+        does not change; channels that are swapped; too few elements left.
+    """
+    time = _time(log, by)
+    drive = _numbers(log, by.steps.column, by) if by.steps.column and by.steps.by == "plateau" else None
+    spans = _spans(log, by, time, drive)
+    volts = {c.element: _volts(log, name, by) for name, c in by.channels.items()}
+    columns = {c.element: name for name, c in by.channels.items()}
+    used = np.concatenate([np.arange(a, b + 1) for a, b in spans])
+    _refuse_doubled(log, volts, columns, used)
+    values = {name: _values(log, by, name, q, spans) for name, q in by.quantities.items()}
+    steps = tuple(
+        LogStep(a, b, float(time[a : b + 1].mean()), {name: float(v[i]) for name, v in values.items()})
+        for i, (a, b) in enumerate(spans)
+    )
+    left_out = {
+        n: why for n in volts if (why := _silent(volts[n], _pressed(by.log.kind, steps, n) or steps, by))
+    }
+    kept = {n: v for n, v in volts.items() if n not in left_out}
+    least = 1 if by.log.kind == "calibration" else 2
+    if len(kept) < least:
+        why = "; ".join(f"{n}: {w}" for n, w in left_out.items())
+        raise InputError(f"{log.path}: channels", f"too few tell anything ({why})", legal=f"{least} at least")
+    for n, v in kept.items():
+        for a, b in spans:
+            if np.isnan(v[a : b + 1]).any():
+                row = a + int(np.argmax(np.isnan(v[a : b + 1])))
+                raise InputError(
+                    log.where(row, columns[n]), "no number within a step", legal="a number in every row"
+                )
+    if by.log.kind == "calibration":
+        _refuse_swapped(log, steps, kept, columns)
+    noise = {
+        n: float(np.median([np.std(v[s.rows], ddof=1) if s.samples > 1 else 0.0 for s in steps]))
+        for n, v in kept.items()
+    }
+    table = _written(by, steps, kept, log, left_out)
+    return Taken(by.log.kind, log, time, drive, steps, columns, kept, left_out, noise, table)
+
+
+def _pressed(kind: str, steps: tuple[LogStep, ...], element: int) -> tuple[LogStep, ...]:
+    """Steps in which an element of a calibration is pressed; none of a grasp."""
+    return tuple(s for s in steps if kind == "calibration" and s.values["element"] == element)
+
+
+def _numbers(log: LabLog, name: str, by: LogMap) -> np.ndarray:
+    if name not in log.columns:
+        raise InputError(f"{log.path}", f"has no column {name!r}", legal=one_of(name, log.columns))
+    values = log.columns[name]
+    if values.dtype.kind == "U":
+        raise InputError(f"{log.path}: {name}", "holds text, no numbers", value=str(values[0]))
+    return values
+
+
+def _time(log: LabLog, by: LogMap) -> np.ndarray:
+    """Seconds from the first row."""
+    if by.log.time is not None:
+        time = _numbers(log, by.log.time, by) * SECONDS[by.log.time_unit]
+    elif log.time is not None:
+        time = log.time
+    elif by.log.rate is not None:
+        time = np.arange(len(log.line)) / by.log.rate
+    else:
+        raise InputError(
+            f"{by.path}: log.time", "missing: the log has no time of its own", legal="log.time or log.rate"
+        )
+    back = np.flatnonzero(~(np.diff(time) >= 0))
+    if len(back):
+        raise InputError(
+            log.where(int(back[0]) + 1), "time goes back, or is no number", legal="rows in their order"
+        )
+    return time - time[0]
+
+
+def _volts(log: LabLog, name: str, by: LogMap) -> np.ndarray:
+    own = by.channels[name]
+    raw = _numbers(log, name, by) * VOLTAGES[by.signal.unit]
+    return raw * by.signal.factor * own.factor + own.offset
+
+
+def _spans(log: LabLog, by: LogMap, time: np.ndarray, drive: np.ndarray | None) -> list[tuple[int, int]]:
+    """First and last row of every step, without what settles, cut to whole periods of the mains."""
+    rule = by.steps
+    if rule.by == "times":
+        found = [
+            (int(np.searchsorted(time, a)), int(np.searchsorted(time, b, "right")) - 1) for a, b in rule.times
+        ]
+        for (a, b), span in zip(found, rule.times):
+            if b < a:
+                raise InputError(f"{by.path}: steps.times", "no row of the log in it", value=list(span))
+    elif rule.by == "marks":
+        found = _marked(log, str(rule.column), by)
+    else:
+        assert drive is not None
+        found = _plateaus(time, drive, rule.apart or 0.0, rule.hold)
+        if not found:
+            what = "no plateau: it changes all the time, or never" if np.ptp(drive) else "never changes"
+            legal = "plateaus of steps.hold seconds within steps.apart"
+            raise InputError(f"{log.path}: {rule.column}", what, legal=legal)
+        if np.nanmax(drive) - np.nanmin(drive) < (rule.apart or 0.0):
+            what = "never changes by steps.apart: constant, or saturated"
+            raise InputError(
+                f"{log.path}: {rule.column}",
+                what,
+                value=float(np.ptp(drive)),
+                legal=f"{rule.apart:g} at least",
+            )
+    interval = np.diff(time)
+    usual = float(np.quantile(interval, USUAL)) if len(interval) else 0.0
+    kept = []
+    for a, b in found:
+        gaps = np.flatnonzero(interval[a:b] > GAP * usual)
+        if len(gaps):
+            row = a + int(gaps[0])
+            what = f"rows are missing within a step: {interval[row]:.3g} s without one, usually {usual:.3g} s"
+            raise InputError(log.where(row + 1), what, legal="rows without gaps in every step")
+        start = int(np.searchsorted(time, time[a] + rule.settle - 1e-12))
+        if start > b:
+            raise InputError(log.where(a), "a step shorter than steps.settle", value=float(time[b] - time[a]))
+        kept.append((start, _whole_periods(time, start, b, by.log.mains)))
+    return kept
+
+
+def _whole_periods(time: np.ndarray, a: int, b: int, mains: float | None) -> int:
+    """The last row of a step such that its samples cover whole periods of the mains."""
+    if mains is None or b - a < 2:
+        return b
+    each = (time[b] - time[a]) / (b - a)  # a row covers its interval
+    periods = floor((b - a + 1) * each * mains + 1e-6)
+    return b if not periods else a + max(round(periods / mains / each), 1) - 1
+
+
+def _plateaus(time: np.ndarray, drive: np.ndarray, apart: float, hold: float) -> list[tuple[int, int]]:
+    """Runs of windows of `hold` seconds within each of which the column stays within `apart`."""
+    n = len(time)
+    width = min(max(int(np.searchsorted(time, time[0] + hold, "right")), 2), n)  # rows; usual pace
+    left, right = width // 2, width - 1 - width // 2
+    high = maximum_filter1d(drive, width, mode="nearest", origin=0)
+    low = minimum_filter1d(drive, width, mode="nearest", origin=0)
+    steady = (high - low < apart) & np.isfinite(drive)
+    steady[:left] = steady[n - right :] = False  # the window leaves the log
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], steady.astype(int), [0]])))
+    return [_trimmed(drive, int(a) - left, int(b) - 1 + right) for a, b in zip(edges[::2], edges[1::2])]
+
+
+def _trimmed(drive: np.ndarray, a: int, b: int) -> tuple[int, int]:
+    """A plateau without the ends on which the column comes and goes, by its middle half."""
+    core = drive[a + (b - a) // 4 : b - (b - a) // 4 + 1]
+    still = np.flatnonzero(
+        np.abs(drive[a : b + 1] - np.median(core)) <= max(FROM_MIDDLE * float(core.std()), 1e-12)
+    )
+    return (a + int(still[0]), a + int(still[-1])) if len(still) else (a, b)
+
+
+def _marked(log: LabLog, column: str, by: LogMap) -> list[tuple[int, int]]:
+    if column not in log.columns:
+        raise InputError(log.path, f"has no column {column!r}", legal=one_of(column, log.columns))
+    marks = log.columns[column]
+    texts = marks if marks.dtype.kind == "U" else np.array([f"{m:g}" for m in marks])
+    edges = np.flatnonzero(np.concatenate([[True], texts[1:] != texts[:-1], [True]]))
+    found = [(int(a), int(b) - 1) for a, b in zip(edges[:-1], edges[1:]) if texts[a].lower() not in NO_MARK]
+    if not found:
+        raise InputError(f"{log.path}: {column}", "no mark in it", legal="a mark in every row of a step")
+    return found
+
+
+def _values(
+    log: LabLog, by: LogMap, name: str, q: MappedQuantity, spans: list[tuple[int, int]]
+) -> np.ndarray:
+    scale = q.scale(name, by.path)
+    if q.values is not None:
+        cycle = np.repeat(np.array(q.values), q.each)
+        if len(spans) % len(cycle) and name not in ("element", "run", "sample") or len(cycle) > len(spans):
+            what = f"{len(cycle)} steps by its values, and {len(spans)} found in the log"
+            raise InputError(f"{by.path}: {name}.values", what, legal="as many, or the same again and again")
+        return _scaled(np.resize(cycle, len(spans)), q, scale)
+    column = _numbers(log, str(q.column), by)
+    found = np.array([column[a : b + 1].mean() for a, b in spans])
+    if not np.isfinite(found).all():
+        row = spans[int(np.argmax(~np.isfinite(found)))][0]
+        raise InputError(
+            log.where(row, str(q.column)), "no number within a step", legal="a number in every row"
+        )
+    if name in ("displacement", "force", "load"):
+        if len(spans) > 1 and not np.ptp(found):
+            raise InputError(f"{log.path}: {q.column}", "never changes", value=float(found[0]))
+        return _scaled(found, q, scale)
+    whole = np.round(found)
+    if (np.abs(found - whole) > 1e-6).any():
+        row = spans[int(np.argmax(np.abs(found - whole)))][0]
+        raise InputError(log.where(row, str(q.column)), f"the {name} changes within a step", legal="one each")
+    return whole
+
+
+def _scaled(found: np.ndarray, q: MappedQuantity, scale: float) -> np.ndarray:
+    """To mm or N; what is below q.least is zero."""
+    own = found + q.offset
+    return np.where(np.abs(own) < q.least, 0.0, own) * scale
+
+
+def _refuse_doubled(
+    log: LabLog, volts: Mapping[int, np.ndarray], columns: Mapping[int, str], used: np.ndarray
+) -> None:
+    seen: dict[bytes, int] = {}
+    for n, v in volts.items():
+        raw = np.asarray(log.columns[columns[n]][used])
+        if not np.ptp(raw):
+            continue
+        other = seen.setdefault(raw.tobytes(), n)
+        if other != n:
+            what = f"the same samples as {columns[other]}: elements {other} and {n} are one channel"
+            raise InputError(f"{log.path}: {columns[n]}", what, legal="a channel of its own for each element")
+
+
+def _silent(v: np.ndarray, steps: tuple[LogStep, ...], by: LogMap) -> str:
+    """Why a channel tells nothing; "" where it does."""
+    own = np.concatenate([v[s.rows] for s in steps])
+    if np.isnan(own).all() or not np.nanmax(own) - np.nanmin(own):
+        return "dead: its signal never changes"
+    for limit, beyond in (
+        (by.signal.least, own <= (by.signal.least or 0.0)),
+        (by.signal.most, own >= (by.signal.most or 0.0)),
+    ):
+        if limit is not None and beyond.any():
+            return f"saturated: at {limit:g} V in {int(beyond.sum())} samples"
+    for end in (np.nanmax(own), np.nanmin(own)):
+        stuck = [s for s in steps if s.samples >= STUCK and (v[s.rows] == end).all()]
+        if stuck and len(stuck) < len(steps):
+            return f"saturated: at {end:g} V in {len(stuck)} of {len(steps)} steps"
+    return ""
+
+
+def _refuse_swapped(
+    log: LabLog, steps: tuple[LogStep, ...], kept: Mapping[int, np.ndarray], columns: Mapping[int, str]
+) -> None:
+    """Refuse a calibration in which another channel answers to an element's being pressed."""
+    for n in sorted({int(s.values["element"]) for s in steps} & set(kept)):
+        own = _pressed("calibration", steps, n)
+        change = {m: float(np.ptp([v[s.rows].mean() for s in own])) for m, v in kept.items()}
+        most = max(change, key=lambda m: change[m])
+        if change[most] > SWAPPED * change[n]:
+            who = f"{columns[most]} (element {most}) changes, not {columns[n]}"
+            what = f"while element {n} is pressed, {who}: swapped?"
+            raise InputError(
+                f"{log.path}: {columns[n]}", what, value=f"{change[n]:.3g} V and {change[most]:.3g} V"
+            )
+
+
+def _written(
+    by: LogMap,
+    steps: tuple[LogStep, ...],
+    kept: Mapping[int, np.ndarray],
+    log: LabLog,
+    left_out: Mapping[int, str],
+) -> str:
+    calibration = by.log.kind == "calibration"
+    lines = [f"# {by.log.kind} readings from {log.path} by {by.path}: means of {len(steps)} steps"]
+    lines += [f"# element {n} left out: {why}" for n, why in left_out.items()]
+    if calibration:
+        lines.append("element,run,displacement_mm,force_N,signal_V,time_s")
+    else:
+        given = [name for name in ("sample", "run") if name in by.quantities]
+        lines.append(",".join([*given, "load_N", "element", "signal_V", "time_s"]))
+    for s in steps:
+        v = s.values
+        if calibration:
+            n = int(v["element"])
+            if n in left_out:
+                continue
+            if n not in kept:
+                legal = f"elements {', '.join(map(str, kept))}"
+                raise InputError(
+                    f"{by.path}: channels", f"element {n} is pressed and has no channel", legal=legal
+                )
+            row = [str(n), f"{v['run']:.0f}", f"{v['displacement']:.9g}", f"{v['force']:.9g}"]
+            lines.append(",".join([*row, f"{kept[n][s.rows].mean():.9g}", f"{s.time:.9g}"]))
+            continue
+        states = [f"{v[name]:.0f}" for name in given] + [f"{v['load']:.9g}"]
+        for n, volts in kept.items():
+            lines.append(",".join([*states, str(n), f"{volts[s.rows].mean():.9g}", f"{s.time:.9g}"]))
+    return "\n".join(lines) + "\n"
+
+
+def calibration(taken: Taken) -> readings.CalibrationReadings:
+    """For `calibrate`; as of a table. Raises InputError."""
+    _require_kind(taken, "calibration")
+    return readings.calibration_of(taken.as_table())
+
+
+def grasps(taken: Taken) -> list[readings.GraspReadings]:
+    """For `stiffness`; as of a table. Raises InputError."""
+    _require_kind(taken, "grasp")
+    return readings.grasps_of(taken.as_table())
+
+
+def _require_kind(taken: Taken, kind: str) -> None:
+    if taken.kind != kind:
+        raise InputError("--map", f"maps a {taken.kind}", legal=f'log.kind = "{kind}"')
+
+
+def to_text(taken: Taken) -> str:
+    """What was taken for what, for people."""
+    steps = taken.steps
+    names = [n for n in NEEDED[taken.kind] if n in steps[0].values]
+    lines = [
+        f"{taken.kind}: {len(taken.time)} rows over {taken.time[-1]:.6g} s, {len(steps)} steps of "
+        f"{min(s.samples for s in steps)} to {max(s.samples for s in steps)} samples",
+        "",
+    ]
+    for n, column in taken.columns.items():
+        if n in taken.left_out:
+            lines.append(f"element {n:3}  {column}: LEFT OUT, {taken.left_out[n]}")
+        else:
+            means = [taken.volts[n][s.rows].mean() for s in steps]
+            lines.append(
+                f"element {n:3}  {column}: {min(means):.6g} to {max(means):.6g} V, one sample "
+                f"+-{taken.noise[n] * 1e3:.3g} mV"
+            )
+    lines += ["", "step    from s      to s  samples  " + "  ".join(f"{n:>12}" for n in names)]
+    for i, s in enumerate(steps, 1):
+        values = "  ".join(f"{s.values[n]:12.6g}" for n in names)
+        a, b = taken.time[s.first], taken.time[s.last]
+        lines.append(f"{i:4}  {a:8.6g}  {b:8.6g}  {s.samples:7}  {values}")
+    return "\n".join(lines) + "\n"
+
+
+def to_json(taken: Taken) -> str:
+    """The same as JSON."""
+    data = {
+        "schema": "tactcad-log-1",
+        "kind": taken.kind,
+        "units": "mm, N, V, s",
+        "channels": [
+            {"element": n, "column": c, "noise": taken.noise.get(n)} for n, c in taken.columns.items()
+        ],
+        "left_out": [{"element": n, "why": why} for n, why in taken.left_out.items()],
+        "steps": [
+            {"from": taken.time[s.first], "to": taken.time[s.last], "samples": s.samples, **s.values}
+            for s in taken.steps
+        ],
+    }
+    return json.dumps(plain(data), indent=1, allow_nan=False) + "\n"

@@ -1,0 +1,149 @@
+"""Steps that can be carried out, or not: a plate, a pin and a screw with one thing wrong each, and the
+shipped scenes' moves as guide/SCENE.json tells them."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+
+import pytest
+from test_tools import block
+
+from tactcad.checks.on_solids.steps import check_steps
+from tactcad.parts.bought.screws import cap_screw
+from tactcad.parts.bought.standard_parts import dowel
+from tactcad.parts.designs import load
+from tactcad.parts.language.description import Hole
+from tactcad.scenes import make_scene, scene_names
+from tactcad.scenes.moves import guide_json, settles, step_moves
+from tactcad.scenes.scene import DOWN, STILL, Contact, Move, Need, Placement, Scene, Step
+from tactcad.solids.build import build
+
+pytestmark = pytest.mark.cad
+
+TAPPED = block(
+    "TAPPED", 20, 20, 10, Hole("tap", (0, 0, 10), (0, 0, -1), 2.5, 10, True, thread="M3", thread_depth=9)
+)
+HOLED = block("HOLED", 20, 20, 10, Hole("pin", (0, 0, 10), (0, 0, -1), 3.02, 8, False))
+ROOF = block("ROOF", 20, 20, 2)
+
+
+def scene(steps: tuple[Step, ...], contacts: tuple[Contact, ...] = (), roof: float = 100.0) -> Scene:
+    """A drilled plate with a pin of 3 x 16 in it, 8 deep; a tapped one with a screw; a roof so far "
+    "over the first."""
+    placed = (
+        Placement("P1", HOLED),
+        Placement("DW1", dowel("3", 16.0), (0, 0, 2)),
+        Placement("T1", TAPPED, (40, 0, 0)),
+        Placement("SC1", cap_screw("M3", 8.0), (40, 0, 10), DOWN),
+        Placement("RO1", ROOF, (0, 0, 10 + roof)),
+    )
+    names = {d for step in steps for d in step.designators}
+    met = tuple(c for c in contacts if {c.first, c.second} <= names)
+    return Scene("test", tuple(p for p in placed if p.designator in names), met, steps=steps)
+
+
+def step(*names: str, **more) -> Step:
+    return Step(" ".join(names) or "none", names, STILL, "", **more)
+
+
+def found(scene: Scene) -> list:
+    return check_steps(scene, {part.part_no: build(part).wrapped for part in scene.parts})
+
+
+IN_T1 = (Contact("SC1", "T1", "thread"),)
+PULL = Move(("DW1",), STILL, ((0.0, 0.0, 12.0), STILL))
+BAD = {
+    "insertion": scene((step("P1", "RO1"), step("DW1")), (Contact("DW1", "P1", "press"),), roof=10.0),
+    "order": scene((step("SC1"), step("T1")), IN_T1),
+    "fingers": scene(
+        (step("P1", "DW1"), step("RO1"), step(order=(PULL,))), (Contact("DW1", "P1", "press"),), 21.0
+    ),
+}
+
+
+@pytest.mark.parametrize("check", sorted(BAD))
+def test_a_bad_step_of_each_kind_is_found(check):
+    assert check in {f.check for f in found(BAD[check])}
+
+
+def test_a_pin_wants_its_length_before_its_hole():
+    """8 mm stand out of the plate and the pin has 8 in it: it passes under a roof 16 mm and more over the
+    plate, and 1 mm below that it cuts by a cylinder of that length."""
+    out = Move(("DW1",), (0.0, 0.0, 8.0), (STILL,))
+    tried = {
+        roof: found(scene((step("P1", "RO1"), step("DW1", order=(out,))), roof=roof))
+        for roof in (16.05, 15.0)
+    }
+    assert tried[16.05] == []
+    (cut,) = tried[15.0]
+    assert cut.check == "insertion" and cut.value == pytest.approx(3.14159 * 1.5**2, rel=0.05)
+
+
+@pytest.mark.parametrize(
+    ("steps", "said"),
+    [
+        ((step("SC1"), step("T1")), "goes into T1, which is not there yet"),
+        ((step("P1", needs=(Need(("T1",), "measured on it"),)), step("T1")), "is not there yet: measured"),
+        ((step("T1"), step("P1", needs=(Need(("T1",), "its place", away=True),))), "is there already"),
+        ((step("P1", order=(Move(("P1",), (0, 0, 30.0), ((0, 0, 5.0),)),)),), "is left 5 mm off"),
+        (
+            (step("P1"), step(order=(Move(("P1",), (0, 0, 3.0), (STILL,)),))),
+            "does not start where it was left",
+        ),
+    ],
+)
+def test_what_a_step_needs_is_asked_for(steps, said):
+    assert any(said in f.message for f in found(scene(steps, IN_T1)))
+
+
+def test_good_steps_are_not_found():
+    good = (step("P1"), step("DW1"), step("T1"), step("SC1"), step("RO1"))
+    assert found(scene(good, (*IN_T1, Contact("DW1", "P1", "press")))) == []
+
+
+def test_a_drill_point_is_told_from_a_thread():
+    """A screw may share its thread's ring with what it goes through, 2.16 mm2 over 10 mm, and no more."""
+    blind = replace(
+        TAPPED, part_no="BLIND", features=(replace(TAPPED.features[0], depth=4.0, through=False),)
+    )
+    one = scene((step("T1"), step("SC1")), IN_T1)
+    stuck = replace(one, placements=(replace(one.placements[0], part=blind), one.placements[1]))
+    assert found(one) == [] and [f.check for f in found(stuck)] == ["insertion"]
+
+
+@pytest.mark.parametrize("name", ["macro-array", "soft-tissue"])
+def test_the_shipped_array_goes_together(name):
+    assert found(make_scene(load(name), "array")) == []
+
+
+def test_every_step_tells_its_moves_and_ends_in_place():
+    """Of every scene: the contract's fields; every part comes once and is at its place at last."""
+    design = load("macro-array")
+    for name in scene_names(design):
+        made = make_scene(design, name)
+        told = json.loads(guide_json(made))
+        assert told["units"] == "mm" and "final place" in told["frame"]
+        at: dict[str, list[float]] = {}
+        assert [s["title"] for s in told["steps"]] == [s.title for s in made.steps]
+        for one in told["steps"]:
+            assert {"title", "moves", "sets", "leaves"} <= set(one)
+            for move in one["moves"]:
+                assert {"designator", "from", "path", "by"} <= set(move)
+                assert at.get(move["designator"], move["from"]) == move["from"]
+                at[move["designator"]] = move["path"][-1]
+        assert set(at) == {p.designator for p in made.placements}
+        assert all(offset == [0.0, 0.0, 0.0] for offset in at.values())
+
+
+def test_usual_ways_follow_from_the_placements():
+    """A pin comes from the side where it stands out, a screw against its axis, a part along its "
+    "seat's normal."""
+    made = make_scene(load("macro-array"), "array")
+    ways = {m.designators: m for moves in step_moves(made) for m in moves}
+    assert ways["DW1",].start[1] < -20.0 and ways["DW1",].start[::2] == (0.0, 0.0)
+    assert ways["SC5",].start[2] > 20.0 and ways["SC5",].by == "hex key 2.5 mm"
+    assert ways["E1",].start[1] < -20.0 and ways["CA1",].start[2] > 0.0
+    titles = [s.title for s in made.steps]
+    sets, _ = settles(made, titles.index("Carrier"))
+    assert any("CA1 to EP1: all, by SC5 SC6" in said for said in sets)
