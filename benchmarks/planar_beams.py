@@ -1,10 +1,11 @@
-"""Fits the factors of planar cells' beams on solid elements, and measures them on designs that the fit has not seen.
+"""Fits the factors of planar cells' beams on solid elements, and measures them on designs that the fit has
+not seen.
 
     python benchmarks/planar_beams.py src/tactcad/families/planar/data    ten minutes
     python benchmarks/planar_beams.py DIR --few                           a tenth of it, to try
 
-Sampled: w/s 0.1 to 0.5, s/t 15 to 80, r/w 0.1 to 1 (r at most 0.45 s), nu 0.2 to 0.4, a third of them on an end
-of each range. Then a climb from the worst design of every mode pushes its error further.
+Sampled: w/s 0.1 to 0.5, s/t 15 to 80, r/w 0.1 to 1 (r at most 0.45 s), nu 0.2 to 0.4, a third of them on an
+end of each range. Then a climb from the worst design of every mode pushes its error further.
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ from numpy.typing import NDArray
 from scipy.stats import qmc
 
 from tactcad.families.planar import beam as closed
-from tactcad.families.planar.beam import MODES, Beam
+from tactcad.families.planar.beam import MODES, FoilBeam
 from tactcad.families.planar.beam_elements import solved
 
 Array = NDArray[np.float64]
@@ -28,14 +29,15 @@ DENSITY = 2
 CLIMB = 25
 
 
-def beam_at(unit: Array) -> Beam:
+def beam_at(unit: Array) -> FoilBeam:
     """The beam at a place of the unit cube; s = 1 mm, E = 1 MPa."""
     w, slender, r, nu = LOW + unit * (HIGH - LOW)
-    return Beam(1.0, float(w), float(1.0 / slender), float(min(r * w, WIDEST_FILLET)), 1.0, float(nu))
+    return FoilBeam(1.0, float(w), float(1.0 / slender), float(min(r * w, WIDEST_FILLET)), 1.0, float(nu))
 
 
 def places(count: int, seed: int) -> Array:
-    """In the unit cube: two thirds anywhere, the others with each coordinate at an end with odds one in two."""
+    """In the unit cube: two thirds anywhere, the others with each coordinate at an end with odds one in
+    two."""
     rng = np.random.default_rng(seed)
     found = qmc.LatinHypercube(4, seed=seed).random(count)
     edge = rng.random((count, 4)) < 0.5
@@ -44,7 +46,8 @@ def places(count: int, seed: int) -> Array:
 
 
 def measured(units: Array) -> tuple[Array, Array]:
-    """Logarithms of what solid elements say over the closed form without factors: stiffness and stress, (n, 6)."""
+    """Logarithms of what solid elements say over the closed form without factors: stiffness and stress, (n,
+    6)."""
     rows = []
     for unit in units:
         beam = beam_at(unit)

@@ -9,17 +9,17 @@ import numpy as np
 import pytest
 
 from tactcad.families.planar import beam
-from tactcad.families.planar.beam import MODES, Beam
+from tactcad.families.planar.beam import MODES, FoilBeam
 from tactcad.families.planar.beam_elements import solved
 from tactcad.families.planar.cell import Cell, roots, wrench
 
-SOFT = Beam(4.0, 0.4, 0.08, 0.1, 179_000.0, 0.30)
-STIFF = Beam(2.2, 0.9, 0.08, 0.2, 179_000.0, 0.30)
+SOFT = FoilBeam(4.0, 0.4, 0.08, 0.1, 179_000.0, 0.30)
+STIFF = FoilBeam(2.2, 0.9, 0.08, 0.2, 179_000.0, 0.30)
 PINWHEEL = Cell(SOFT, roots("pinwheel", 2.2, -1.1 + 0.8, 1.1 + 0.35 + 0.2))
 STRAIGHT = Cell(STIFF, roots("straight", 3.0, 0.0, 0.0))
 
 
-@pytest.mark.parametrize("held_out", [SOFT, STIFF, Beam(3.0, 1.2, 0.1, 0.35, 127_000.0, 0.34)])
+@pytest.mark.parametrize("held_out", [SOFT, STIFF, FoilBeam(3.0, 1.2, 0.1, 0.35, 127_000.0, 0.34)])
 def test_closed_form_is_within_its_stated_error_of_solid_elements(held_out):
     stiffness, stress = solved(held_out)
     stated = beam.fit()["errors"]
@@ -35,7 +35,7 @@ def test_closed_form_is_within_its_stated_error_of_solid_elements(held_out):
 
 def test_long_narrow_beams_are_beam_theory():
     """Euler and Saint-Venant, of a beam at the slender end of the range with small fillets."""
-    b = Beam(10.0, 1.0, 0.2, 0.1, 200_000.0, 0.3)
+    b = FoilBeam(10.0, 1.0, 0.2, 0.1, 200_000.0, 0.3)
     k, I, s = beam.stiffness(b), 1.0 * 0.2**3 / 12.0, 10.0 - 0.02  # the fillets' sections, nearly
     assert k["axial"] == pytest.approx(200_000.0 * 0.2 / s, rel=0.01)
     assert k["bend_out"] == pytest.approx(200_000.0 * I / s, rel=0.02)
@@ -67,15 +67,16 @@ def test_sink_is_four_guided_beams():
 
 
 def test_tilt_of_a_straight_cell_by_hand():
-    """Two beams bend at the island's half width, two twist: 2 (k_b + k_s (a/2 + s/2)^2) + 2 k_t + ... of the others'
-    sink, none."""
+    """Two beams bend at the island's half width, two twist: 2 (k_b + k_s (a/2 + s/2)^2) + 2 k_t + ... of
+    the others' sink, none."""
     k = beam.stiffness(STIFF)
     by_hand = 2 * (k["bend_out"] + k["shear_out"] * (1.5 + 1.1) ** 2) + 2 * k["twist"]
     assert STRAIGHT.stiffness[3, 3] == pytest.approx(by_hand)
 
 
 def test_a_straight_cell_stiffens_as_a_string_of_guided_beams():
-    """F/(K z) - 1 = 0.72 (z/t)^2 of plain beams (A = w t, I = w t^3/12); a pinwheel gives nearly all of it back."""
+    """F/(K z) - 1 = 0.72 (z/t)^2 of plain beams (A = w t, I = w t^3/12); a pinwheel gives nearly all of it
+    back."""
     assert STRAIGHT.held == pytest.approx(1.0)
     assert STRAIGHT.stiffening * STIFF.thickness**2 == pytest.approx(0.72, rel=0.05)
     assert PINWHEEL.held < 0.05

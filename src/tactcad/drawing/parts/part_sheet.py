@@ -162,7 +162,8 @@ def notes_of(part: Part, files: Sequence[MadeFrom]) -> tuple[str, ...]:
     elif part.by_contour:
         cut = "Etched by"
         lines.append(
-            "The DXF file holds the nominal contour, limits at their middle; the photo tool allows for undercut"
+            "The DXF file holds the nominal contour, limits at their middle; the photo tool allows for "
+            "undercut"
         )
     for file in files:
         use = cut if file.path.endswith(".dxf") else "Model"

@@ -27,7 +27,7 @@ KAPPA = 5.0 / 6.0  # Reissner's shear factor of a rectangle
 
 
 @dataclass(frozen=True)
-class Beam:
+class FoilBeam:
     """Length s, width w, thickness t and fillet radius r, mm; E, MPa, and Poisson's ratio."""
 
     length: float
@@ -43,9 +43,9 @@ class Beam:
         return self.youngs_modulus / (2.0 * (1.0 + self.poisson))
 
 
-def sections(beam: Beam, points: int = 24) -> tuple[Array, Array, Array]:
-    """Gauss points of the half 0 <= x <= s/2, their weights, and the width there, mm: w + 2 r (1 - cos phi) in the
-    fillet, x = s/2 - r + r sin phi."""
+def sections(beam: FoilBeam, points: int = 24) -> tuple[Array, Array, Array]:
+    """Gauss points of the half 0 <= x <= s/2, their weights, and the width there, mm: w + 2 r (1 - cos phi)
+    in the fillet, x = s/2 - r + r sin phi."""
     at, weight = np.polynomial.legendre.leggauss(points)
     at, weight = (at + 1.0) / 2.0, weight / 2.0
     straight, r = beam.length / 2.0 - beam.fillet, beam.fillet
@@ -57,15 +57,15 @@ def sections(beam: Beam, points: int = 24) -> tuple[Array, Array, Array]:
 
 
 def torsion_constant(width: Array, thickness: float) -> Array:
-    """J = w t^3/3 (1 - 0.630 t/w (1 - t^4/(12 w^4))), mm4: Roark's Formulas for Stress and Strain, within 0.3 % of
-    Saint-Venant's series for w >= t."""
+    """J = w t^3/3 (1 - 0.630 t/w (1 - t^4/(12 w^4))), mm4: Roark's Formulas for Stress and Strain, within
+    0.3 % of Saint-Venant's series for w >= t."""
     q = thickness / width
     return width * thickness**3 / 3.0 * (1.0 - 0.630 * q * (1.0 - q**4 / 12.0))
 
 
-def base(beam: Beam) -> dict[str, float]:
-    """Beam theory's stiffness of every mode (units as `stiffness`): compliances of the sections, fillets included,
-    added along the beam; Timoshenko's shear."""
+def base(beam: FoilBeam) -> dict[str, float]:
+    """Beam theory's stiffness of every mode (units as `stiffness`): compliances of the sections, fillets
+    included, added along the beam; Timoshenko's shear."""
     x, dx, w = sections(beam)
     E, G, t = beam.youngs_modulus, beam.shear_modulus, beam.thickness
     out, within = w * t**3 / 12.0, t * w**3 / 12.0
@@ -80,9 +80,9 @@ def base(beam: Beam) -> dict[str, float]:
     }
 
 
-def nominal_stress(beam: Beam) -> dict[str, float]:
-    """Beam theory's stress at the root's face per relative motion 1 of the ends (MPa/mm; MPa/rad): sections of the
-    straight width."""
+def nominal_stress(beam: FoilBeam) -> dict[str, float]:
+    """Beam theory's stress at the root's face per relative motion 1 of the ends (MPa/mm; MPa/rad): sections
+    of the straight width."""
     k, w, t, s = base(beam), beam.width, beam.thickness, beam.length
     out, within = 6.0 / (w * t**2), 6.0 / (t * w**2)
     return {
@@ -95,7 +95,7 @@ def nominal_stress(beam: Beam) -> dict[str, float]:
     }
 
 
-def groups(beam: Beam) -> tuple[float, float, float, float]:
+def groups(beam: FoilBeam) -> tuple[float, float, float, float]:
     """What the factors depend on, each from about -1 to 1: w/s, r/w, nu, and ln(t/w)."""
     return (
         (beam.width / beam.length - 0.3) / 0.2,
@@ -123,7 +123,7 @@ def fit() -> dict[str, Any]:
     return json.loads(DATA.read_text("utf-8"))
 
 
-def out_of_range(beam: Beam) -> str:
+def out_of_range(beam: FoilBeam) -> str:
     """What of the beam lies outside the fit's range, with what is legal; empty where nothing does."""
     r = fit()["range"]
     for name, value in (
@@ -138,23 +138,23 @@ def out_of_range(beam: Beam) -> str:
     return ""
 
 
-def _factors(beam: Beam, kind: str) -> dict[str, float]:
+def _factors(beam: FoilBeam, kind: str) -> dict[str, float]:
     row = terms(*groups(beam))
     return {mode: float(np.exp(row @ np.array(c))[0]) for mode, c in fit()[kind].items()}
 
 
-def stiffness(beam: Beam) -> dict[str, float]:
+def stiffness(beam: FoilBeam) -> dict[str, float]:
     """Stiffness of every mode: N/mm; bending and twist N mm a radian.
 
-    Beam theory times a factor that was fitted on solid elements (data/beam.json): clamped roots keep a wide beam
-    from curling and its ends from warping.
+    Beam theory times a factor that was fitted on solid elements (data/beam.json): clamped roots keep a wide
+    beam from curling and its ends from warping.
     """
     factors = _factors(beam, "stiffness")
     return {mode: value * factors[mode] for mode, value in base(beam).items()}
 
 
-def stress(beam: Beam) -> dict[str, float]:
-    """Largest von Mises stress of the foil's face per relative motion 1 of the ends (MPa/mm; MPa/rad), from half a
-    thickness off the clamped edge on."""
+def stress(beam: FoilBeam) -> dict[str, float]:
+    """Largest von Mises stress of the foil's face per relative motion 1 of the ends (MPa/mm; MPa/rad), from
+    half a thickness off the clamped edge on."""
     k, plain, factors = stiffness(beam), base(beam), _factors(beam, "stress")
     return {m: v * factors[m] * k[m] / plain[m] for m, v in nominal_stress(beam).items()}

@@ -1,8 +1,8 @@
 """A foil beam with filleted roots between a rigid island and a clamped frame, by solid elements.
 
-The beam is symmetric in all three planes through its middle, so its ends' six relative motions do not mix, and
-each is solved on an eighth of it: Lagrange elements of order 4 in the foil's plane and quadratic through half
-its thickness (tactcad.fem.space). The root's fillet is tangent to the rigid edge.
+The beam is symmetric in all three planes through its middle, so its ends' six relative motions do not mix,
+and each is solved on an eighth of it: Lagrange elements of order 4 in the foil's plane and quadratic
+through half its thickness (tactcad.fem.space). The root's fillet is tangent to the rigid edge.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from tactcad.fem import elasticity
 from tactcad.fem.mapped_mesh import merged
 from tactcad.fem.space import AcrossSpace, PlaneSpace
 
-from .beam import MODES, Beam
+from .beam import MODES, FoilBeam
 
 Array = NDArray[np.float64]
 ORDER = 4
@@ -49,9 +49,9 @@ def _end_motion(mode: str, y: Array, z: Array) -> Array:
     )
 
 
-def quarter_mesh(beam: Beam, density: int = 1) -> PlaneSpace:
-    """The quarter 0 <= x <= s/2, y >= 0 of the beam's plane, rows graded towards its edge, columns towards root
-    and fillet, mm."""
+def quarter_mesh(beam: FoilBeam, density: int = 1) -> PlaneSpace:
+    """The quarter 0 <= x <= s/2, y >= 0 of the beam's plane, rows graded towards its edge, columns towards
+    root and fillet, mm."""
     half, w, r = beam.length / 2.0, beam.width / 2.0, beam.fillet
     straight, rows = half - r, 2 * density
     columns = max(2, round(2.5 * straight / beam.width)) * density
@@ -80,9 +80,9 @@ def _split(grid: Array) -> Array:
     return np.array([grid[np.ix_(ORDER * i + step, ORDER * j + step)] for i in range(nx) for j in range(ny)])
 
 
-def solved(beam: Beam, density: int = 1) -> tuple[dict[str, float], dict[str, float]]:
-    """Stiffness of every mode (N/mm; N mm a radian for bending and twist), and the largest von Mises stress of the
-    foil's faces per unit of its relative motion (MPa/mm; MPa/rad)."""
+def solved(beam: FoilBeam, density: int = 1) -> tuple[dict[str, float], dict[str, float]]:
+    """Stiffness of every mode (N/mm; N mm a radian for bending and twist), and the largest von Mises stress
+    of the foil's faces per unit of its relative motion (MPa/mm; MPa/rad)."""
     space = quarter_mesh(beam, density)
     count = space.nodes.shape[1]
     across = AcrossSpace(np.linspace(0.0, beam.thickness / 2.0, 3), 2)

@@ -1,7 +1,8 @@
-"""A cell: a rigid island on four foil beams. Its stiffness in six freedoms, its beams' stress, its linear range.
+"""A cell: a rigid island on four foil beams. Its stiffness in six freedoms, its beams' stress, its linear
+range.
 
-Freedoms x, y, z (mm) and turns about them (rad) of the island's middle, in the foil's mid-plane; z towards the
-object. Foot plate and post keep the island rigid, spacers clamp the frame at its opening's edge.
+Freedoms x, y, z (mm) and turns about them (rad) of the island's middle, in the foil's mid-plane; z towards
+the object. Foot plate and post keep the island rigid, spacers clamp the frame at its opening's edge.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import beam as closed
-from .beam import MODES, Beam
+from .beam import MODES, FoilBeam
 
 Array = NDArray[np.float64]
 
@@ -32,7 +33,8 @@ def roots(form: str, island: float, along: float, offset: float) -> tuple[Root, 
     Parameters
     ----------
     form
-        "straight": from the middle of the island's sides; "pinwheel": beside the island, from an ear at a corner.
+        "straight": from the middle of the island's sides; "pinwheel": beside the island, from an ear at a
+        corner.
     island
         Side, mm.
     along
@@ -52,15 +54,15 @@ def roots(form: str, island: float, along: float, offset: float) -> tuple[Root, 
 class Cell:
     """Four equal beams about a rigid island."""
 
-    beam: Beam
+    beam: FoilBeam
     roots: tuple[Root, ...]
 
     @cached_property
     def modes(self) -> Array:
         """Relative motions of the beams' ends by the island's freedoms, (beams, modes, 6).
 
-        A motion of the island's end by v across and a turn p is the rigid turn p/2 about the middle, even bending
-        by p, and a guided end's v - s p/2.
+        A motion of the island's end by v across and a turn p is the rigid turn p/2 about the middle, even
+        bending by p, and a guided end's v - s p/2.
         """
         s, rows = self.beam.length, []
         for root in self.roots:
@@ -85,19 +87,19 @@ class Cell:
 
     @cached_property
     def compliance(self) -> Array:
-        return np.linalg.inv(self.stiffness)
+        return np.asarray(np.linalg.inv(self.stiffness), dtype=float)
 
     def stress(self, wrench: Array) -> float:
-        """Largest stress of any beam under a wrench on the island's middle (N, N mm), MPa: the modes' own largest von
-        Mises stresses added, so never less than that of their sum."""
+        """Largest stress of any beam under a wrench on the island's middle (N, N mm), MPa: the modes' own
+        largest von Mises stresses added, so never less than that of their sum."""
         per_motion = np.array([closed.stress(self.beam)[m] for m in MODES])
         motion = self.modes @ (self.compliance @ wrench)
         return float((np.abs(motion) @ per_motion).max())
 
     @cached_property
     def held(self) -> float:
-        """Share of its beams' stretch that the island cannot give back by moving: 1 of straight beams, little of a
-        pinwheel's, which turns."""
+        """Share of its beams' stretch that the island cannot give back by moving: 1 of straight beams,
+        little of a pinwheel's, which turns."""
         k = closed.stiffness(self.beam)["axial"]
         pulled = k * self.modes[:, 0].sum(axis=0)
         return float(1.0 - pulled @ self.compliance @ pulled / (k * len(self.roots)))
@@ -106,8 +108,8 @@ class Cell:
     def stiffening(self) -> float:
         """c of F = K z (1 + c z^2), 1/mm2, of the island pressed straight down.
 
-        A guided end that sinks by z stretches its beam by 3 z^2/(5 s), the integral of half the slope's square of
-        z (3 u^2 - 2 u^3); the energy of what is held of it is added.
+        A guided end that sinks by z stretches its beam by 3 z^2/(5 s), the integral of half the slope's
+        square of z (3 u^2 - 2 u^3); the energy of what is held of it is added.
         """
         k = closed.stiffness(self.beam)["axial"] * len(self.roots) * self.held
         return float(2.0 * k * (3.0 / (5.0 * self.beam.length)) ** 2 / self.stiffness[2, 2])

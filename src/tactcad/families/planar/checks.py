@@ -7,9 +7,9 @@ from collections.abc import Iterator
 from tactcad.checks.check import Check
 from tactcad.parts.language.finding import Finding
 
-from .layout import PlanarLayout
+from .cell_layout import PlanarLayout
+from .cell_tables import PlanarDesign
 from .sensor import kind_figures, rated_force, rows
-from .tables import PlanarDesign
 
 
 def check_strength(design: PlanarDesign) -> Iterator[Finding]:
@@ -22,14 +22,17 @@ def check_strength(design: PlanarDesign) -> Iterator[Finding]:
         _, rated = rated_force(layout, kind, kind_figures(layout, kind.name).stress)
         if rated < design.rating.force * (1.0 - 1e-9):
             message = (
-                f"{kind.name} cells are rated at {rated:.3g} N with a shear of {design.rating.shear:g} of it, not at the "
-                f"{design.rating.force:g} N asked for: there a beam's root would have less than its safety of "
+                f"{kind.name} cells are rated at {rated:.3g} N with a shear of {design.rating.shear:g} of "
+                f"it, not at the "
+                f"{design.rating.force:g} N asked for: there a beam's root would have less than its "
+                f"safety of "
                 f"{design.rating.yield_factor:g} against yield"
             )
             yield Finding("planar-rated-force", "flag", first, (), rated, design.rating.force, message)
         if row.linear_force < rated:
             message = (
-                f"{kind.name} cells stiffen by {100 * design.rating.linearity:g} % at {row.linear_force:.3g} N, below their rated "
+                f"{kind.name} cells stiffen by {100 * design.rating.linearity:g} % at "
+                f"{row.linear_force:.3g} N, below their rated "
                 f"force of {rated:.3g} N: readings beyond it are to be corrected"
             )
             yield Finding("planar-linear", "flag", first, (), row.linear_force, rated, message)

@@ -1,8 +1,9 @@
 """The field of a disc magnet, axially magnetised, and what a three-axis Hall chip below it feels.
 
-Two discs of magnetic charge, +- Br/mu0 each, integrated by Gauss' rule over the radius and the trapezoid rule over
-the angle: within 1e-6 of the largest field from half a radius off the magnet on (tests compare with magpylib).
-Own code, since estimates load numpy alone. z points away from the chip; fields in mT, lengths in mm.
+Two discs of magnetic charge, +- Br/mu0 each, integrated by Gauss' rule over the radius and the trapezoid
+rule over the angle: within 1e-6 of the largest field from half a radius off the magnet on (tests compare
+with magpylib). Own code, since estimates load numpy alone. z points away from the chip; fields in mT,
+lengths in mm.
 """
 
 from __future__ import annotations
@@ -43,7 +44,8 @@ def field(magnet: Magnet, at: NDArray) -> NDArray:
 
 
 def on_axis(magnet: Magnet, z: float) -> float:
-    """Closed form on the axis, z below the lower face, mT: Br/2 ((z + m)/sqrt((z + m)^2 + R^2) - z/sqrt(z^2 + R^2))."""
+    """Closed form on the axis, z below the lower face, mT: Br/2 ((z + m)/sqrt((z + m)^2 + R^2) - z/sqrt(z^2
+    + R^2))."""
     far, R = z + magnet.height, magnet.radius
     return 500.0 * magnet.remanence * (far / np.hypot(far, R) - z / np.hypot(z, R))
 
@@ -51,8 +53,9 @@ def on_axis(magnet: Magnet, z: float) -> float:
 def felt(magnet: Magnet, gap: float, lever: float, motion: NDArray) -> NDArray:
     """Field at a chip `gap` below a magnet at rest, for island motions (..., 6): mm and rad.
 
-    The magnet's lower face is `lever` below the island's middle. A turn moves it and tips it; to first order of the
-    turn, the field is that of the upright magnet at the chip's place as the magnet sees it, turned back.
+    The magnet's lower face is `lever` below the island's middle. A turn moves it and tips it; to first
+    order of the turn, the field is that of the upright magnet at the chip's place as the magnet sees it,
+    turned back.
     """
     d, a = motion[..., :3], motion[..., 3:]
     arm = np.array([0.0, 0.0, -lever])
@@ -64,8 +67,8 @@ def felt(magnet: Magnet, gap: float, lever: float, motion: NDArray) -> NDArray:
 
 
 def sensitivity(magnet: Magnet, gap: float, lever: float) -> tuple[Array, Array]:
-    """Field at rest (mT) and its derivatives by the island's six freedoms, (3, 6): mT/mm and mT/rad, by complex
-    steps."""
+    """Field at rest (mT) and its derivatives by the island's six freedoms, (3, 6): mT/mm and mT/rad, by
+    complex steps."""
     at_rest = felt(magnet, gap, lever, np.zeros(6))
     slope = felt(magnet, gap, lever, 1j * STEP * np.eye(6)).imag / STEP
     return at_rest, slope.T

@@ -1,4 +1,5 @@
-"""The parts of a planar array: foil, foot plates and posts, magnets, spacers, base, cover, board with its chips.
+"""The parts of a planar array: foil, foot plates and posts, magnets, spacers, base, cover, board with its
+chips.
 
    pad  __        __
  ______|  |______|  |______   cover, the screws' threads
@@ -34,7 +35,7 @@ from tactcad.parts.language.limits import FACES, Characteristic, within
 from tactcad.parts.language.metric import METRIC, tapped_through
 from tactcad.parts.language.plate import BREAK_EDGES
 
-from .layout import Kind, PlanarLayout
+from .cell_layout import Kind, PlanarLayout
 
 SCREW, DOWEL = "M2", "2"
 LARGEST_STEP = 20.0  # mm between screws along an edge; chosen: what keeps 1 mm of base flat under them
@@ -62,7 +63,8 @@ def screw_places(layout: PlanarLayout) -> tuple[tuple[float, float], ...]:
 
 
 def dowel_places(layout: PlanarLayout) -> tuple[tuple[float, float], ...]:
-    """Two, midway between a corner's screw and the next one along x, at opposite corners; none of bonded layers."""
+    """Two, midway between a corner's screw and the next one along x, at opposite corners; none of bonded
+    layers."""
     if not layout.screwed:
         return ()
     x, y = (h - border / 2.0 for h, border in zip(layout.half, layout.borders))
@@ -163,7 +165,8 @@ def foot(layout: PlanarLayout, kind: Kind) -> Part:
 
 
 def post(layout: PlanarLayout) -> Part:
-    """A turned post: spigot through foot plate and foil, shoulder on the foot plate, pad on top; z = 0 its shoulder."""
+    """A turned post: spigot through foot plate and foil, shoulder on the foot plate, pad on top; z = 0 its
+    shoulder."""
     d = layout.design
     shoulder = layout.design.planar.thickness + d.post.foot
     up, down = round(layout.pad_z - shoulder, 9), round(-shoulder + SLIDING, 9)
@@ -268,8 +271,8 @@ def base_plate(layout: PlanarLayout) -> float:
 
 
 def base(layout: PlanarLayout) -> Part:
-    """The islands' stop, with a well around every magnet, sunk under the kind of cell with the longer way; z = 0 its lower
-    face."""
+    """The islands' stop, with a well around every magnet, sunk under the kind of cell with the longer way;
+    z = 0 its lower face."""
     t = base_plate(layout)
     wells: list[Feature] = []
     for e in layout.elements:
@@ -343,6 +346,7 @@ def chip(layout: PlanarLayout) -> Part:
 def about(layout: PlanarLayout) -> str:
     p = layout.design.planar
     return (
-        f"{p.rows} x {p.columns} cells in a plane, pitch {p.pitch:g} mm, in one foil of {p.thickness:g} mm: each an island on "
+        f"{p.rows} x {p.columns} cells in a plane, pitch {p.pitch:g} mm, in one foil of {p.thickness:g} "
+        f"mm: each an island on "
         "four beams, of two stiffnesses in turn, with a magnet over a three-axis Hall chip."
     )

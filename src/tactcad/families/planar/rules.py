@@ -10,7 +10,7 @@ from tactcad.parts.language.metric import METRIC
 from tactcad.parts.rules.rule import Rule, at_least, at_most, rule, wrong
 
 from . import beam
-from .layout import Kind, PlanarLayout
+from .cell_layout import Kind, PlanarLayout
 from .parts import CHIP_ROOM, FOOT_INSET, SCREW, WEB, dowel_length, screw_length, stack_height
 from .sensor import closing_force, kind_figures, neighbours_field, rated_force, stop_stress
 
@@ -178,7 +178,8 @@ def screws_fit(layout: PlanarLayout) -> Iterator[Finding]:
     if screw_length(layout) is None:
         yield wrong(
             "housing.cover_thickness",
-            f"no {SCREW} screw engages one diameter and ends in the cover, {stack_height(layout):.3g} mm from "
+            f"no {SCREW} screw engages one diameter and ends in the cover, {stack_height(layout):.3g} mm "
+            f"from "
             "under its head",
             h.cover_thickness,
             "another cover, board, gap of the chips, foot plate or lift",

@@ -1,4 +1,5 @@
-"""What every cell does: stiffness, forces at yield and at its stop, what its chip feels, how small a force it tells."""
+"""What every cell does: stiffness, forces at yield and at its stop, what its chip feels, how small a force
+it tells."""
 
 from __future__ import annotations
 
@@ -14,9 +15,9 @@ from tactcad.design.messages import InputError
 
 from . import beam
 from .cell import wrench
+from .cell_layout import Kind, PlanarLayout
+from .cell_tables import PlanarDesign
 from .field import felt, field, sensitivity
-from .layout import Kind, PlanarLayout
-from .tables import PlanarDesign
 
 Array = NDArray[np.float64]
 NEIGHBOURS = 3  # pitches away at which a neighbour's field still counts: beyond, under 1 % of the nearest's
@@ -28,8 +29,8 @@ class CellEstimate:
 
     stiffness, shear_stiffness  at the pad, along z and across
     expected_error              of the stiffness, against solid elements, relative
-    rated_force                 the lesser of the force asked for and yield over its factor, with the rated shear
-    stop_force                  at which the island meets the base
+    rated_force                 the lesser of the force asked for and yield over its factor, with the rated
+    shear stop_force                  at which the island meets the base
     linear_force                up to which K stays within rating.linearity
     field                       at the chip, cell at rest
     force_noise                 of fx, fy and fz, from one reading's noise
@@ -60,8 +61,8 @@ class CellEstimate:
 
 @dataclass(frozen=True)
 class KindFigures:
-    """Of a kind of cell: compliance of the pad (3 x 3, mm/N), matrix of the chip (mT/N), stress of 1 N down with the
-    rated shear (MPa)."""
+    """Of a kind of cell: compliance of the pad (3 x 3, mm/N), matrix of the chip (mT/N), stress of 1 N down
+    with the rated shear (MPa)."""
 
     pad: Array
     matrix: Array
@@ -216,8 +217,8 @@ def run(args: argparse.Namespace, asked: Allowance, design: PlanarDesign) -> int
         print(json.dumps(document, indent=2))
         return 0
     print(
-        f"{design.name} {design.design.revision}, {design.material.alloy}, {len(found)} cells, {found[0].force:g} N on each pad, "
-        f"{stated_size(size)} overall"
+        f"{design.name} {design.design.revision}, {design.material.alloy}, {len(found)} cells, "
+        f"{found[0].force:g} N on each pad, {stated_size(size)} overall"
     )
     shown = list({row.kind: row for row in found}.values())
     cells = [
@@ -273,8 +274,9 @@ def strength(layout: PlanarLayout) -> bytes:
 
 
 def stop_stress(layout: PlanarLayout, kind: Kind, gap: float) -> float:
-    """Stress of a cell that is pressed down on its stop, `gap` mm deep, with the rated shear of the force that closes it,
-    MPa: of bending, of the beams' stretch by 3 z^2/(5 s^2) where the island cannot turn, and of tipping."""
+    """Stress of a cell that is pressed down on its stop, `gap` mm deep, with the rated shear of the force
+    that closes it, MPa: of bending, of the beams' stretch by 3 z^2/(5 s^2) where the island cannot turn,
+    and of tipping."""
     cell = kind.cell
     down = wrench(np.array([0.0, 0.0, -1.0]), layout.pad_height) / cell.compliance[2, 2]
     tip = wrench(np.array([layout.design.rating.shear, 0.0, 0.0]), layout.pad_height)

@@ -364,10 +364,11 @@ def section(part: Part) -> tuple[Contour, tuple[Contour, ...]]:
 def cut_section(part: Part) -> Extrusion | None:
     """The section that a part's cut file describes, extruded; None where the part has no cut file.
 
-    Wire-cut and etched parts are cut with all their holes. A part that is milled or ground from plate has a cut file of
-    its blank: the outline, and the holes that may be cut to their final size or to the tap drill's. Holes
-    with a fit are reamed afterwards; counterbores, threads and holes from the edges are left to the drawing.
-    A part that has a pocket, or is thicker than it is wide, is milled from a block and has no cut file.
+    Wire-cut and etched parts are cut with all their holes. A part that is milled or ground from plate has a
+    cut file of its blank: the outline, and the holes that may be cut to their final size or to the tap
+    drill's. Holes with a fit are reamed afterwards; counterbores, threads and holes from the edges are left
+    to the drawing. A part that has a pocket, or is thicker than it is wide, is milled from a block and has
+    no cut file.
     """
     if part.by_contour:
         outer, openings = section(part)

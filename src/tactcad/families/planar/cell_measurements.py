@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from tactcad.parts.array.measurements import MICROSCOPE, Measurement
 
-from .layout import CellPlace, PlanarLayout
+from .cell_layout import CellPlace, PlanarLayout
 
 
 def measured(layout: PlanarLayout) -> list[tuple[CellPlace, str, tuple[Measurement, ...]]]:

@@ -1,7 +1,7 @@
 """Kinds of cells and where every cell and layer stands.
 
-Frame: x along a row's cells, y along a column's, both from the array's middle; z = 0 is the foil's lower face, +
-towards the object. Lengths in mm.
+Frame: x along a row's cells, y along a column's, both from the array's middle; z = 0 is the foil's lower
+face, + towards the object. Lengths in mm.
 """
 
 from __future__ import annotations
@@ -12,10 +12,10 @@ from math import ceil
 
 from tactcad.contour import Contour, Corner, rectangle, rounded_polygon
 
-from .beam import Beam
+from .beam import FoilBeam
 from .cell import Cell, roots
+from .cell_tables import CHIPS, PROCESSES, CellKind, Chip, FoilProcess, PlanarDesign
 from .field import Magnet
-from .tables import CHIPS, PROCESSES, CellKind, Chip, FoilProcess, PlanarDesign
 
 
 @dataclass(frozen=True)
@@ -61,9 +61,9 @@ class Kind:
         return self.beam_offset + t.beam_width / 2.0 + self.rim if self.pinwheel else t.island / 2.0
 
     @cached_property
-    def beam(self) -> Beam:
+    def beam(self) -> FoilBeam:
         t = self.table
-        return Beam(
+        return FoilBeam(
             self.beam_length, t.beam_width, self.thickness, t.fillet, self.youngs_modulus, self.poisson
         )
 
@@ -207,10 +207,11 @@ class PlanarLayout:
     def half(self) -> tuple[float, float]:
         """Half length and half width of foil, spacers, base, cover and board, mm."""
         p = self.design.planar
-        return tuple(
+        x, y = (
             round(n * p.pitch / 2.0 - p.web / 2.0 + border, 9)
             for n, border in zip((p.columns, p.rows), self.borders)
         )
+        return x, y
 
     @property
     def borders(self) -> tuple[float, float]:
@@ -225,7 +226,8 @@ class PlanarLayout:
     @property
     def field_half(self) -> tuple[float, float]:
         """Half sides of the room of all cells, mm."""
-        return tuple(round(h - border, 9) for h, border in zip(self.half, self.borders))
+        x, y = (round(h - border, 9) for h, border in zip(self.half, self.borders))
+        return x, y
 
     @property
     def chip(self) -> Chip:

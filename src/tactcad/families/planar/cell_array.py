@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from math import inf
 
 import numpy as np
 
+from tactcad.parts.array.stiffness_table import Deflection
 from tactcad.parts.bought.standard_parts import dowel
 from tactcad.parts.bought.supply import MECHANICAL, Supply
 from tactcad.scenes.builder import Builder
@@ -16,8 +17,8 @@ from tactcad.scenes.rig import ARRAY, Rig, none
 from tactcad.scenes.scene import Scene
 
 from . import parts
-from .layout import PlanarLayout
-from .tables import PlanarDesign
+from .cell_layout import PlanarLayout
+from .cell_tables import PlanarDesign
 
 ADHESIVE = Supply(
     "ADHESIVE-epoxy",
@@ -43,7 +44,7 @@ def scene(design: PlanarDesign, _pose: object = None) -> Scene:
         b.meet(pin, base, "press")
     first = "Press the two dowels into the base, flush with its lower face."
     if not layout.screwed:
-        first = "Lay the base into the bonding jig. Every further layer is bonded on the one below, flush at its edges."
+        first = "Lay the base into the bonding jig. Bond every layer on the one below, flush at its edges."
     b.step("Base", (0, 0, -15), first)
     lower = b.place("SP", parts.lower_spacer(layout), (0, 0, layout.base_z))
     b.meet(lower, base)
@@ -66,8 +67,10 @@ def scene(design: PlanarDesign, _pose: object = None) -> Scene:
     b.step(
         "Foil with posts and magnets",
         (0, 0, 8),
-        "On the bonding jig: lay the foil down, bond a foot plate and a post on every island (one drop of adhesive each, "
-        "cured under the jig's weight), turn it over, bond the magnets, north poles up, marked before. Then lay the foil over "
+        "On the bonding jig: lay the foil down, bond a foot plate and a post on every island (one drop "
+        "of adhesive each, "
+        "cured under the jig's weight), turn it over, bond the magnets, north poles up, marked before. "
+        "Then lay the foil over "
         "the dowels.",
         elements=True,
     )
@@ -94,7 +97,8 @@ def scene(design: PlanarDesign, _pose: object = None) -> Scene:
         b.step(
             "Screws",
             (0, 0, -45),
-            "Tighten the screws crosswise, in three rounds: they clamp board, base, spacers and foil against the cover.",
+            "Tighten the screws crosswise, in three rounds: they clamp board, base, spacers and foil "
+            "against the cover.",
         )
     else:
         b.supplies.append(ADHESIVE)
@@ -110,7 +114,8 @@ class Stacked:
 
 
 def figures(arrays: Stacked) -> dict[str, np.ndarray]:
-    """Stiffness of every cell as built, N/mm: K goes with t^3, the foil's thickness being one cause for all."""
+    """Stiffness of every cell as built, N/mm: K goes with t^3, the foil's thickness being one cause for
+    all."""
     from .sensor import rows
 
     at = np.array([row.stiffness for row in rows(arrays.layout, "", None)])
@@ -186,6 +191,11 @@ def limits(
     ]
 
 
+def nothing_bends(_layout: PlanarLayout) -> Iterator[Deflection]:
+    """No part of the array is taken as rigid but the islands, which foot plates make so."""
+    yield from ()
+
+
 RIG = Rig(
     name=ARRAY,
     tables=(),
@@ -193,7 +203,7 @@ RIG = Rig(
     poses=none,
     under_sensor=none,
     rules=(),
-    deflections=none,
+    deflections=nothing_bends,
     requirements=lambda *_: [],
     checks=(),
 )
