@@ -102,12 +102,31 @@ def signals(**changes) -> list[Finding]:
     return list(check_signals(variant({path.replace("__", "."): v for path, v in changes.items()})))
 
 
+def gauges(**changes) -> list[Finding]:
+    from tactcad.checks.facing_rows.gauge_limits import check_gauges
+
+    return list(check_gauges(variant({path.replace("__", "."): v for path, v in changes.items()})))
+
+
+def overstrained() -> list[Finding]:
+    from dataclasses import replace
+
+    from tactcad.design.sensing import FOILS
+
+    kept = dict(FOILS)
+    FOILS["constantan on polyimide"] = replace(kept["constantan on polyimide"], strain=0.003)
+    try:
+        return gauges()
+    finally:
+        FOILS.update(kept)
+
+
 def cut_off() -> list[Finding]:
     from test_circuit_checks import moved
 
     from tactcad.checks.facing_rows.circuit import check_inputs
 
-    return list(check_inputs(moved("U12", "enable", "ENABLE1")))
+    return list(check_inputs(moved("A1-U2", "enable", "ENABLE1")))
 
 
 def missoldered() -> list[Finding]:
@@ -401,8 +420,11 @@ BAD: dict[str, Bad] = {
     "strain-relief": Bad("circuit", "leads not bonded", lambda: circuit(wiring__bonded=0.0), CIRCUIT),
     "signal-range": Bad("signals", "a converter of 0.9 V", lambda: signals(readout__adc_range=0.9), CIRCUIT),
     "force-resolution": Bad(
-        "signals", "3 mN wished for", lambda: signals(readout__force_resolution=3.0), CIRCUIT
+        "signals", "2 mN wished for", lambda: signals(readout__force_resolution=2.0), CIRCUIT
     ),
+    "gauge-fatigue": Bad("gauge limits", "the shipped array", gauges, CIRCUIT),
+    "gauge-strain": Bad("gauge limits", "a foil that bears 3000 e-6", overstrained, CIRCUIT),
+    "unread-figures": Bad("gauge limits", "parts from memory", gauges, CIRCUIT),
     "deflection": Bad("rigidity", "a holder's lid of 2 mm", rigidity, "tests/checks/test_rigidity.py"),
     "calibration": Bad(
         "calibration travel", "0.2 mm of travel", calibration, "tests/rigs/test_rig_scenes.py"

@@ -9,6 +9,7 @@ import gc
 import os
 
 import pytest
+from built import shapes_of
 from variants import variant
 
 
@@ -56,6 +57,5 @@ def macro_scene(macro):
 @pytest.fixture(scope="session")
 def macro_shapes(macro_scene):
     """Part number -> the kernel's shape in the part's own frame."""
-    from tactcad.solids.build import build
 
-    return {part.part_no: build(part).wrapped for part in macro_scene.parts}
+    return shapes_of(macro_scene)

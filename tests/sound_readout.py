@@ -9,13 +9,13 @@ from math import pi
 from sound_designs import Draw
 
 # As design/data has them: supplies (V), V inside the negative and the positive one, gains, uV of offset,
-# Hz at a gain of 100.
+# Hz at a gain of 100. Offsets at the least gain.
 AMPLIFIERS = {
-    "AD621": (4.6, 36, 1.9, 1.2, (10.0, 100.0), 125, 2e5),
-    "AD620": (4.6, 36, 1.9, 1.2, (1.0, 1000.0), 125, 1.2e5),
-    "AD8221": (4.6, 36, 1.9, 1.1, (1.0, 1000.0), 60, 1e5),
-    "AD623": (2.7, 12, -0.15, 1.5, (1.0, 1000.0), 200, 1e4),
-    "INA128": (4.5, 36, 2.0, 2.0, (1.0, 10000.0), 125, 2e5),
+    "AD621": (4.6, 36, 1.9, 1.2, (10.0, 100.0), 250, 2e5),
+    "AD620": (4.6, 36, 1.9, 1.2, (1.0, 1000.0), 1625, 1.2e5),
+    "AD8221": (4.6, 36, 1.9, 1.1, (1.0, 1000.0), 360, 1e5),
+    "AD623": (2.7, 12, -0.15, 1.5, (1.0, 1000.0), 1200, 1e4),
+    "INA128": (4.5, 36, 2.0, 2.0, (1.0, 10000.0), 1125, 2e5),
 }
 LEAST_CONDUCTIVITY = 6.7  # W/(m K) of the table's alloys: titanium's
 COPPER = 0.0022  # ohm/mm of the thinnest wire
@@ -68,10 +68,13 @@ def draw_readout(d: Draw) -> None:
     fitting = [g for g in gains if g <= largest] or [gains[0]]
     d.put("readout.gain", d.choice(*fitting) if exact else d.between(gains[0], max(largest, gains[0])))
     d.put("readout.switch", d.choice("IRLML6244", "AO3400A"))
-    d.put("readout.multiplexer", d.choice("ADG1407", "ADG1409", "ADG407"))
+    d.put("readout.multiplexer", d.choice("ADG1407", "ADG1409"))
     for path in ("readout.noise", "readout.temperature_span", "readout.force_resolution"):
         if d.once_in(2):
             d.number(path)
+    for path in ("adc_noise", "excitation_drift", "hum", "jitter"):
+        if d.once_in(2):
+            d.number(f"readout.{path}")
     d.number("readout.reference_mismatch")
 
 
@@ -94,6 +97,16 @@ def _times(d: Draw) -> None:
     on = d.number("readout.on_time", 2 * slowest, 50.0)
     d.number("readout.sample_rate", 2 * samples / on)
     d.number("readout.period", on)
+    most = d.table["readout.sample_rate"] / samples / 1.01
+    if d.once_in(2) and 2.3 / on < min(most, 1000.0) and most > 10.0:
+        d.number("readout.mains", 2.3 / on, most)
+    spread = (
+        1 / d.table["readout.mains"]
+        if "readout.mains" in d.table
+        else samples / d.table["readout.sample_rate"]
+    )
+    if d.once_in(2) and slowest < on - spread:
+        d.number("readout.instant", slowest, on - spread)
 
 
 def _power(d: Draw) -> float:

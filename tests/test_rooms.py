@@ -7,6 +7,7 @@ import re
 import subprocess
 import sys
 from collections import Counter
+from functools import cache
 from pathlib import Path
 
 SOURCE = Path(__file__).parents[1] / "src"
@@ -96,6 +97,7 @@ class _WithoutAnnotationImports(ast.NodeTransformer):
         return node.orelse if ast.unparse(node.test) == "TYPE_CHECKING" else node
 
 
+@cache
 def imports_of(path: Path, annotations: bool = True) -> set[str]:
     tree = ast.parse(path.read_text())
     tree = tree if annotations else _WithoutAnnotationImports().visit(tree)

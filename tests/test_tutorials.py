@@ -15,7 +15,6 @@ pytestmark = pytest.mark.slow  # runs the tutorials
 ROOT = Path(__file__).parents[1]
 DOCS = ROOT / "docs"
 BLOCK = re.compile(r"^```(sh|text)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
-SLOW = re.compile(r"tactcad (export|check|release)")  # they build solids: a minute each
 
 
 def steps(page: str) -> list[tuple[str, list[str]]]:
@@ -53,38 +52,19 @@ def empty(tmp_path) -> Path:
     return tmp_path / "empty"
 
 
-def test_a_lab_s_readings(empty):
-    for commands, shown in steps("tutorial-readings.md"):
-        follow(commands, shown, empty)
-
-
-def test_a_sensor_of_your_own_up_to_the_solids(empty):
-    for commands, shown in steps("tutorial-sensor.md"):
-        if not SLOW.search(commands):
-            follow(commands, shown, empty)
-
-
-def test_a_sensor_from_a_target_up_to_the_solids(empty):
-    for commands, shown in steps("tutorial-target.md"):
-        if not SLOW.search(commands):
-            follow(commands, shown, empty)
-
-
-@pytest.mark.nightly
 @pytest.mark.cad
-def test_a_sensor_from_a_target_to_the_zip(empty):
-    for commands, shown in steps("tutorial-target.md"):
+@pytest.mark.parametrize(
+    "page, last",
+    [
+        ("tutorial-readings.md", "elements.csv"),
+        ("tutorial-sensor.md", "exports/releases/my-sensor-A.zip"),
+        ("tutorial-target.md", "to-the-shop/tissue-A.zip"),
+    ],
+)
+def test_a_tutorial_runs_whole_and_prints_what_it_shows(page, last, empty):
+    for commands, shown in steps(page):
         follow(commands, shown, empty)
-    assert (empty / "to-the-shop" / "tissue-A.zip").is_file()
-
-
-@pytest.mark.nightly
-@pytest.mark.cad
-def test_a_sensor_of_your_own_to_the_zip(empty):
-    for commands, shown in steps("tutorial-sensor.md"):
-        follow(commands, shown, empty)
-    assert (empty / "exports" / "my-sensor" / "pictures" / "my-sensor-array-open.svg").is_file()
-    assert (empty / "exports" / "releases" / "my-sensor-A.zip").is_file()
+    assert (empty / last).is_file()
 
 
 @pytest.mark.parametrize("page", ["tutorial-sensor.md", "tutorial-readings.md", "tutorial-target.md"])

@@ -9,6 +9,7 @@ from bad_parts import BAD
 from variants import variant
 
 from tactcad.checks.facing_rows.circuit import check_bridges, check_circuit, check_inputs, check_signals
+from tactcad.checks.facing_rows.gauge_limits import check_gauges, parts_used
 from tactcad.circuit.bridges import netlist
 from tactcad.circuit.netlist import Netlist
 from tactcad.design.load import names, read
@@ -44,11 +45,11 @@ def test_each_check_finds_its_bad_design(name):
     ("designator", "role", "net", "gauges"),
     [
         ("W31", "2", "E2_RED", {"B2", "B3"}),  # two gauges hang on one arm
-        ("R31", "1", "GND", {"B3"}),  # an arm that the supply does not feed
-        ("R33", "2", "E4_FOOT", {"B3", "B4"}),  # an arm in the next bridge
-        ("Q7", "drain", "E8_FOOT", {"B7", "B8"}),  # a bridge that nothing switches, one switched twice
-        ("U12", "S2A", "E1_PLUS", {"B2"}),  # a bridge that no channel reads
-        ("U12", "S2B", "E3_MINUS", {"B2"}),  # a channel across two bridges
+        ("A1-R31", "2", "GND", {"B3"}),  # an arm that the supply does not feed
+        ("A1-R33", "1", "E4_FOOT", {"B3", "B4"}),  # an arm in the next bridge
+        ("A2-Q2", "drain", "E8_FOOT", {"B7", "B8"}),  # a bridge that nothing switches, one switched twice
+        ("A1-U2", "S2A", "E1_PLUS", {"B2"}),  # a bridge that no channel reads
+        ("A1-U2", "S2B", "E3_MINUS", {"B2"}),  # a channel across two bridges
     ],
 )
 def test_a_gauge_must_be_in_one_bridge_that_is_read(designator, role, net, gauges):
@@ -57,7 +58,7 @@ def test_a_gauge_must_be_in_one_bridge_that_is_read(designator, role, net, gauge
 
 @pytest.mark.parametrize(
     ("designator", "role", "net", "when"),
-    [("U22", "enable", "ENABLE2", "ENABLE2 is low"), ("U12", "S7A", "SPARE", "S7A is addressed")],
+    [("A2-U2", "enable", "ENABLE2", "ENABLE2 is low"), ("A1-U2", "S7A", "SPARE", "S7A is addressed")],
 )
 def test_an_amplifier_whose_inputs_float_is_found(designator, role, net, when):
     assert list(check_inputs(SHIPPED)) == []
@@ -68,13 +69,42 @@ def test_an_amplifier_whose_inputs_float_is_found(designator, role, net, when):
 def test_the_resolution_by_hand():
     """Two standard deviations of ten averaged samples; drift of gauge, three arms, amplifier and leads, V."""
     d = read("macro-array")
-    noise = (0.000513149**2 + (10 / 65536) ** 2 / 12) ** 0.5 / 10**0.5
-    drifts = (67.5 * 2.1 * 1e-6, 67.5 * 3**0.5 * 1e-6, 100 * 1e-6, 67.5 * 1.1e-5)
+    noise = (0.000513149**2 + (140e-6) ** 2 + (10 / 65536) ** 2 / 12) ** 0.5 / 10**0.5
+    leads = 0.205 * 1.361 / 120 * 0.0039 * 0.5  # the longest is cut to 205 mm
+    supply = 0.001 * 0.235028  # of the largest imbalance: 0.3 % of the gauge, three arms of 0.01 %, 125 uV
+    drifts = (67.5 * 2.1 * 1e-6, 67.5 * 3**0.5 * 1e-6, 100 * 1e-6, supply, 67.5 * leads)
     volts = (4 * noise**2 + sum(v**2 for v in drifts)) ** 0.5
     from tactcad.circuit.element_signals import element_signals
 
     for signal in element_signals(Layout(d)):
         assert signal.resolution * signal.per_force == pytest.approx(volts, rel=1e-5)
+
+
+def test_no_unread_figure_decides_a_check_without_a_word(monkeypatch):
+    """Every part that checks ask for figures is named while one of them is unread, and no other."""
+    from tactcad.design import sensing
+
+    design = read("macro-array")
+    tables = {k: v for k, v in vars(sensing).items() if isinstance(v, dict) and k.isupper()}
+    bought = {k: v for k, v in tables.items() if all(isinstance(p, sensing.Bought) for p in v.values())}
+    del bought["CONVERTERS"]  # no check asks them: settings and figures beside the other read-out
+    assert set(bought) == {"AMPLIFIERS", "SWITCHES", "MULTIPLEXERS", "COMPLETIONS", "FOILS"}
+    (told,) = (f for f in check_gauges(design) if f.check == "unread-figures")
+    chosen = [p for p in parts_used(design).values()]
+    assert len(chosen) == len(bought) and all(p.name in told.message for p in chosen)
+    for table in bought.values():  # as if each had been read
+        for name, part in table.items():
+            monkeypatch.setitem(table, name, replace(part, verified=True))
+    assert not [f for f in check_gauges(design) if f.check == "unread-figures" or "unread" in f.message]
+
+
+def test_the_gauges_own_limits_are_flagged():
+    """By hand: 2419 e-6 at 2 N on the 4 mm arm, above the 1500 e-6 at which makers try their gauges."""
+    found = {f.check: f for f in check_gauges(read("macro-array"))}
+    assert set(found) == {"gauge-fatigue", "unread-figures"}
+    assert found["gauge-fatigue"].value > 2419e-6 > found["gauge-fatigue"].limit == 0.0015
+    assert "10 of 10" in found["gauge-fatigue"].message and "unread" in found["gauge-fatigue"].message
+    assert "gauge-strain" in {f.check for f in BAD["gauge-strain"].find()}
 
 
 def test_two_wires_drift_more():

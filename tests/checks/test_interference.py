@@ -8,13 +8,13 @@ from math import pi
 
 import numpy as np
 import pytest
+from built import shape_of, shapes_of
 
 from tactcad.checks.on_solids.interference import TOUCH_MM, check_interference, near_pairs, relative
 from tactcad.contour import circle, rectangle
 from tactcad.parts.language.description import Extrusion, Hole, Material, Part
 from tactcad.parts.language.finding import Finding
 from tactcad.scenes.scene import UPRIGHT, Contact, Placement, Scene
-from tactcad.solids.build import build
 
 pytestmark = pytest.mark.cad
 
@@ -40,7 +40,7 @@ PIN = pin("PIN", 4.0, 20.0)
 
 def found(placements, contacts=()) -> list[Finding]:
     scene = Scene("test", tuple(placements), tuple(contacts))
-    return check_interference(scene, {part.part_no: build(part).wrapped for part in scene.parts})
+    return check_interference(scene, shapes_of(scene))
 
 
 def checks(placements, contacts=()) -> list[tuple[str, str]]:
@@ -142,7 +142,7 @@ def test_a_thread_explains_its_own_ring_and_no_more(name):
 
 def test_where_and_how_much_stands_in_the_finding():
     scene = Scene("test", (Placement("A", CUBE), Placement("B", CUBE, (9.0, 4.0, 0.0))))
-    (finding,) = check_interference(scene, {"CUBE": build(CUBE).wrapped})
+    (finding,) = check_interference(scene, {"CUBE": shape_of(CUBE)})
     assert finding.value == pytest.approx(1 * 6 * 10)
     assert finding.place == pytest.approx((9.5, 7.0, 5.0))
     assert "A (CUBE)" in finding.message and "B (CUBE)" in finding.message and finding.severity == "fail"

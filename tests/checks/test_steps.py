@@ -7,6 +7,7 @@ import json
 from dataclasses import replace
 
 import pytest
+from built import shapes_of
 from test_tools import block
 
 from tactcad.checks.on_solids.steps import check_steps
@@ -17,7 +18,6 @@ from tactcad.parts.language.description import Hole
 from tactcad.scenes import make_scene, scene_names
 from tactcad.scenes.moves import guide_json, settles, step_moves
 from tactcad.scenes.scene import DOWN, STILL, Contact, Move, Need, Placement, Scene, Step
-from tactcad.solids.build import build
 
 pytestmark = pytest.mark.cad
 
@@ -48,7 +48,7 @@ def step(*names: str, **more) -> Step:
 
 
 def found(scene: Scene) -> list:
-    return check_steps(scene, {part.part_no: build(part).wrapped for part in scene.parts})
+    return check_steps(scene, shapes_of(scene))
 
 
 IN_T1 = (Contact("SC1", "T1", "thread"),)

@@ -6,6 +6,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import pytest
+from built import shapes_of
 from variants import variant
 
 from tactcad.checks.on_solids.tools import check_tools
@@ -15,7 +16,6 @@ from tactcad.parts.designs import load
 from tactcad.parts.language.description import Extrusion, Hole, Material, Part
 from tactcad.scenes import make_scene, scene_names
 from tactcad.scenes.scene import DOWN, Move, Placement, Scene, Step
-from tactcad.solids.build import build
 
 pytestmark = pytest.mark.cad
 
@@ -51,7 +51,7 @@ def scene(
 
 
 def found(scene: Scene):
-    return check_tools(scene, {part.part_no: build(part).wrapped for part in scene.parts})
+    return check_tools(scene, shapes_of(scene))
 
 
 def test_what_stands_within_a_keys_reach_is_in_its_way():

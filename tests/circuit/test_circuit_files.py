@@ -17,6 +17,7 @@ from variants import variant
 
 from tactcad.circuit.bridges import netlist
 from tactcad.circuit.netlist_files import wiring
+from tactcad.circuit.read_board import board_netlist
 from tactcad.design.load import names, read
 from tactcad.design.messages import CheckFailure
 from tactcad.export import circuit_files
@@ -51,15 +52,16 @@ def part(node: list, name: str) -> list:
 @pytest.mark.parametrize("name", names())
 def test_kicads_netlist_read_by_another_reader(name):
     design = read(name)
-    whole = expression(circuit_files.kicad_file(design, netlist(Layout(design))).decode())
+    used, channels = max(map(len, design.array.row_arms)), 8
+    whole = expression(circuit_files.kicad_file(design, board_netlist(design, used, 3)).decode())
     assert whole[0] == "export" and part(whole, "version") == ["version", "E"]
     components = part(whole, "components")[1:]
     refs = [part(c, "ref")[1] for c in components]
     assert len(set(refs)) == len(refs)
-    n = sum(map(len, design.array.row_arms))
     kinds = Counter(ref.rstrip("0123456789") for ref in refs)
-    assert (kinds["B"], kinds["Q"], kinds["X"], kinds["W"]) == (n, n, n, 3 * n)
-    assert kinds["R"] == 3 * n  # the AD621's gain needs no resistor
+    # four a channel; besides supply, two of the filter, two a digital line; the AD621's gain needs none
+    assert (kinds["Q"], kinds["U"], kinds["J"], kinds["R"]) == (channels, 4, 2, 4 * channels + 1 + 2 + 2 * 4)
+    assert all(part(c, "footprint")[1].startswith("tactcad:") for c in components)
     nets = {
         part(net, "name")[1]: [(part(x, "ref")[1], part(x, "pin")[1]) for x in net if x[0] == "node"]
         for net in part(whole, "nets")[1:]
@@ -73,18 +75,17 @@ def test_kicads_netlist_read_by_another_reader(name):
         numbers = {part(pin, "num")[1] for pin in pins}
         ref = part(component, "ref")[1]
         assert {pin for r, pin in nodes if r == ref} <= numbers
-    # the gauge of E1 by hand: both ends at its terminals and leads, and nothing else
-    ends = [sorted(pins) for pins in nets.values() if any(r == "B1" for r, _ in pins)]
-    assert sorted(ends) == [
-        [("B1", "1"), ("W11", "1"), ("W12", "1"), ("X1", "1")],
-        [("B1", "2"), ("W13", "1"), ("X1", "2")],
-    ]
+    # the first channel by hand
+    assert sorted(nets["/CH1_RED"]) == [("J2", "1"), ("R11", "1"), ("R14", "1")]
+    assert sorted(nets["/CH1_PLUS"]) == [("J2", "2"), ("R14", "2"), ("U2", "19")]
+    assert sorted(nets["/CH1_MINUS"]) == [("R12", "1"), ("R13", "2"), ("U2", "11")]
+    assert sorted(nets["/CH1_FOOT"]) == [("J2", "3"), ("Q1", "3"), ("R13", "1")]
 
 
 def test_every_board_has_the_header_that_is_bought():
-    """The first board reads three elements, the second eight: KiCad knows one part for both headers."""
+    """The first board reads three elements, the second eight: both have one header, all its pins used."""
     design = variant({"array.row_arms": [[4, 7, 6], [8, 5, 4, 5, 7, 8, 5, 4]]})
-    whole = expression(circuit_files.kicad_file(design, netlist(Layout(design))).decode())
+    whole = expression(circuit_files.kicad_file(design, board_netlist(design, 3, 3)).decode())
     (header,) = (x for x in part(whole, "libparts")[1:] if part(x, "part")[1] == "HEADER-LEADS")
     numbers = {part(pin, "num")[1] for pin in part(header, "pins")[1:]}
     named = {part(pin, "name")[1] for pin in part(header, "pins")[1:]}
@@ -92,12 +93,12 @@ def test_every_board_has_the_header_that_is_bought():
         part(x, "pin")[1]
         for net in part(whole, "nets")[1:]
         for x in net
-        if x[0] == "node" and part(x, "ref")[1] == "J22"
+        if x[0] == "node" and part(x, "ref")[1] == "J2"
     }
-    assert used == numbers == named == {str(i) for i in range(1, 25)}
+    assert used == numbers == named == {str(i) for i in range(1, 27)}
     (line,) = (s for s in make_scene(design, "array").supplies if s.part_no == "HEADER-LEADS")
     values = {c.value for c in netlist(Layout(design)).components if c.part_no == "HEADER-LEADS"}
-    assert values == {"24 pins"} and "24 pins" in line.designation
+    assert values == {"26 pins"} and "26 pins" in line.designation
 
 
 def test_table_and_kicads_file_say_the_same():
@@ -220,7 +221,7 @@ def test_the_bill_counts_the_netlist(changes):
     design = variant(changes)
     layout = Layout(design)
     circuit = netlist(layout)
-    counted = Counter(c.part_no for c in circuit.components if c.kind != "lead")
+    counted = Counter(c.part_no for c in circuit.components if c.kind != "lead" and c.fitted)
     bill = {s.part_no: s for s in make_scene(design, "array").supplies}
     boards = counted["HEADER-CARD"]
     counted |= {name: boards for name in ("CIRCUIT-BOARD", "STANDOFFS", "CABLE-CARD")}
@@ -259,7 +260,7 @@ def test_a_net_or_a_lead_that_is_missing_is_found():
     circuit = netlist(Layout(design))
     nets = circuit_files.nets_in_table(circuit_files.table_file(design, circuit))
     circuit_files.check_nets("table", nets, circuit)
-    for name in ("EXC", next(iter(sorted(nets)))):
+    for name in ("EXC1", next(iter(sorted(nets)))):
         with pytest.raises(CheckFailure, match=f"other nets: {name}"):
             circuit_files.check_nets("table", {k: v for k, v in nets.items() if k != name}, circuit)
     data = circuit_files.wiring_file(design, circuit)
@@ -296,18 +297,3 @@ def test_another_tolerance_than_the_named_resistors_is_ordered_by_its_figures():
     }
     line = bill["BRIDGE-RESISTOR"]
     assert "0.5 %" in line.designation and line.mpn == "" and not line.verified
-
-
-@pytest.mark.parametrize(("multiplexer", "pins"), [("ADG1407", 24), ("ADG1409", 12)])
-def test_a_board_takes_its_parts(multiplexer, pins):
-    """Twice the room of its parts, by hand, and its longest header with 5 mm at both ends."""
-    bill = {s.part_no: s for s in make_scene(variant({"readout.multiplexer": multiplexer}), "array").supplies}
-    length, width = map(
-        float, re.search(r"least (\d+) x (\d+) mm", bill["CIRCUIT-BOARD"].designation).groups()
-    )
-    channels = pins // 3
-    card = 8 + {8: 3, 4: 2}[channels]
-    parts = channels * (3 * 40 + 16) + 42 + 88 + 77 + 6 * 15 + 18 + (pins + card) * 3 * 2.54
-    assert length >= max(pins, card) * 2.54 + 10 and length * width >= 2 * parts
-    assert (length - 5) * (width - 5) < 2 * parts, "no larger than needed"
-    assert length % 5 == width % 5 == 0

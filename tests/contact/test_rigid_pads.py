@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from tactcad.contact.elastic_body import Body, influence
-from tactcad.contact.press import PadsOnBody, complementary, pad_stiffness, patches
-from tactcad.contact.rigid_pads import ManyPresses, pad_law
+from tactcad.contact.press import Pads, PadsOnBody, complementary, pad_stiffness, patches
+from tactcad.contact.rigid_pads import POWERS, ManyPresses, pad_law, press_many
 from tactcad.lab.pads import springs_of
 from tactcad.parts.designs import load
 
@@ -24,7 +24,8 @@ def array():
 
 @pytest.mark.parametrize("thickness", [1.0, 6.0, inf])
 def test_presses_are_those_of_single_patches(thickness):
-    """Within 0.3 % of the largest sink, whole pads or edges; 10 pads, 3 to 10 N."""
+    """Within 0.2 % of the largest sink, whole pads or edges; 10 pads, 3 to 10 N. Without what lifting changes
+    between pads they are up to 0.3 % off."""
     pads, K, move = array()
     body = Body(1.0, 0.49, thickness)
     single = PadsOnBody(pads, body)
@@ -35,9 +36,13 @@ def test_presses_are_those_of_single_patches(thickness):
         lifted += int((exact.contact < 1).sum())
         slope = np.array([[tan(radians(a)) for a in angle]])
         b = many.approached(np.array([exact.approach]), slope, pads.height[None])
-        g = many.rest(many.system(np.array([E]), K[None]), b, b)[1][0]
+        r, change = b, None
+        for _ in range(3):
+            r, g = many.rest(many.system(np.array([E]), K[None], change), b, r)[:2]
+            change = many.lifted(r)
+        g = g[0]
         sink = E * (g * many.move).sum(-1) / K
-        assert np.abs(sink - exact.sink).max() < 3e-3 * exact.sink.max()
+        assert np.abs(sink - exact.sink).max() < 2e-3 * exact.sink.max()
         assert E * g[:, 0].sum() == pytest.approx(N, rel=2e-3)
     assert lifted > 4
 
@@ -56,3 +61,50 @@ def test_a_pads_law_is_its_patches_and_its_derivative_a_difference():
         assert law(3 * r)[0] == pytest.approx(3 * g)
         numeric = np.array([(law(r + 1e-6 * e)[0] - law(r - 1e-6 * e)[0]) / 2e-6 for e in np.eye(3)]).T
         assert d == pytest.approx(numeric, rel=1e-5, abs=1e-5)
+
+
+def test_whole_pads_change_nothing_between_each_other_and_moments_are_those_of_the_pressure():
+    pads, _, move = array()
+    many = ManyPresses(pads.x, pads.y, pads.length, pads.width, move, Body(1.0, 0.49, 6.0))
+    whole = np.tile([1.0, 0.01, -0.01], (len(pads.x), 1))
+    assert np.abs(many.lifted(whole[None])).max() < 1e-9 * np.abs(many.between).max()
+    one = patches(2.0, 3.0, False)
+    M = influence(Body(1.0, 0.49, 6.0), tuple(one))
+    for r in ((1.0, 0.8, 0.0), (0.6, -0.9, 0.5), (0.2, 0.5, -0.6)):
+        r = np.array(r)
+        f, _ = complementary(M, -(r[1] * one[0] + r[2] * one[1]), None, r[0], np.ones(len(M)))
+        for (a, b), found in zip(POWERS, many.law.moments(r) @ many.law(r)[0], strict=True):
+            moment = (one[0] ** a * one[1] ** b) @ f
+            assert found == pytest.approx(moment, abs=0.02 * f.sum() * 1.5 ** (a + b))
+
+
+def row_of(number: int, pitch: float, stop: float) -> Pads:
+    """Two facing rows of pads on soft and stiff springs."""
+    y = (np.arange(number) - (number - 1) / 2) * pitch
+    x, y = np.repeat([2.0, -2.0], number), np.tile(y, 2)
+    K = np.resize([3.0, 30.0], 2 * number)
+    move = np.stack([np.ones(2 * number), -np.sign(x) / 5.0, 0.0 * x], 1)
+    compliance = move[:, :, None] * move[:, None, :] / K[:, None, None]
+    return Pads(x, y, 2.0, 3.0, compliance, np.zeros(2 * number), np.full(2 * number, stop))
+
+
+@pytest.mark.parametrize(
+    ("pitch", "angle", "stop", "off"), [(4.0, (1.0, 2.0), 0.1, 0.01), (3.2, (0, 0), inf, 0.025)]
+)
+def test_many_pads_are_pressed_as_few(pitch, angle, stop, off):
+    """By the law of whole pads against single patches: forces within what is stated of their mean."""
+    pads, body = row_of(3, pitch, stop), Body(0.7, 0.49, 6.0)
+    exact = PadsOnBody(pads, body).press(load=5.0, angle=angle)
+    many = press_many(pads, body, 5.0, angle)
+    mean = exact.force[exact.force > 0].mean()
+    assert many.force == pytest.approx(exact.force, abs=off * mean)
+    assert many.force.sum() == pytest.approx(5.0) and (many.stopped == exact.stopped).all()
+
+
+def test_far_pads_bear_alike():
+    """A hundred and twenty pads, pairs a hundred pads apart: each bears what it does among four."""
+    body = Body(0.7, 0.49, 6.0)
+    many = press_many(row_of(60, 300.0, inf), body, 60.0, (0.0, 0.0)).force
+    four = press_many(row_of(2, 300.0, inf), body, 2.0, (0.0, 0.0)).force
+    assert many.sum() == pytest.approx(60)
+    assert many == pytest.approx(np.concatenate([np.tile(four[:2], 30), np.tile(four[2:], 30)]), rel=1e-6)

@@ -9,6 +9,7 @@ from math import dist
 
 import numpy as np
 import pytest
+from built import shapes_of
 from scipy.spatial import cKDTree
 from variants import variant
 
@@ -17,10 +18,11 @@ from tactcad.drawing.assemblies import assembly_sheets as assembly_file
 from tactcad.drawing.assemblies.assembly_sheets import assembly_faults, assembly_sheets
 from tactcad.drawing.assemblies.balloons import laid, laid_columns, list_drawn
 from tactcad.drawing.engine.extent import placed
-from tactcad.drawing.engine.ink import DrawnArc, Fill, Stroke, Text, preliminary
+from tactcad.drawing.engine.ink import DrawnArc, DrawnSheet, Fill, Stroke, Text, bounds_of_items, preliminary
 from tactcad.drawing.engine.layout_check import layout_faults
 from tactcad.drawing.engine.paper import MOST_DRAWN, fewer
 from tactcad.drawing.engine.sheet_files import pdf_bytes, pdf_runs, stacked_svg
+from tactcad.drawing.guide import axes
 from tactcad.parts.bought.screws import METRIC
 from tactcad.scenes import make_scene
 from tactcad.scenes.bom import bom_rows
@@ -43,11 +45,10 @@ OTHERS = [
 
 def drawn(base: str, name: str):
     """Design, scene, bill, shapes and sheets."""
-    from tactcad.solids.build import build
 
     design = variant(base=base)
     scene = make_scene(design, name)
-    shapes = {part.part_no: build(part).wrapped for part in scene.parts}
+    shapes = shapes_of(scene)
     rows = bom_rows(scene, design.design.revision, {})
     return design, scene, rows, shapes, assembly_sheets(design, scene, rows, shapes)
 
@@ -131,17 +132,12 @@ def test_every_leader_ends_on_a_part_with_that_number(assembly):
 
     _, scene, rows, shapes, sheets = assembly
     item = {row.part_no: row.item for row in rows}
-    looks: dict[int, dict] = {}
+    turned: dict[int, dict] = {}
     for p in [*scene.placements, *(p for ready in scene.ready for p in ready.placements)]:
-        by_turn = looks.setdefault(item[p.part.part_no], {})
-        if p.rotation not in by_turn:
-            by_turn[p.rotation] = drawing(
-                [placed_shape(shapes[p.part.part_no], (0, 0, 0), p.rotation)], ABOVE
-            ).sharp
+        turned.setdefault(item[p.part.part_no], {})[p.rotation] = p.part
+    found = balloons(sheets)
     for page, sheet in enumerate(sheets):
-        mine = {
-            n: tip for n, (_, tip, there) in balloons(sheets).items() if there == page and isinstance(n, int)
-        }
+        mine = {n: tip for n, (_, tip, there) in found.items() if there == page and isinstance(n, int)}
         if mine:
             lines = np.array(
                 [
@@ -153,8 +149,11 @@ def test_every_leader_ends_on_a_part_with_that_number(assembly):
             scale = next(t.text for t in sheet.texts if re.fullmatch(r"\d+:\d+", t.text))
             f = int(scale.split(":")[0]) / int(scale.split(":")[1])
             for n, tip in mine.items():
-                best = max(_found_again(some, f, tip, lines) for some in looks[n].values())
-                assert best > 0.2, (n, best)
+                own = (
+                    drawing([placed_shape(shapes[part.part_no], (0, 0, 0), rotation)], ABOVE).sharp
+                    for rotation, part in turned[n].items()
+                )
+                assert any(_found_again(some, f, tip, lines) > 0.2 for some in own), n
 
 
 def _found_again(own, f, tip, lines) -> float:
@@ -315,6 +314,14 @@ def test_the_sensing_face_says_which_element_stands_where(assembly):
     assert {"+x", "+y", "Sensing face"} <= {t.text for t in sheets[0].texts}
 
 
+def test_the_axes_names_stand_on_the_side_away_from_the_elements_numbers():
+    """Numbers end just left of the axes, at any height: of a short array E1 beside the end of y."""
+    x0, *_ = bounds_of_items(axes((0.0, 0.0)))
+    assert x0 > -0.5  # half an arrow head
+    sheet = DrawnSheet("axes", "", (50.0, 50.0), tuple(axes((25.0, 25.0))))
+    assert layout_faults(sheet) == []
+
+
 def test_notes_give_torques_and_the_pads_procedure(assembly):
     design, scene, _, _, sheets = assembly
     text = " ".join(t.text for t in sheets[0].texts)
@@ -323,7 +330,8 @@ def test_notes_give_torques_and_the_pads_procedure(assembly):
         assert f"{thread} {METRIC[thread].torque:g} N·m" in text
     if scene.name == "array":
         assert "Turn set screws in to M3 0.2 N·m" in text
-        assert "surface plate" in text and "feelers, 2 mm nominal" in text and "0.01 mm" in text
+        assert "surface plate" in text and "feelers, 2 mm nominal" in text
+        assert "within 0.02 mm" in text and "setting fixture" in text
         assert "E4 arm 8" in text and "E10 arm 7" in text
 
 

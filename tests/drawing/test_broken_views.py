@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 
 import pytest
+from built import shape_of
 from variants import variant
 
 from tactcad.contour import rectangle
@@ -36,10 +37,9 @@ def long_parts(design):
 
 def sheet_of(design, part):
     """Its finished sheet, and the texts that another library reads in its PDF."""
-    from tactcad.solids.build import build
     from tactcad.solids.step import to_bytes
 
-    sheet = part_sheet(Order(design, part, to_bytes(build(part).wrapped), (FILE,)))
+    sheet = part_sheet(Order(design, part, to_bytes(shape_of(part)), (FILE,)))
     pdf = pdf_bytes([sheet], "title", "author", design.design.date)
     assert layout_faults(sheet) == []
     assert drawing_faults(pdf, sheet, part, design.design.revision) == []

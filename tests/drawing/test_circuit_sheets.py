@@ -25,6 +25,7 @@ OTHERS = {
     "a gain resistor, four channels": {"readout.amplifier": "AD8221", "readout.multiplexer": "ADG1409"},
     "one element": {"array.row_arms": [[4.0]]},
     "rows of 3 and 20": {"array.row_arms": [[4, 8, 4], [5] * 20]},
+    "a resistance of eleven letters": {"gauge.resistance": 8515.59},
     "a hundred elements": {"array.row_arms": [[4, 7, 6, 8, 6] * 10, [8, 5, 4, 5, 7] * 10]},
 }
 
@@ -37,8 +38,11 @@ def everything_stands_there(design) -> None:
         assert revision in page and f"{n}/{len(pages)}" in page
     nets = list(csv.DictReader(io.StringIO(table_file(design, circuit).decode())))
     # of board 1 and element 1 every component is drawn
-    drawn = {row["designator"] for row in nets if row["board"] == "1" and row["element"] in ("", "1")}
-    words = set(re.findall(r"\w+", " ".join(first)))
+    own = [row["designator"] for row in nets if row["board"] == "1" and row["element"] in ("", "1")]
+    channels = re.compile(r"(R[1-8]\d|Q[2-8])$")  # of others, which read no element
+    drawn = {name.removeprefix("A1-") for name in own}
+    drawn = {name for name in drawn if not channels.match(name)} | {"R11", "R12", "R13", "R14"}
+    words = set(re.findall(r"\w+", " ".join([*first, *pages[1]])))
     assert drawn <= words | {"X1"} and "X1.1" in first and "X1.2" in first
     # every gauge in the matrix, with the channel's pins as the netlist has them
     for gauge in {row["designator"] for row in nets if row["kind"] == "gauge"}:
@@ -46,7 +50,7 @@ def everything_stands_there(design) -> None:
         mux = [r for r in nets if r["net"] == f"E{n}_PLUS" and r["kind"] == "multiplexer"]
         minus = [r for r in nets if r["net"] == f"E{n}_MINUS" and r["kind"] == "multiplexer"]
         assert gauge in said
-        assert f"{mux[0]['designator']}.{mux[0]['pin']} +, .{minus[0]['pin']} −" in said
+        assert f"{mux[0]['designator'].partition('-')[2]}.{mux[0]['pin']} +, .{minus[0]['pin']} −" in said
     # every lead of the wiring list, in its order of columns
     text = " ".join(said)
     for row in csv.DictReader(io.StringIO(wiring_file(design, circuit).decode())):
@@ -61,12 +65,12 @@ def test_each_pin_of_the_decoder_and_what_sets_the_gain_as_in_the_netlist():
         first = pdf_runs(circuit_written(CircuitOrder(design)).pdf)[0]
         circuit = netlist(Layout(design))
         decoder, amplifier = circuit.on_board("decoder", 1), circuit.on_board("amplifier", 1)
-        assert decoder.net("E3") == "ENABLE1" in first
-        assert [run for run in first if run.endswith("ENABLE1")] == ["ENABLE1", "9  ENABLE1"]
-        assert any(run.startswith(f"{decoder.net('A0')}, also U12.") for run in first)
+        assert decoder.net("E3") == "A1_ENABLE" and "ENABLE" in first
+        assert [run for run in first if run.endswith("ENABLE1")] == ["9  ENABLE1"]
+        assert any(run.startswith("A0, also U2.") for run in first)
         numbers = {pin.number for pin in amplifier.pins if pin.role in ("rg1", "rg2")}
         assert numbers <= set(first)
-        assert ("R10" in first and "499 ohm" in first) == bool(changes)
+        assert ("R1" in first and "499 ohm" in first) == bool(changes)
 
 
 @pytest.mark.parametrize(("changes", "outputs", "inputs"), [({}, 5, 2), (OTHERS["one element"], 4, 1)])
@@ -90,14 +94,19 @@ def test_no_general_tolerance_on_a_sheet_without_dimensions():
 def test_no_sample_before_the_output_has_settled():
     design = read("macro-array")  # 12.4 us
     text = " ".join(pdf_runs(circuit_written(CircuitOrder(design)).pdf)[0])
-    said = float(re.search(r"Sample ([\d.]+) us after ENABLE", text)[1])
+    said = float(re.search(r"settled after ([\d.]+) us", text)[1])
     settled = settling_time(design) * 1e6
     assert settled <= said < settled + 1
+    first, last = map(
+        float, re.search(r"10 samples a reading, ([\d.]+) to ([\d.]+) ms after ENABLE", text).groups()
+    )
+    assert settled < 1e3 * first and first == pytest.approx(5 - 0.1) and last == pytest.approx(first + 0.09)
+    assert "within 1 us, by a clocked line" in text
 
 
 def test_the_plan_names_short_arms_of_two_digits_too():
     design = variant({"array.row_arms": [[4] * 12, [4] * 12]})
-    plan = pdf_runs(circuit_written(CircuitOrder(design)).pdf)[2]
+    plan = pdf_runs(circuit_written(CircuitOrder(design)).pdf)[3]
     assert "Wiring plan" in plan and {f"E{n}" for n in range(1, 25)} <= set(plan)
 
 

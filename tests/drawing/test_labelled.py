@@ -21,6 +21,7 @@ from tactcad.parts.array.stop_gap import stop_gap
 
 ROOT = Path(__file__).parents[2]
 sys.path.append(str(ROOT / "packaging"))
+import coloured  # noqa: E402
 import labelled  # noqa: E402
 
 DESIGN = read(ROOT / "hardware" / "macro-array.toml")
@@ -167,3 +168,14 @@ def test_the_files_are_those_drawn_now_and_no_text_lies_over_another_or_over_a_l
     assert not faults
     for text in sheet.texts:  # on the paper
         assert all(0 < x < sheet.size[0] and 0 < y < sheet.size[1] for x, y in text.corners()), text.text
+
+
+def test_readme_s_picture_is_painted_in_the_colours_of_the_estimate():
+    """Every element's own cap is on it once, in the colour between softest and stiffest that its K gives."""
+    text = (ROOT / "docs" / "images" / "coloured-array.svg").read_text("utf-8")
+    assert text == coloured.picture(LAYOUT), "python packaging/coloured.py docs/images"
+    fills = re.findall(r'<polygon points="[^"]*" fill="(#[0-9a-f]{6})"', text)
+    assert fills.count("#fde725") == fills.count("#482475") == 2  # arms of 8 and of 4 mm
+    assert fills.count("#{:02x}{:02x}{:02x}".format(*coloured.GAUGE)) == len(LAYOUT.elements)
+    for word in ("pad", "strain gauge", "element E4", "10 mm", "stiffness K, N/mm", "7.18", "38"):
+        assert f">{word}</text>" in text

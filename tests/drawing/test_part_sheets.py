@@ -15,6 +15,7 @@ from functools import partial
 from pathlib import Path
 
 import pytest
+from built import shape_of
 from variants import HARDWARE, IN_SLOT, variant
 
 import tactcad
@@ -340,7 +341,6 @@ VARIANTS = {
 @pytest.mark.nightly
 @pytest.mark.parametrize("name", [*VARIANTS, "soft-tissue", "double-sample", "smallest-bearing"])
 def test_sheets_of_other_designs_are_clean(name):
-    from tactcad.solids.build import build
     from tactcad.solids.step import to_bytes
 
     design = variant(VARIANTS[name]) if name in VARIANTS else variant({}, name)
@@ -351,5 +351,5 @@ def test_sheets_of_other_designs_are_clean(name):
         for p in make_scene(design, s).parts
         if p.process not in ("bought", "reference")
     }
-    made = sheets_of([Order(design, p, to_bytes(build(p).wrapped), (DXF,)) for p in parts.values()])
+    made = sheets_of([Order(design, p, to_bytes(shape_of(p)), (DXF,)) for p in parts.values()])
     assert len(made) == len(parts)

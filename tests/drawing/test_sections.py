@@ -15,6 +15,7 @@ from math import dist, hypot, isclose, sqrt
 from pathlib import Path
 
 import pytest
+from built import shape_of
 from variants import variant
 
 import tactcad
@@ -117,15 +118,13 @@ def test_no_plane_cuts_another_hole_off_its_axis_or_runs_along_a_wall():
 
 @pytest.fixture(scope="module")
 def orders():
-    from tactcad.solids.build import build
     from tactcad.solids.step import to_bytes
 
     design = variant()
     scenes = [make_scene(design, name) for name in ("array", "calibration", "sample-stiffness", "grasping")]
     parts = {p.part_no.removeprefix("macro-array-"): p for s in scenes for p in s.parts}
     return {
-        n: Order(design, parts[n], to_bytes(build(parts[n]).wrapped), (DXF,))
-        for n in (*CUT, ACROSS_Y, *WHOLE)
+        n: Order(design, parts[n], to_bytes(shape_of(parts[n])), (DXF,)) for n in (*CUT, ACROSS_Y, *WHOLE)
     }
 
 

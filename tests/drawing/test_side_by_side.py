@@ -8,6 +8,7 @@ from itertools import combinations
 
 import numpy as np
 import pytest
+from built import shapes_of
 from variants import variant
 
 from tactcad.drawing.assemblies import numbered
@@ -66,13 +67,12 @@ def test_parts_too_many_for_one_sheet_go_over_several_and_too_large_ones_are_ref
 
 @pytest.mark.cad
 def test_where_no_exploded_view_finds_room_the_sheets_are_complete_all_the_same(monkeypatch):
-    from tactcad.solids.build import build
 
     monkeypatch.setattr(numbered, "exploded_page", lambda *_: None)
     design = variant(base="soft-tissue")
     scene = make_scene(design, "array")
     rows = bom_rows(scene, design.design.revision, {})
-    sheets = assembly_sheets(design, scene, rows, {part.part_no: build(part).wrapped for part in scene.parts})
+    sheets = assembly_sheets(design, scene, rows, shapes_of(scene))
     assert (
         assembly_faults(
             pdf_bytes(sheets, "x", "y", "2026-11-21"), f"{design.name}-array", design.design.revision, rows

@@ -9,6 +9,7 @@ from math import hypot, pi
 
 import numpy as np
 import pytest
+from built import shape_of, shapes_of
 from variants import variant
 
 from tactcad.contour import circle, rectangle
@@ -18,7 +19,6 @@ from tactcad.drawing.engine.picture import VIEWS, Drawing, check_picture, drawin
 from tactcad.parts.language.description import Extrusion, Hole, Material, Part
 from tactcad.scenes import make_scene
 from tactcad.scenes.scene import Placement
-from tactcad.solids.build import build
 from tactcad.solids.occt import placed_shape
 
 pytestmark = pytest.mark.cad
@@ -32,7 +32,7 @@ def block(x, y, z, *holes) -> Part:
 
 
 def shown(placements, view) -> tuple[Drawing, bytes]:
-    shapes = [placed_shape(build(p.part).wrapped, p.origin, p.rotation) for p in placements]
+    shapes = [placed_shape(shape_of(p.part), p.origin, p.rotation) for p in placements]
     drawn = drawing(shapes, view)
     return drawn, svg(drawn, "t", "d")
 
@@ -121,7 +121,7 @@ def test_a_picture_of_something_else_is_not_let_out():
 def test_exact_and_triangle_removal_agree(monkeypatch):
     """Long arrays are drawn on triangles: the same extent, and the same length of lines within a percent."""
     scene = make_scene(variant({"array.row_arms": [[4]]}), "array")
-    shapes = {p.part_no: build(p).wrapped for p in scene.parts}
+    shapes = shapes_of(scene)
     placed = [placed_shape(shapes[p.part.part_no], p.origin, p.rotation) for p in scene.placements]
     exact = drawing(placed, VIEWS["above"])
     monkeypatch.setattr(picture, "EXACT_UP_TO", 0)
@@ -133,7 +133,7 @@ def test_exact_and_triangle_removal_agree(monkeypatch):
 def test_windows_draw_what_one_window_draws(monkeypatch):
     """A long picture is drawn strip by strip: the same lines, but for where they are cut."""
     scene = make_scene(variant({"array.row_arms": [[4] * 12]}), "array")
-    shapes = {p.part_no: build(p).wrapped for p in scene.parts}
+    shapes = shapes_of(scene)
     placed = [placed_shape(shapes[p.part.part_no], p.origin, p.rotation) for p in scene.placements]
     monkeypatch.setattr(picture, "EXACT_UP_TO", 0)
     whole = drawing(placed, VIEWS["below"])

@@ -159,6 +159,8 @@ def test_the_export_is_what_the_contract_says(shipped):
         "report",
         "netlist",
         "wiring",
+        "board",
+        "gerber",
     }
     parts = {p["part_no"] for p in record["parts"]}
     assert {f["part_no"] for f in record["files"] if f["kind"] == "step-part"} == parts

@@ -245,3 +245,18 @@ def test_two_parts_in_a_part_file_are_refused(macro_scene, macro_shapes):
     two = Compound([Solid(macro_shapes[part.part_no]), Solid.make_box(1, 1, 1)])
     with pytest.raises(CheckFailure):
         step.part_step(part, two.wrapped, HEADER)
+
+
+def test_styles_of_two_equal_solids_stand_in_the_order_of_their_products():
+    """The kernel writes them by memory address: an export on one core and one on two differed."""
+
+    def text(first: int, second: int) -> str:
+        style = "MECHANICAL_DESIGN_GEOMETRIC_PRESENTATION_REPRESENTATION"
+        return (
+            "DATA;\n#1=PRODUCT('a',#3);\n#2=PRODUCT('b',#4);\n#3=SOLID('');\n#4=SOLID('');\n"
+            f"#5={style}('',(#7));\n#6={style}('',(#8));\n"
+            f"#7=STYLED_ITEM('color',#{first});\n#8=STYLED_ITEM('color',#{second});\nENDSEC;\n"
+        )
+
+    assert canonical(text(3, 4), HEADER) == canonical(text(4, 3), HEADER)
+    assert "#6=STYLED_ITEM('color',#2);" in canonical(text(4, 3), HEADER)

@@ -15,6 +15,7 @@ from tactcad.lab.column_units import against_design
 from tactcad.lab.load_cell import LoadCell
 from tactcad.lab.readings import CalibrationReadings
 from tactcad.lab.simulate import Noise, Truth
+from tactcad.parts.designs import load
 
 CELL = 57.04
 EXACT = LoadCell(CELL)
@@ -312,12 +313,12 @@ def test_elements_as_made_and_another_amplifier_are_no_other_unit_but_micrometre
     K = np.array([79.5, 5.5, 79.5, 5.5, 79.5, 79.5, 5.5, 79.5, 5.5, 79.5])
     truth = Truth(np.arange(1, 11), K * stiffer, np.where(K > 10, 6.9, 2.8) * stiffer * gain, 0 * K)
     data = simulated(Noise(signal=5e-4 * gain), truth=truth)
-    assert against_design(data, calibration.calibrate(data, EXACT), EXACT, "better-array") == []
+    assert against_design(data, calibration.calibrate(data, EXACT), EXACT, load("better-array")) == []
     data = replace(data, displacement=data.displacement * 1e3)
-    (warning,) = against_design(data, calibration.calibrate(data, EXACT), EXACT, "better-array")
+    (warning,) = against_design(data, calibration.calibrate(data, EXACT), EXACT, load("better-array"))
     assert warning.endswith("(displacement in um?)")
     data = replace(data, displacement=data.displacement / 1e3, element=data.element + 10)
-    (warning,) = against_design(data, calibration.calibrate(data, EXACT), EXACT, "better-array")
+    (warning,) = against_design(data, calibration.calibrate(data, EXACT), EXACT, load("better-array"))
     assert warning == "elements 11, 12, 13, 14, 15, 16, 17, 18, 19, 20: not in design better-array"
 
 

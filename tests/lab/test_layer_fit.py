@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import lru_cache
 from math import inf
 
 import layer_labs as labs
@@ -28,6 +29,7 @@ ARRAY = labs.Array(NUMBER[READ], PADS.x, PADS.y, 2.0, 3.0, 1 / MOVE[:, 1], K, K_
 NU = 0.49
 
 
+@lru_cache(maxsize=5)
 def bench(h: float) -> labs.Bench:
     return labs.Bench(PADS.x, PADS.y, 2.0, 3.0, 1 / MOVE[:, 1], NU, h)
 
@@ -69,8 +71,8 @@ def test_intervals_hold_the_modulus_of_simulated_labs():
     both = [held(6.0, 0.5, angle, 4, 3, seed=3) for angle in (0.0, 2.0)]
     right, half = (np.concatenate(v) for v in zip(*both))
     assert right[:, 0].sum() >= binom.ppf(1e-4, len(right), 0.95)
-    assert np.nanmean(right[:, 1:]) > 0.85
-    assert np.median(half) < 0.15
+    assert np.nanmean(right[:, 1:]) > 0.9
+    assert np.median(half) < 0.1
 
 
 @pytest.mark.nightly
@@ -78,13 +80,32 @@ def test_intervals_hold_the_modulus_of_simulated_labs():
 @pytest.mark.parametrize("E", [0.3, 1.0])
 @pytest.mark.parametrize("angle", [0.0, 1.0, 3.0, 5.0])
 def test_coverage_of_every_cell(h, E, angle):
-    """2000 labs a cell: 100 presses, 20 labs on each, noise and calibration drawn anew."""
-    right, half = held(h, E, angle, 100, 20, seed=11)
+    """2000 labs a cell: 250 presses, 8 labs on each, noise and calibration drawn anew."""
+    right, half = held(h, E, angle, 250, 8, seed=11)
     print(
         f"h {h:g} E {E:g} angle {angle:g}: E {right[:, 0].mean():.3f}, pairs {np.nanmean(right[:, 1:]):.3f}, "
         f"median half-width {np.median(half):.3f}"
     )
-    assert right[:, 0].mean() > 0.90  # labs on one press share its heights and thickness
+    # labs on one press share its heights and thickness: a share is known to some 1.5 %
+    assert 0.92 < right[:, 0].mean() < 0.99 and 0.92 < np.nanmean(right[:, 1:]) < 0.99
+    assert np.median(half) < 0.12
+
+
+def test_a_fit_ends_where_the_truth_costs_no_less():
+    """Inclined by 5 degrees, soft, no. 5 unread: from a start with all free, one fit in ten ended with
+    that pad
+    lifted and the modulus 20 to 40 % off. Signals without noise, calibrations without error."""
+    rng = np.random.default_rng(5)
+    for _ in range(4):
+        turn = rng.uniform(0, 2 * np.pi)
+        slope = np.tan(np.radians(5.0 * np.array([np.cos(turn), np.sin(turn)])))
+        true_K = K * np.exp(rng.uniform(-0.1, 0.1, len(K)))
+        sink = bench(6.0).sinks(0.3, true_K, rng.uniform(0, 0.02, len(K)), slope, labs.LOAD)[READ]
+        known = labs.calibration(ARRAY, true_K[READ], K_V[READ], rng, each=1e-4)
+        at = layer(NUMBER, PADS, DESIGN.tolerance.pad_height, NU, 6.0, 0.3)
+        found = fit(at, NUMBER[READ], labs.LOAD, (K_V[READ, None] * sink)[None], known)
+        assert found.modulus[0, 0] == pytest.approx(0.3, rel=0.12)
+        assert found.modulus[0, 1] < 0.3 < found.modulus[0, 2]
 
 
 def one_lab(slope=(0.0, 0.0), E=0.5, seed=1):

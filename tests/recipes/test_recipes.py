@@ -17,6 +17,7 @@ from exact_ladder import ORDER, true_compliance
 from variants import TINY_TEXT
 
 from tactcad.design.family import Late, all_families
+from tactcad.export.inputs import flattened
 
 HERE = Path(__file__).parent
 SOURCE = HERE.parents[1] / "src"
@@ -61,6 +62,50 @@ def sensor(tree: Tree, more: str) -> str:
     """A design of one element, and `more` text; its path."""
     (tree.folder / "tiny.toml").write_text(TINY_TEXT + more, "utf-8")
     return "tiny.toml"
+
+
+COVER = '''
+
+def cover_plate(layout: Layout) -> Part:
+    """Lid on the carrier."""
+    x, y = layout.stop_plate_half, layout.stop_plate_width / 2
+    body = Extrusion(rectangle(-x, -y, x, y), 1.0)
+    return Part(f"{layout.design.name}-cover", "Cover plate", "milled", MAGNETIC_STAINLESS, body)
+'''
+PLACED = """
+    from tactcad.parts.array.clamp import cover_plate
+
+    top = layout.carrier_bottom + layout.design.clamp.carrier_thickness
+    b.meet(b.place("CO", cover_plate(layout), (0, 0, top), UPRIGHT, "Cover"), "CA1")
+"""
+SHOWN = """
+from tactcad.parts.designs import load
+from tactcad.scenes import make_scene
+from tactcad.scenes.bom import bom_rows
+
+scene = make_scene(load("tiny.toml"), "array")
+print(*(s.title for s in scene.steps if "CO1" in s.designators))
+print(*(r.qty for r in bom_rows(scene, "A", {}) if r.part_no == "tiny-cover"))
+"""
+
+
+def test_a_part_takes_two_files_its_step_included(tree):
+    file = "parts/array/clamp.py"
+    tree.write(file, (tree.src / "tactcad" / file).read_text("utf-8") + COVER)
+    stops, hold = "        _stop_plate(b, layout, on_ledge)\n", "        step(\n            HOLD_DOWN,"
+    step = '        step("Cover", (0, 0, 2.0 * width), "Bond the cover on the carrier."),\n'
+    tree.edit("scenes/rigs/array.py", (stops, stops + PLACED.lstrip("\n")), (hold, step + hold))
+    assert len(tree.changed) == 2
+    sensor(tree, "")
+    done = subprocess.run(
+        [sys.executable, "-c", SHOWN],
+        cwd=tree.folder,
+        env=os.environ | {"PYTHONPATH": str(tree.src)},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.stdout == "Cover\n1\n", done.stderr
 
 
 SHEAR = '''
@@ -349,7 +394,11 @@ def test_a_rung_takes_one_file_and_data_by_one_command(tree):
     fit = [sys.executable, HERE.parents[1] / "benchmarks" / "ladder_fit.py", data]
     subprocess.run(fit, env=os.environ | {"PYTHONPATH": str(tree.src)}, capture_output=True, check=True)
     measured = json.loads((data / "ladder.json").read_text("utf-8"))
-    assert measured.pop("report") and constants.pop("report") and measured == constants
+    assert measured.pop("report") and constants.pop("report")
+    before, now = flattened(constants), flattened(measured)
+    assert set(before) == set(now)
+    # another processor rounds otherwise, which moves where the search ends: the least determined by 4e-4
+    assert all(now[path] == pytest.approx(value, rel=1e-3, abs=1e-9) for path, value in before.items())
 
     def stiffness(model):
         done = tree.run("estimate", "--model", model, "--json")
@@ -427,12 +476,19 @@ def test_a_second_family_takes_five_files(tree):
     }
     assert {"step-part", "dxf", "drawing", "bom", "inspection", "picture"} <= kinds and "netlist" not in kinds
 
+    (tree.folder / "loads.csv").write_text("0.01,0,0,2,0,0\n0,0.02,0,0,2,0\n0,0,0.05,0,0,2\n", "utf-8")
+    calibrated = tree.run("calibrate", "loads.csv", "--design", "leaf.toml")
+    assert calibrated.stdout == "leaf: 200 N/mm, 100 N/mm, 40 N/mm\n", calibrated.stderr
+
     (tree.folder / "longer.toml").write_text(design.replace("length = 20.0", "length = 25.0"), "utf-8")
     assert "stiffness_n_per_mm: 22.5 -> 11.52" in tree.run("diff", "leaf.toml", "longer.toml").stdout
     (tree.folder / "short.toml").write_text(design.replace("length = 20.0", "length = 4.0"), "utf-8")
     for said, command in (
         ("rule leaf_is_slender", ("check", "short.toml")),
-        ("does not take designs of this family", ("calibrate", "x.csv", "--design", "leaf.toml")),
+        (
+            "does not take designs of this family",
+            ("grasp", "leaf.toml", "--object", "E=1,nu=0.4,thickness=5"),
+        ),
         ("does not take designs of this family", ("estimate", "leaf.toml", "--model", "solid")),
         ("no such scene", ("check", "leaf.toml", "--scene", "calibration")),
     ):

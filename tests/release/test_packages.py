@@ -34,7 +34,7 @@ TEXT = TINY_TEXT.replace(
 REVISION = re.search(r'revision = "(\w+)"', TEXT).group(1)
 STEM = f"tiny-{REVISION}"
 MADE = ("wire-cutting", "milling-and-turning")
-BOUGHT = ("purchase-mechanical", "purchase-electronic")
+BOUGHT = ("purchase-mechanical", "purchase-electronic", "circuit-boards")
 WAYS = (*MADE, "sheet", *BOUGHT)
 README, ORDER, MANIFEST = "README.txt", "order.csv", "MANIFEST.sha256"
 
@@ -85,7 +85,7 @@ def test_each_has_its_parts_files_and_no_other(whole, zips):
     assert stems(zips["sheet"], "dxf") == stems(whole, "dxf") - wire
     for way in ("sheet", "purchase-mechanical"):
         assert not stems(zips[way], "pdf") and not stems(zips[way], "step")
-    assert stems(zips["purchase-electronic"], "pdf") == {"tiny-circuit"}
+    assert stems(zips["circuit-boards"], "pdf") == {"tiny-circuit"}
     for way, files in zips.items():
         own = {README, ORDER, MANIFEST, "inspection-parts.csv"}
         for name, data in files.items():
@@ -113,15 +113,29 @@ def test_every_line_of_the_bill_is_ordered_once_with_its_spares(whole, zips):
 
 
 def test_who_makes_the_boards_has_netlist_and_diagrams(zips):
-    """Read from the package alone: the board's line names them, and every pin of its parts is there."""
-    files = zips["purchase-electronic"]
-    (board,) = (row for row in rows(files[ORDER]) if row["part_no"] == "CIRCUIT-BOARD")
-    for kind, end in (("netlist", ".net"), ("netlist_table", ".csv"), ("sheets", ".pdf")):
-        assert board[kind].endswith(f"tiny-circuit_{REVISION}{end}")
-        assert hashlib.sha256(files[board[kind]]).hexdigest() == board[f"{kind}_sha256"]
-    assert "tiny-circuit" in board["designation"]
-    assert {row["designator"] for row in rows(files[board["netlist_table"]])} >= {"U11", "U12", "U13", "J11"}
-    assert "CIRCUIT BOARD" in files[README].decode()
+    """Read from the package alone: the board's line names every file of the bare and the fitted boards."""
+    files = zips["circuit-boards"]
+    (board,) = rows(files[ORDER])
+    assert board["part_no"] == "CIRCUIT-BOARD" and "tiny-board" in board["designation"]
+    made = {name for name in files if name.startswith("circuit/boards/")}
+    assert {board[name.removeprefix("circuit/boards/")] for name in made} == made
+    for name in made:
+        digest = board[f"{name.removeprefix('circuit/boards/')}_sha256"]
+        assert hashlib.sha256(files[name]).hexdigest() == digest
+    assert (
+        sum(name.endswith(".gbr") for name in made) == 9 and sum(name.endswith(".drl") for name in made) == 2
+    )
+    (bill,) = (name for name in made if name.endswith("-bill.csv"))
+    assert {n for row in rows(files[bill]) for n in row["designators"].split()} >= {
+        "U1",
+        "U2",
+        "U3",
+        "U4",
+        "J1",
+    }
+    assert "CIRCUIT BOARD" in files[README].decode() and board["sheets"].endswith(
+        f"tiny-circuit_{REVISION}.pdf"
+    )
 
 
 def test_what_comes_with_another_part_is_no_line_of_an_order(macro):
@@ -196,7 +210,7 @@ def test_one_set_or_all(macro):
     """Counted by designators: one set is the largest set-up's, all are every rig's own and the array once."""
     scenes = [make_scene(macro, name) for name in scene_names(macro)]
     counts = {s.name: Counter(p.part.part_no for p in s.placements) for s in scenes}
-    holds_the_array = {"calibration", "grasping", "bonding"}  # the last one element of it
+    holds_the_array = {"setting", "calibration", "grasping", "bonding"}  # the last one element of it
     rigs = [c - counts["array"] if n in holds_the_array else c for n, c in counts.items() if n != "array"]
     counts = {n: Counter({p: k for p, k in c.items() if "-MOVING" not in p}) for n, c in counts.items()}
     for sets, count in (("one", lambda n: max(c[n] for c in counts.values())), ("all", None)):
@@ -206,7 +220,7 @@ def test_one_set_or_all(macro):
             assert lines[number].qty == meant, (sets, number)
         assert lines["STRAIN-GAUGE"].qty == len(Layout(macro).elements)
         assert lines[f"{macro.name}-base"].qty == (1 if sets == "one" else 3), "none in the bonding fixture"
-    assert [s.name for s in scenes if s.ready] == ["calibration", "grasping"]
+    assert [s.name for s in scenes if s.ready] == ["setting", "calibration", "grasping"]
 
 
 def test_the_element_in_the_bonding_fixture_is_one_of_the_arrays():

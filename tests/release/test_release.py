@@ -35,7 +35,14 @@ REVISION = re.search(r'revision = "(\w+)"', TINY_TEXT).group(1)
 NAME = f"tiny-{REVISION}.zip"
 OWNER, CONTACT = "Tiny lab", "workshop@tiny.example"
 OWNED = ("--owner", OWNER, "--contact", CONTACT)
-WAYS = ("wire-cutting", "milling-and-turning", "sheet", "purchase-mechanical", "purchase-electronic")
+WAYS = (
+    "wire-cutting",
+    "milling-and-turning",
+    "sheet",
+    "purchase-mechanical",
+    "purchase-electronic",
+    "circuit-boards",
+)
 ALL = {NAME, *(f"tiny-{REVISION}-{way}.zip" for way in WAYS)}
 
 

@@ -101,7 +101,14 @@ def test_an_array_that_does_not_fit_costs_the_scene_and_says_why(rule):
 @pytest.mark.parametrize("name", ["macro-array", "double-sample", "smallest-bearing"])
 def test_the_shipped_rigs_keep_all(name):
     design = load(name)
-    assert scene_names(design) == ("array", "calibration", "sample-stiffness", "grasping", "bonding")
+    assert scene_names(design) == (
+        "array",
+        "setting",
+        "calibration",
+        "sample-stiffness",
+        "grasping",
+        "bonding",
+    )
     assert left_out(design) == []
 
 
@@ -113,6 +120,6 @@ def test_arrays_of_any_length_are_still_built(rows):
 
 
 def test_a_design_without_the_tables_has_no_rigs():
-    assert scene_names(load("soft-tissue")) == ("array", "bonding")
-    assert scene_names(variant({"bonding": DROP}, "soft-tissue")) == ("array",)
+    assert scene_names(load("soft-tissue")) == ("array", "setting", "bonding")
+    assert scene_names(variant({"bonding": DROP}, "soft-tissue")) == ("array", "setting")
     assert set(names()) >= {"macro-array", "double-sample", "smallest-bearing", "soft-tissue"}

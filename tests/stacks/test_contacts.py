@@ -4,9 +4,10 @@ from itertools import combinations
 
 import numpy as np
 import pytest
+from pose_program import nearest_pose
 from scipy.optimize import minimize
 
-from tactcad.stacks.mechanic import nearest_pose, resting_plane
+from tactcad.stacks.mechanic import resting_plane
 
 RNG = np.random.default_rng(7)
 POINTS = np.array([[x, y] for x in (-9.0, 9.0) for y in (-8.0, -4.0, 0.0, 4.0, 8.0)])

@@ -4,11 +4,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from pose_program import nearest_pose
 
 from tactcad.parts.designs import load
 from tactcad.scenes.requirement import DimensionLimits
 from tactcad.scenes.rig_requirements import AXLE_HEIGHT, BORES, SHANKS, WHEEL, loose_wheel
-from tactcad.stacks.mechanic import Assembled, nearest_pose
+from tactcad.stacks.mechanic import Assembled
 from tactcad.stacks.stack import stack
 from tactcad.stacks.variables import STACK_LENGTH, made
 from tactcad.stacks.virtual_build import sensor

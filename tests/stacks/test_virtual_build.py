@@ -18,7 +18,7 @@ from tactcad.parts.designs import load
 from tactcad.parts.rules import refuse_broken
 from tactcad.scenes.requirement import variable
 from tactcad.stacks.mechanic import PAD, Assembled
-from tactcad.stacks.variables import STACK_LENGTH, made
+from tactcad.stacks.variables import STACK_LENGTH, STEPS, made
 from tactcad.stacks.virtual_build import LEAST_YIELD, sensor
 
 UNITS = np.array([1e3, 1e4, 1e4])  # um and tenths of a milliradian, so that all numbers are near one
@@ -90,7 +90,7 @@ def test_a_hinge_whose_stop_never_closes_bears_the_overload_alone():
 
 def test_hinges_on_their_closed_stops_are_stressed_as_the_overload_table_says(macro):
     """All parts as drawn, gaps as wide as limits make them: what tests/fem holds against finite elements."""
-    zero = {n: np.zeros((1, v.pieces)) for n, v in macro.variables.items()}
+    zero = perfect(macro)
     wider = macro.layout.design.stop.tolerance + seat(macro.layout)
     zero["element: stop gap"] = np.full((1, len(macro.layout.elements)), wider)
     share = [1.0 / state.yield_factor for state in overloads(macro.layout)]
@@ -121,11 +121,17 @@ def test_a_refusal_is_confirmed_by_the_worst_case(macro):
     assert line.shortfall == pytest.approx(0.56 + 0.2 + 0.1 - 0.5)
 
 
-def test_perfect_parts_make_the_array_as_drawn(macro):
-    """All deviations nought: pads in one plane, plate on the ledges, gaps and stiffness as drawn."""
+def perfect(macro):
+    """All deviations nought, the fixture's steps higher by half of a play of 0.012: a hole of 3.012 on a pin
+    of 3."""
     zero = {n: np.zeros((1, v.pieces)) for n, v in macro.variables.items()}
-    a = Assembled(macro.layout, zero)
-    assert a.pads == pytest.approx(0.0, abs=1e-9)
+    return {**zero, STEPS: np.full((1, 2), 0.006)}
+
+
+def test_perfect_parts_make_the_array_as_drawn(macro):
+    """Pads in one plane, plate on the ledges, gaps and stiffness as drawn."""
+    a = Assembled(macro.layout, perfect(macro))
+    assert a.pads == pytest.approx(0.0, abs=1e-9) and a.turn == pytest.approx(0.0, abs=1e-9)
     assert a.lifts == pytest.approx(0.0, abs=1e-9)
     assert a.tilt == pytest.approx(0.0, abs=1e-6)
     assert a.row_gaps == pytest.approx(2.0)
@@ -133,15 +139,15 @@ def test_perfect_parts_make_the_array_as_drawn(macro):
     assert a.stiffness[0] == pytest.approx(drawn, rel=1e-12)
 
 
-def test_a_higher_pad_lifts_its_array_and_a_low_ledge_its_plate(macro):
-    """One pad 30 um longer than others, more than the play of its dowel takes: it carries the others off."""
-    zero = {n: np.zeros((1, v.pieces)) for n, v in macro.variables.items()}
-    zero[PAD] = np.array([[0.0] * 4 + [0.03] + [0.0] * 5])
-    a = Assembled(macro.layout, zero)
-    play = 0.012  # the model's: a hole of 3.012 on a pin of 3, all at their nominal sizes
-    assert 0.0 < float(a.pads_apart.item()) <= 0.03 - play + 1e-9
-    low = {n: np.zeros((1, v.pieces)) for n, v in macro.variables.items()}
-    low["element: ledge over the pad face"] = np.array([[0.0] * 2 + [-0.004] + [0.0] * 7])
+def test_a_longer_pad_turns_its_element_and_a_low_ledge_lifts_its_plate(macro):
+    """One pad 30 um longer than others: its element alone turns, about the pad's outer edge 17.5 mm from its
+    dowel; its pad's middle, a millimetre inwards, stands off the floor by as much over 17.5."""
+    one = {**perfect(macro), PAD: np.array([[0.0] * 4 + [0.03] + [0.0] * 5])}
+    a = Assembled(macro.layout, one)
+    turn = 0.03 / (min(macro.layout.dowel_x) - macro.layout.pad_outer)
+    assert a.turn[0] == pytest.approx([0.0] * 4 + [-turn] + [0.0] * 5, abs=1e-9)
+    assert float(a.pads_apart.item()) == pytest.approx(turn * 1.0)
+    low = {**perfect(macro), "element: ledge over the pad face": np.array([[0.0] * 2 + [-0.004] + [0.0] * 7])}
     assert Assembled(macro.layout, low).lifts[0] == pytest.approx([0, 0, 0.004] + [0] * 7, abs=1e-9)
 
 
@@ -151,7 +157,8 @@ def test_gaps_agree_with_rigid_bodies_placed_by_a_general_minimiser(macro):
     layout = macro.layout
     seats = np.column_stack([a.side * layout.hold_down_x, a.y])
     lands = np.column_stack([a.side * (layout.pad_inner + layout.design.stop.land_length / 2), a.y])
-    ledges = a.pads + a.made["element: ledge over the pad face"]
+    ledges = a.ledges(layout.hold_down_x)
+    at_land = a.ledges(layout.pad_inner + layout.design.stop.land_length / 2)
 
     def heights(x, points):
         turn = Rotation.from_rotvec([x[1], x[2], 0.0]).as_matrix()
@@ -177,7 +184,7 @@ def test_gaps_agree_with_rigid_bodies_placed_by_a_general_minimiser(macro):
         over = plate[0] + seats @ plate[1:] - ledges[k]
         assert over.min() >= -1e-9
         assert over.max() <= (heights(best.x / UNITS, seats) - ledges[k]).max() + 1e-6
-        own_lift = plate[0] + lands @ plate[1:] - ledges[k] + a.made["stop plate: flatness"][k]
+        own_lift = plate[0] + lands @ plate[1:] - at_land[k] + a.made["stop plate: flatness"][k]
         assert a.lifts[k] == pytest.approx(own_lift, abs=1e-9)
 
 

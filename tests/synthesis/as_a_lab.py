@@ -24,6 +24,8 @@ from tactcad.mechanics import gauge_signal, ladder, strength
 from tactcad.mechanics.readout import volts_per_strain
 from tactcad.mechanics.section import HingeSection
 from tactcad.parts.array.hinge_section import design_alloy, design_gauge, design_readout, hinge_section
+from tactcad.parts.array.layout import Layout
+from tactcad.parts.array.leads import longest_lead_resistance
 from tactcad.scenes import make_scene
 from tactcad.stacks.mechanic import Assembled
 from tactcad.stacks.variables import Distribution, made
@@ -203,8 +205,9 @@ def reading_error(design: Design) -> float:
     """Standard deviation of an averaged reading in a grasp, V: noise, rounding, and the zero's drift."""
     r = design_readout(design)
     count = 2.0 * r.adc_range / 2.0**r.adc_bits
-    drift = design.tolerance.zero_drift / 4.0 * r.excitation * r.gain  # a quarter bridge
-    return float(((r.noise**2 + count**2 / 12.0) / r.samples + (drift / LIMIT) ** 2) ** 0.5)
+    lead = longest_lead_resistance(Layout(design))  # copper, half a kelvin apart
+    drift = lead / design.gauge.resistance * 0.0039 * 0.5 / 4.0 * r.excitation * r.gain  # a quarter bridge
+    return float(((r.noise**2 + r.adc_noise**2 + count**2 / 12.0) / r.samples + (drift / LIMIT) ** 2) ** 0.5)
 
 
 def pressed(

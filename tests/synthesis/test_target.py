@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 from dataclasses import fields, replace
-from math import inf, log, pi, sqrt
 from pathlib import Path
 
 import pytest
@@ -13,7 +12,6 @@ from tactcad.cli.main import main
 from tactcad.design.design_text import design_text
 from tactcad.design.load import names, parse, read
 from tactcad.design.messages import InputError
-from tactcad.mechanics.sample_coupling import pad_stiffness
 from tactcad.synthesis.target import TABLES, parse_target, read_target
 
 SHIPPED = Path(__file__).parents[2] / "hardware" / "targets" / "better-array.toml"
@@ -52,12 +50,7 @@ def test_a_target_needs_an_object_and_forces_only():
         ),
         ("stiffness = [2, 10]", "stiffness = [2, nan]", "object.stiffness[1]: not a finite number"),
         ("stiffness = [2, 10]", "stiffness = [2]", "object.stiffness: a list of 1"),
-        (
-            "stiffness = [2, 10]",
-            "stiffness = [2, 10]\nthickness = 6",
-            "object.thickness: belongs to a modulus",
-        ),
-        ("stiffness = [2, 10]", "modulus = [1, 2]\nthickness = 1", "object.thickness: too thin"),
+        ("stiffness = [2, 10]", "modulus = [1, 2]\nthickness = 0.5", "object.thickness: too thin"),
         ("force = 10", "force = -1", "grasp.force: out of range"),
         ("force = 10", "forse = 10", "grasp.forse: unknown field"),
         ('name = "mine"', 'name = "con"', "target.name: not usable text"),
@@ -111,17 +104,12 @@ def test_the_shipped_target_says_where_its_values_are_from():
 
 
 def test_a_modulus_is_a_stiffness_under_one_pad():
-    """On a half-space: Boussinesq's 1/(pi E* r), and the mean of 1/r between two points of a unit square,
-    4 ln(1 + sqrt 2) - 4 (sqrt 2 - 1)/3."""
-    mean = (4 * log(1 + sqrt(2)) - 4 * (sqrt(2) - 1) / 3) / pi
-    assert 1.0 / pad_stiffness(1.0, 1.0, 1.0, inf, 0.0) == pytest.approx(mean, rel=1e-3)
-    # a layer far thinner than the pad is compressed evenly: M A/h, M the modulus of one-dimensional strain
-    nu, h = 0.3, 0.02
-    oedometric = (1 - nu) / ((1 + nu) * (1 - 2 * nu)) / h
-    assert pad_stiffness(1.0, 1.0, 1.0, h, nu) == pytest.approx(oedometric, rel=0.03)
-    target = parse_target(LEAST.replace("stiffness = [2, 10]", "modulus = [1, 2]\nthickness = 6"), "t")
-    low, high = target.stiffness_range
-    assert high == pytest.approx(2 * low) and low == pytest.approx(pad_stiffness(1.0, 2.0, 3.0, 6.0, 0.5))
+    """Of a rigid pad, 2 x 3 mm: 14 x 18 graded patches of other code gave 4.98 N/mm for 1 MPa on 6 mm and
+    3.73 on a half-space, nu 0.49, some 0.4 % too little."""
+    for thickness, stiffness in (("thickness = 6", 4.98), ("", 3.73)):
+        target = parse_target(LEAST.replace("stiffness = [2, 10]", f"modulus = [1, 2]\n{thickness}"), "t")
+        low, high = target.stiffness_range
+        assert high == pytest.approx(2 * low) and low == pytest.approx(stiffness * 1.004, rel=3e-3)
 
 
 @pytest.mark.parametrize("name", names())

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from tactcad.mechanics import gauge_signal, readout
-from tactcad.parts.array.bridge_figures import amplified, drift
+from tactcad.parts.array.bridge_figures import amplified, drift, reading_scatter
 from tactcad.parts.array.hinge_section import design_gauge, design_readout, hinge_section
 from tactcad.parts.array.layout import ElementPlace, Layout
 from tactcad.parts.array.leads import longest_lead_resistance
@@ -22,7 +22,8 @@ class ElementSignal:
     per_force   V/N behind the amplifier, at no load
     rated       least and largest output at the rated force, V, of either sign, tolerances at their worst
     overload    likewise with the stop closed under the overload force
-    resolution  N: noise and quantisation at two standard deviations, and drift, by the root of their squares
+    rated_strain, overload_strain   of the foil at these two
+    resolution  N: two standard deviations of a reading, and drift, by the root of their squares
     """
 
     place: ElementPlace
@@ -30,12 +31,14 @@ class ElementSignal:
     rated: tuple[float, float]
     overload: tuple[float, float]
     resolution: float
+    rated_strain: float
+    overload_strain: float
 
 
 def smallest_output(layout: Layout) -> float:
-    """What the amplifier's output tells from none, V: noise and quantisation at two standard deviations, and
-    drift, by the root of their squares."""
-    return float(np.hypot(2 * design_readout(layout.design).averaged_noise, drift(layout)))
+    """What the amplifier's output tells from none, V: two standard deviations of a reading, of which the
+    warm-up between its samples' instants is a part, and drift, by the root of their squares."""
+    return float(np.hypot(2 * reading_scatter(layout), drift(layout)))
 
 
 def element_signals(layout: Layout) -> list[ElementSignal]:
@@ -57,11 +60,16 @@ def element_signals(layout: Layout) -> list[ElementSignal]:
     found = []
     for i, state in enumerate(overloads(layout)):
         per_force = volts * float(foil[i])
-        at_rated = gauge.factor * float(foil[i]) * state.rated_force
-        at_overload = gauge.factor * float(bent[i]) * state.deflection
+        strains = float(foil[i]) * state.rated_force, float(bent[i]) * state.deflection
+        at_rated, at_overload = (gauge.factor * strain for strain in strains)
         found.append(
             ElementSignal(
-                state.place, per_force, extremes(at_rated), extremes(at_overload), least / abs(per_force)
+                state.place,
+                per_force,
+                extremes(at_rated),
+                extremes(at_overload),
+                least / abs(per_force),
+                *strains,
             )
         )
     return found

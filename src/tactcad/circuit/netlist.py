@@ -1,8 +1,8 @@
 """A netlist: components with designators, values and part numbers, and what is connected by their pins.
 
-Designators by IEC 81346-2: B gauges, C capacitors, J connectors, Q transistors, R resistors, U integrated
-circuits, W leads, X terminals. Those of element n: Bn, Qn, Xn, R(10 n + 1) to R(10 n + 3), W likewise; those
-of board b: U(10 b + 1) and on, C, J likewise, and the resistor R(10 b) that sets its gain.
+Designators by IEC 81346-2: B gauges, C capacitors, D diodes, J connectors, Q transistors, R resistors, U
+integrated circuits, W leads, X terminals; A boards. Those of element n: Bn, Xn, W(10 n + 1) and on; those of
+board b begin with Ab- and go on as printed on the board (read_board.py).
 """
 
 from __future__ import annotations
@@ -23,6 +23,8 @@ Kind = Literal[
     "amplifier",
     "capacitor",
     "connector",
+    "regulator",
+    "diode",
 ]
 GROUND = "GND"
 
@@ -40,7 +42,8 @@ class Pin:
 class Component:
     """One component. `part_no` is its line of the bill. `figures` in V, ohm, F, Hz by name, for the deck.
 
-    `element` and `board` are the numbers of those that it belongs to; 0 for none.
+    `element` and `board` are the numbers of those that it belongs to; 0 for none. `footprint` by its name
+    (footprints.py), of what stands on a board; where not `fitted`, its place stays empty.
     """
 
     designator: str
@@ -51,6 +54,8 @@ class Component:
     figures: tuple[tuple[str, float], ...] = ()
     element: int = 0
     board: int = 0
+    footprint: str = ""
+    fitted: bool = True
 
     def net(self, role: str) -> str:
         """The net of the pin with that role; raises KeyError where it has none."""
@@ -89,7 +94,18 @@ class Netlist:
         return {name: tuple(nodes) for name, nodes in nets.items()}
 
     def of_kind(self, kind: Kind) -> Iterator[Component]:
-        return (c for c in self.components if c.kind == kind)
+        """Those that are fitted."""
+        return (c for c in self.components if c.kind == kind and c.fitted)
+
+    def pin_at(self, place: str) -> Pin:
+        """By designator and number: X1.2. Raises StopIteration where there is none."""
+        name, _, number = place.rpartition(".")
+        return next(p for c in self.components if c.designator == name for p in c.pins if p.number == number)
+
+    @cached_property
+    def excitations(self) -> frozenset[str]:
+        """The bridges' supplies, a net a board."""
+        return frozenset(c.net("out") for c in self.of_kind("regulator"))
 
     def on_board(self, kind: Kind, board: int) -> Component:
         """The amplifier, multiplexer or decoder of a board. Raises KeyError where there is none."""

@@ -21,10 +21,9 @@ from uuid import NAMESPACE_OID, uuid5
 from tactcad.parts.array.layout import Layout
 from tactcad.parts.array.leads import colours
 
-from .bridges import EXCITATION
 from .netlist import Component, Netlist
 
-PASSIVE = ("lead", "terminal", "gauge", "resistor", "capacitor", "connector")
+PASSIVE = ("lead", "terminal", "gauge", "resistor", "capacitor", "connector", "diode")
 Expression = str | tuple
 
 
@@ -75,7 +74,12 @@ def _component(netlist: Netlist, c: Component) -> Expression:
         "comp",
         ("ref", c.designator),
         ("value", c.value),
-        ("fields", ("field", ("name", "part_no"), c.part_no)),
+        *([("footprint", f"tactcad:{c.footprint}")] if c.footprint else []),
+        (
+            "fields",
+            ("field", ("name", "part_no"), c.part_no),
+            ("field", ("name", "fitted"), "yes" if c.fitted else "no"),
+        ),
         ("libsource", ("lib", "tactcad"), ("part", c.part_no), ("description", c.kind)),
         ("sheetpath", ("names", "/"), ("tstamps", "/")),
         ("tstamps", own),
@@ -105,6 +109,7 @@ OPEN = 1e12  # ohm of an open switch; chosen: a millionth of a microvolt at a br
 POLE_OHM = 1e3  # of the amplifier's pole; chosen: its own noise is nothing behind a gain
 FOUR_K_T = 4 * 1.380649e-23 * 300.15  # J, at SPICE's 27 C
 WITHOUT_LINES = ("terminal", "decoder", "connector")
+DIODE = ".model schottky D(IS=2e-7 RS=0.1 N=1.05)"  # about 0.3 V at 20 mA, as a 1N5819 has
 
 
 def deck_bytes(netlist: Netlist) -> bytes:
@@ -114,11 +119,11 @@ def deck_bytes(netlist: Netlist) -> bytes:
 
 def deck(netlist: Netlist, commands: Sequence[str]) -> str:
     """The circuit with all switches open, and commands of ngspice for it."""
-    lines = [f"* {netlist.name}: run with ngspice -b", f"VEXC {EXCITATION} 0 {netlist.excitation!r} AC 1"]
+    lines = [f"* {netlist.name}: run with ngspice -b", DIODE]
     lines += [f"V{rail} {rail} 0 {volts!r}" for rail, volts in netlist.supplies]
     for component in netlist.components:
         lines += _lines(component)
-    return "\n".join([*lines, ".control", "set numdgt=13", *commands, ".endc", ".end", ""])
+    return "\n".join([*lines, ".control", "set numdgt=13", *commands, "quit 0", ".endc", ".end", ""])
 
 
 def reading(netlist: Netlist) -> Iterator[str]:
@@ -142,7 +147,7 @@ def closed(netlist: Netlist, element: int, ohm: float | None = None) -> Iterator
     yield f"alter RQ{element} = {switch.figure('ohm') if ohm is None else ohm!r}"
     for side in "AB":
         on = multiplexer.figure("ohm") if ohm is None else ohm
-        yield f"alter R{multiplexer.designator}S{channel}{side} = {on!r}"
+        yield f"alter R{_name(multiplexer)}S{channel}{side} = {on!r}"
 
 
 def channel_of(multiplexer: Component, element: int) -> int:
@@ -156,20 +161,30 @@ def _node(net: str) -> str:
     return "0" if net == "GND" else net.lower()
 
 
+def _name(c: Component) -> str:
+    """The component's in the deck, whose names take no dash."""
+    return c.designator.replace("-", "_")
+
+
 def _lines(c: Component) -> list[str]:
-    """The component's lines of the deck."""
-    if c.kind in WITHOUT_LINES:
+    """The component's lines of the deck; the bridges' supply is an ideal source."""
+    if c.kind in WITHOUT_LINES or not c.fitted:
         return []
+    if c.kind == "regulator":
+        net = c.net("out")
+        return [f"V{net} {_node(net)} 0 {c.figure('volts')!r} AC 1"]
+    if c.kind == "diode":
+        return [f"D{_name(c)} {_node(c.net('2'))} {_node(c.net('1'))} schottky"]
     if c.kind == "switch":
         return [f"RQ{c.element} {_node(c.net('drain'))} {_node(c.net('source'))} {OPEN!r}"]
     if c.kind == "capacitor":
-        return [f"{c.designator} {_node(c.net('1'))} {_node(c.net('2'))} {c.figure('farad')!r}"]
+        return [f"C{_name(c)} {_node(c.net('1'))} {_node(c.net('2'))} {c.figure('farad')!r}"]
     if c.kind == "multiplexer":
         ends = {side: _node(c.net(f"out_{side.lower()}")) for side in "AB"}
         channels = [pin for pin in c.pins if pin.role[0] == "S"]
-        return [f"R{c.designator}{p.role} {_node(p.net)} {ends[p.role[-1]]} {OPEN!r}" for p in channels]
+        return [f"R{_name(c)}{p.role} {_node(p.net)} {ends[p.role[-1]]} {OPEN!r}" for p in channels]
     if c.kind == "amplifier":
-        inner, name = c.designator.lower(), c.designator
+        inner, name = _name(c).lower(), _name(c)
         noise = c.figure("noise") ** 2 / FOUR_K_T
         farad = 1 / (2 * pi * POLE_OHM * c.figure("bandwidth"))
         out = _node(c.net("out"))
@@ -182,7 +197,7 @@ def _lines(c: Component) -> list[str]:
             f"C{name}P {out} 0 {farad!r}",
         ]
     first, second = (_node(c.net(role)) for role in "12")
-    return [f"R{c.designator} {first} {second} {c.figure('ohm')!r}"]
+    return [f"R{_name(c)} {first} {second} {c.figure('ohm')!r}"]
 
 
 @dataclass(frozen=True)

@@ -13,8 +13,7 @@ from .parser import add_needless_allowance, allowance
 from .readings import add_map, from_log
 
 if TYPE_CHECKING:
-    from tactcad.design.family import FamilyReadings
-    from tactcad.design.tree import CommonTables
+    from tactcad.design.tree import Design
     from tactcad.lab.load_cell import LoadCell
 
 EXAMPLES = """\
@@ -67,15 +66,27 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    from tactcad.design.files import refuse_overwriting, write_whole
-    from tactcad.lab import calibration, calibration_file, log_readings, readings
-
-    from .streams import slow_work
+    from tactcad.design.family import family_of
+    from tactcad.design.files import refuse_overwriting
+    from tactcad.parts.designs import load
 
     allowance(args)
     if args.out:
         refuse_overwriting(args.out, args.file, args.map)
-    load_cell = _load_cell(args.load_cell, args.design)
+    if args.design is None:
+        return calibrate_rows(args, None)
+    design = load(args.design)
+    return family_of(design).must("readings", "calibrate --design").calibrate(args, design)
+
+
+def calibrate_rows(args: argparse.Namespace, design: Design | None) -> int:
+    """Of facing rows: one component an element."""
+    from tactcad.design.files import write_whole
+    from tactcad.lab import calibration, calibration_file, column_units, log_readings, readings
+
+    from .streams import slow_work
+
+    load_cell = _load_cell(args.load_cell, args.design, design)
     with slow_work(sys.stderr) as tell:
         tell(0, 1, f"reading {args.file}")
         if args.map:
@@ -90,9 +101,7 @@ def run(args: argparse.Namespace) -> int:
             run_scatter=args.run_scatter,
             tell=tell,
         )
-    warnings = (
-        _readings_of(args.design)[0].against(table, rows, load_cell, args.design) if args.design else []
-    )
+    warnings = column_units.against_design(table, rows, load_cell, design) if design else []
     if args.out:
         write_whole(args.out, calibration_file.to_csv(rows, load_cell).encode())
     if args.json:
@@ -103,10 +112,10 @@ def run(args: argparse.Namespace) -> int:
     return 0
 
 
-def _load_cell(given: str | None, design: str | None) -> LoadCell:
+def _load_cell(given: str | None, source: str | None, design: Design | None) -> LoadCell:
     """The load cell of --load-cell or of the design's [calibration]; without either the paper's, with limits
     that are assumed."""
-    from tactcad.lab.load_cell import LoadCell
+    from tactcad.lab.load_cell import LoadCell, of_design
 
     if design is None:
         from tactcad.paper import published
@@ -116,17 +125,7 @@ def _load_cell(given: str | None, design: str | None) -> LoadCell:
         raise InputError(
             "--load-cell", "stands in the design's [calibration]; leave out one of both", value=given
         )
-    readings, read = _readings_of(design)
-    cell = readings.load_cell(read)
+    cell = of_design(design)
     if cell is None:
-        raise InputError(f"design {design}", "has no [calibration] table, where its load cell would stand")
+        raise InputError(f"design {source}", "has no [calibration] table, where its load cell would stand")
     return cell
-
-
-def _readings_of(source: str) -> tuple[FamilyReadings, CommonTables]:
-    """What the family of a design makes of readings, and the design."""
-    from tactcad.design.family import family_of
-    from tactcad.parts.designs import load
-
-    design = load(source)
-    return family_of(design).must("readings", "calibrate --design"), design

@@ -26,7 +26,8 @@ EXAMPLES = """\
 
 DIR gets the answer first: design.toml, which every rule accepts, report.html and report.json. What limits
 it and a design file for each alternative follow. Without --in the answer takes at most 30 s on two cores,
-and all of it 2 minutes. Exit status 1 if the target cannot be met: what it misses, and the least change of
+and all of it 2 minutes; 2 and 3 minutes where the object is a body (a modulus or a thickness).
+Exit status 1 if the target cannot be met: what it misses, and the least change of
 each single field that would make it possible; nothing is written then except with --best."""
 
 

@@ -330,7 +330,7 @@ def _spread(tolerance: Tolerance, shares: dict) -> list[str]:
     alone = shares["hinge_thickness"]
     least, most = float(alone.min()), float(alone.max())
     share = f"{alone.mean():.1%}" if most < 1.1 * least else f"{least:.1%} to {most:.1%}"
-    total = together(shares)
+    total = together(shares.values())
     worst = int(total.argmax())
     largest = sorted(shares, key=lambda field: -shares[field][worst])
     parts = ", ".join(
@@ -338,8 +338,7 @@ def _spread(tolerance: Tolerance, shares: dict) -> list[str]:
     )
     return [
         f"as cut: hinge thickness +-{1e3 * tolerance.hinge_thickness:g} um alone is K +-{share}; measure it",
-        f"as built: all of [tolerance] together K +-{total[worst]:.1%} at no. {worst + 1} "
-        f"(root of squares): {parts}",
+        f"as built: all of [tolerance] together K +-{total[worst]:.1%} at no. {worst + 1} (95 %): {parts}",
     ]
 
 

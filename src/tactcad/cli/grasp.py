@@ -162,7 +162,7 @@ def as_text(done: PressedArray) -> str:
         f"object: {layer}, E {body.modulus:g} MPa, nu {body.poisson:g}; "
         f"K_obj {done.object_stiffness:.4g} N/mm under a single level pad",
         f"load {done.load:g} N, inclined {done.angle[0]:g}, {done.angle[1]:g} degrees; rung {done.rung}: "
-        f"forces within {done.expected_error:.2g} of their mean",
+        f"forces within {100 * done.expected_error:.2g} % of their mean",
         "",
         *text_table(list(ELEMENT.values()), done.elements),
         "",

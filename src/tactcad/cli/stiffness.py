@@ -4,9 +4,13 @@ from __future__ import annotations
 
 import argparse
 import sys
+from typing import TYPE_CHECKING
 
 from .parser import add_needless_allowance, allowance
 from .readings import add_map, from_log
+
+if TYPE_CHECKING:
+    from tactcad.design.tree import Design
 
 EXAMPLES = """\
   tactcad calibrate hardware/examples/calibration.csv --out calibration.csv
@@ -72,23 +76,25 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     from tactcad.design.family import family_of
     from tactcad.design.load import DEFAULT_DESIGN
+    from tactcad.parts.designs import load
+
+    allowance(args)
+    args.design = args.design or DEFAULT_DESIGN
+    design = load(args.design)
+    return family_of(design).must("readings", "stiffness --design").stiffness(args, design)
+
+
+def stiffness_rows(args: argparse.Namespace, design: Design) -> int:
+    """Of facing rows: one component an element."""
     from tactcad.design.messages import InputError
     from tactcad.lab import calibration_file, grasp, log_readings, pads, readings
-    from tactcad.parts.designs import load
 
     from .streams import slow_work
 
-    allowance(args)
     if args.coupling is not None and (args.thickness or args.nu) is not None:
         raise InputError("--coupling", "takes the object as springs", legal="without --thickness and --nu")
     known = calibration_file.read(args.calibration)
-    source = args.design or DEFAULT_DESIGN
-    design = load(source)
-    family = family_of(design)
-    readings_of = family.must("readings", "stiffness --design")
-    layers = []
-    if args.coupling is None:
-        layers = pads.layers(design, args.thickness, args.nu)
+    layers = pads.layers(design, args.thickness, args.nu) if args.coupling is None else []
     results: list[grasp.Grasp] = []
     with slow_work(sys.stderr) as tell:
         tell(0, 1, f"reading {args.file}")
@@ -97,18 +103,18 @@ def run(args: argparse.Namespace) -> int:
         )
         for g in samples:
             tell(len(results), len(samples), f"sample {g.sample}")
-            shares = pads.coupling(source, g, args.coupling or 0.0)
+            shares = pads.coupling(args.design, g, args.coupling or 0.0)
             found = grasp.evaluate(
                 g,
                 known,
                 reference=args.reference,
                 level=args.level,
                 coupling=shares,
-                overload_force=readings_of.overload(design),
-                elements=len(family.layout(design).elements),
+                overload_force=design.rating.overload_force,
+                elements=sum(map(len, design.array.row_arms)),
             )
             if layers:
-                pads.refuse_strangers(source, g)
+                pads.refuse_strangers(args.design, g)
                 found = grasp.on_layers(found, g, known, layers, args.level)
             results.append(found)
     sys.stdout.write((grasp.to_json if args.json else grasp.to_text)(results, args.level))

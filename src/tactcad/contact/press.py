@@ -274,6 +274,7 @@ def _block_by_elements(pads: Pads, body: Body, one: np.ndarray) -> Callable[[flo
     return SolidFace(body, one, (pads.length, pads.width), reach).block
 
 
+@lru_cache(maxsize=64)
 def pad_stiffness(body: Body, length: float, width: float, disc: bool = False) -> float:
     """Force on one rigid pad that does not tilt over its displacement, N/mm: K_obj of a body."""
     C = influence(body, tuple(patches(length, width, disc)))

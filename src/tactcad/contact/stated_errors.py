@@ -42,13 +42,19 @@ def depth_share(pads: Pads, body: Body, force: np.ndarray) -> float:
     return float(force.max() / alone / min(pad_radius(pads), body.thickness))
 
 
+def strain_error(pads: Pads, body: Body, depth: float | np.ndarray) -> float | np.ndarray:
+    """Largest error of a linear body's force on a pad, relative, where the deepest is `depth_share` deep."""
+    data = errors()
+    zone = int(np.searchsorted(data["thickness"], body.thickness / pad_radius(pads), side="right"))
+    return np.interp(depth, data["depth"], data["strain"][zone])
+
+
 def stated_error(rung: str, pads: Pads, body: Body, force: np.ndarray) -> float:
     """Largest error of the pads' forces that is stated for a rung where the pads bear these."""
     data = errors()
     strain = 0.0
     if rung != "large":
-        zone = int(np.searchsorted(data["thickness"], body.thickness / pad_radius(pads), side="right"))
-        strain = float(np.interp(depth_share(pads, body, force), data["depth"], data["strain"][zone]))
+        strain = float(strain_error(pads, body, depth_share(pads, body, force)))
     if rung == "springs":
         K = float((1 / pads.compliance[:, 0, 0]).max())
         hardness = K / (K + pad_stiffness(body, pads.length, pads.width, pads.disc))

@@ -79,12 +79,16 @@ class FamilyReadout:
     """What reads the elements.
 
     netlist  (layout) to the circuit
+    boards   (layout) to every different board, laid out
+    supplies (layout) to the lines of the bill of what the read-out takes
     wiring   (layout, circuit) to the bytes of the table of leads to cut
     sheets   orders of the circuit's drawing to what is written
     signals  (design) to V/N of every element
     """
 
     netlist: Late
+    boards: Late
+    supplies: Late
     wiring: Late
     sheets: Late
     signals: Late
@@ -107,16 +111,14 @@ class FamilyPads:
 
 @dataclass(frozen=True)
 class FamilyReadings:
-    """What a lab needs of a design besides its readings.
+    """What a lab's readings tell, in as many components as an element feels.
 
-    load_cell  (design) to the load cell of its calibration, None where the design has none
-    overload   (design) to the force that no grasp may pass, N
-    against    (readings, elements, load cell, design's name) to warnings where its estimates are far off
+    calibrate  `tactcad calibrate`: (arguments, design) to the exit status
+    stiffness  `tactcad stiffness`, likewise
     """
 
-    load_cell: Late
-    overload: Late
-    against: Late
+    calibrate: Late
+    stiffness: Late
 
 
 @dataclass(frozen=True)

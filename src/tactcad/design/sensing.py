@@ -14,6 +14,14 @@ from typing import Any
 from .fields import Number, OneOf, Whole, given
 from .text_values import data_rows
 
+# By what sets the instant of a sample: s by which it may differ from reading to reading, plus and minus.
+# Chosen: a line of the card that is clocked with its samples is some ns to a us late; USB hands a command on
+# within a frame of 1 ms (USB 2.0, full speed).
+JITTER = {"hardware": 1e-6, "software": 1e-3}
+# V rms of one sample for each volt of the range: NI 6259, 140 uV at +-5 V, from memory of its table
+# (unread). The paper's USB-6258 stands in no list of the maker's that was found; 6255 and 6259 do.
+ADC_NOISE = 28e-6
+
 
 @dataclass(frozen=True)
 class Bought:
@@ -41,8 +49,10 @@ class Amplifier(Bought):
     noise_out: float
     bandwidth_100: float
     gain_bandwidth: float
-    offset: float
-    drift: float
+    offset_in: float
+    offset_out: float
+    drift_in: float
+    drift_out: float
     above_negative: float
     below_positive: float
     least_supply: float
@@ -63,6 +73,14 @@ class Amplifier(Bought):
     def noise_density(self, gain: float) -> float:
         """White noise referred to the input, V/rtHz."""
         return (self.noise_in**2 + (self.noise_out / gain) ** 2) ** 0.5
+
+    def offset(self, gain: float) -> float:
+        """Largest, referred to the input, V."""
+        return self.offset_in + self.offset_out / gain
+
+    def drift(self, gain: float) -> float:
+        """Largest of the offset, referred to the input, V/K."""
+        return self.drift_in + self.drift_out / gain
 
     def bandwidth(self, gain: float) -> float:
         """-3 dB, Hz: that at a gain of 100 falls with larger gains, and rises to `gain_bandwidth`."""
@@ -107,6 +125,32 @@ class Completion(Bought):
 
 
 @dataclass(frozen=True)
+class Converter(Bought):
+    """A sigma-delta converter; noise V rms at the input at a gain and a rate (Hz), drift V/K, clock Hz."""
+
+    inputs: int
+    bits: int
+    gains: tuple[float, ...]
+    noise: float
+    noise_gain: float
+    noise_rate: float
+    clock: float
+    drift: float
+    ratiometric: bool
+    source: str
+
+
+@dataclass(frozen=True)
+class Foil(Bought):
+    """A gauge's grid on its backing: largest strain, and the strain plus and minus at which it bears so many
+    cycles."""
+
+    strain: float
+    fatigue: float
+    cycles: float
+
+
+@dataclass(frozen=True)
 class Wire:
     """Lead wire: conductor and insulation mm, ohm/m."""
 
@@ -146,8 +190,10 @@ def _amplifier(row: dict[str, str]) -> Amplifier:
         **_numbers(row, *same, "least_supply", "most_supply", "settling"),
         noise_in=float(row["noise_in"]) * 1e-9,
         noise_out=float(row["noise_out"]) * 1e-9,
-        offset=float(row["offset"]) * 1e-6,
-        drift=float(row["drift"]) * 1e-6,
+        offset_in=float(row["offset_in"]) * 1e-6,
+        offset_out=float(row["offset_out"]) * 1e-6,
+        drift_in=float(row["drift_in"]) * 1e-6,
+        drift_out=float(row["drift_out"]) * 1e-6,
         input_capacitance=float(row["input_pF"]) * 1e-12,
         pins=_pins(row, "rg1", "minus", "plus", "negative", "ref", "out", "positive", "rg2"),
     )
@@ -184,6 +230,24 @@ COMPLETIONS = {
     )
     for row in _rows("completions")
 }
+CONVERTERS = {
+    row["name"]: Converter(
+        **_bought(row),
+        inputs=int(row["inputs"]),
+        bits=int(row["bits"]),
+        gains=tuple(map(float, row["gains"].split())),
+        noise=float(row["noise_nV"]) * 1e-9,
+        drift=float(row["drift_nV"]) * 1e-9,
+        ratiometric=row["ratiometric"] == "true",
+        source=row["source"],
+        **_numbers(row, "noise_gain", "noise_rate", "clock"),
+    )
+    for row in _rows("converters")
+}
+FOILS = {
+    row["name"]: Foil(**_bought(row), **_numbers(row, "strain", "fatigue", "cycles"))
+    for row in _rows("foils")
+}
 WIRES = {
     row["name"]: Wire(row["name"], **_numbers(row, "diameter", "outer", "ohm_per_metre"))
     for row in _rows("wires")
@@ -196,6 +260,9 @@ class StrainGauge:
 
     resistance: float = given(Number("ohm", 10, 10000, "gauge resistance"), 120.0)
     factor: float = given(Number("", 0.5, 200, "gauge factor"), 2.1)
+    foil: str = given(
+        OneOf(tuple(FOILS), "grid and backing, for the strain that they bear"), "constantan on polyimide"
+    )
     grid_length: float = given(Number("mm", 0.01, 10, "active grid length, centred on the hinge"), 0.5)
     grid_width: float = given(Number("mm", 0.01, 20, "grid width"), 0.65)
     grid_height: float = given(Number("mm", 0, 0.5, "backing and adhesive: foil over the hinge's face"), 0.03)
@@ -271,6 +338,33 @@ class Readout:
         Number("mN", 1e-4, 1e6, "smallest force that each element is to tell from none"),
         None,
         "none is asked for",
+    )
+    instant: float | None = given(
+        Number("s", 0, 100, "from ENABLE to the first sample"), None, "as late as readout.on_time allows"
+    )
+    timing: str = given(
+        OneOf(tuple(JITTER), "what sets the instant: a clocked line of the card, or a program"), "hardware"
+    )
+    jitter: float | None = given(
+        Number("s", 0, 1, "of the instant, plus and minus"), None, "1 us by hardware, 1 ms by software"
+    )
+    mains: float | None = given(
+        Number("Hz", 10, 1000, "of the mains: the samples are spread over a whole period of it"),
+        None,
+        "not asked: samples follow each other at readout.sample_rate",
+    )
+    hum: float = given(Number("V", 0, 10, "rms of the mains at the amplifier's output"), 0.0)
+    adc_noise: float | None = given(
+        Number("V", 0, 10, "rms of one sample, by the converter itself"),
+        None,
+        "28 uV for each volt of readout.adc_range",
+    )
+    excitation_drift: float = given(
+        Number("", 0, 0.1, "relative change of the bridges' supply between zero and reading"), 0.001
+    )
+    converter: str = given(
+        OneOf(("card", *CONVERTERS), "a card behind the amplifier, or settings of a converter besides"),
+        "card",
     )
     inputs: int | None = given(
         Whole(1, 4096, "differential inputs of the converter's card"), None, "one for each board"

@@ -236,9 +236,10 @@ class Tolerance:
     clamp_compliance: float = given(
         Number("rad/(N mm)", 0, 1e-3, "turn of the clamp under the moment at its edge, at most"), 1e-5
     )
-    zero_drift: float = given(
+    zero_drift: float | None = given(
         Number("", 0, 0.01, "dR/R by which a bridge's zero drifts during a grasp, by its leads' warmth"),
-        1.1e-5,
+        None,
+        "0.5 K between the copper of the longest lead and its neighbour, over the gauge's resistance",
     )
     creep: float = given(
         Number("", 0, 0.1, "share of a gauge's signal that creeps under a held load, each decade of time"),

@@ -7,21 +7,24 @@ their MOSFETs lack the substrate's arrow.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from math import ceil
 
-from tactcad.circuit.bridges import EXCITATION, LOGIC, NEGATIVE, POSITIVE, netlist
+from tactcad.circuit.bridges import netlist
 from tactcad.circuit.netlist import GROUND, Component, Netlist
 from tactcad.circuit.netlist_files import wiring
+from tactcad.circuit.read_board import LOGIC, NEGATIVE, POSITIVE
 from tactcad.design.family import taken_as
 from tactcad.design.messages import CheckFailure
 from tactcad.design.sensing import MULTIPLEXERS
 from tactcad.design.tree import CommonTables, Design
-from tactcad.parts.array.bridge_figures import settling_time
+from tactcad.parts.array.bridge_figures import instants, jitter, settling_time
 from tactcad.parts.array.layout import ElementPlace, Layout
 from tactcad.parts.array.leads import COLOURS, boards, lead_routes, leads
 from tactcad.parts.array.supplies import wire_metres
+from tactcad.parts.bought.electronic_parts import TO_CARD, TO_LEADS
 
 from .engine.ink import (
     FRAME,
@@ -102,6 +105,7 @@ def circuit_sheets(design: Design, draft: bool = False, sample: bool = False) ->
     ]
     pages = [
         channel_page(circuit, _channel_notes(layout)),
+        around_page(circuit),
         *_tables(CHANNEL_HEADS, list(_channels(circuit)), "Circuit, all channels"),
         plan_page(layout, _plan_notes(layout)),
         *_tables(LEAD_HEADS, rows, "Wiring list"),
@@ -113,18 +117,23 @@ def circuit_sheets(design: Design, draft: bool = False, sample: bool = False) ->
 def _channel_notes(layout: Layout) -> list[str]:
     r, inputs = layout.design.readout, len(boards(layout))
     address = len(MULTIPLEXERS[r.multiplexer].address)
-    settled = ceil(settling_time(layout.design) * 1e6)
+    settled, at = ceil(settling_time(layout.design) * 1e6), instants(layout.design) * 1e3
     return [
-        "Symbols IEC 60617, letters of designators IEC 81346-2: B gauge, C capacitor, J connector, Q "
-        "transistor, R resistor, U circuit, W lead, X terminal",
-        f"The bridges' supply, EXC, is {r.excitation:g} V over GND; VPOS {r.supply_positive:g} V, VNEG "
+        "Symbols IEC 60617, letters of designators IEC 81346-2: B gauge, C capacitor, D diode, J connector, "
+        "Q transistor, R resistor, U circuit, W lead, X terminal",
+        f"The bridges' supply, EXC, is {r.excitation:g} V over GND, made from VPOS on each board; "
+        f"VPOS {r.supply_positive:g} V, VNEG "
         f"{r.supply_negative:g} V, V5 5 V",
         "The address names the channel whose bridge is led to the amplifier; ENABLE high turns its switch "
         "on, all others are off; with ENABLE low no gauge is warm, and the amplifier's inputs rest at EXC",
         f"The card needs {inputs + address} digital outputs, A0 to A{address - 1} for all boards and one "
         f"ENABLE a board; and {inputs} differential input{'s' if inputs > 1 else ''}, OUT and GND of a board",
-        f"Sample {settled} us after ENABLE or later: {r.samples} samples within {r.on_time * 1e3:g} ms",
-        "All other channels are alike: next sheets; inputs of channels that are not used are on GND",
+        f"{r.samples} samples a reading, {at[0]:.4g} to {at[-1]:.4g} ms after ENABLE, always at "
+        f"the same instant within {jitter(layout.design) * 1e6:g} us"
+        + (", by a clocked line of the card" if r.timing == "hardware" else ", by a program")
+        + f": the gauge warms meanwhile; the output has settled after {settled} us",
+        "All other channels are alike; of channels that are not used the switch and the third arm are left "
+        "off, the other arms are links, so that their inputs lie at EXC",
     ]
 
 
@@ -146,8 +155,7 @@ def _channels(circuit: Netlist) -> Iterator[tuple[str, ...]]:
     """Every channel of every board, a row each."""
     leads: dict[int, list[Component]] = {}
     arms: dict[int, list[Component]] = {}
-    of_leads = [c for c in circuit.of_kind("connector") if EXCITATION not in {p.net for p in c.pins}]
-    connectors = {c.board: c for c in of_leads}
+    connectors = {c.board: c for c in circuit.of_kind("connector") if c.part_no == TO_LEADS}
     for by_element, kind in ((leads, "lead"), (arms, "resistor")):
         for c in circuit.components:
             if c.kind == kind and c.element:
@@ -158,21 +166,26 @@ def _channels(circuit: Netlist) -> Iterator[tuple[str, ...]]:
         pair = [p for p in multiplexer.pins if p.net in (f"E{n}_PLUS", f"E{n}_MINUS")]
         ends = {lead.net("2") for lead in leads[n]}
         pins = [p.number for p in connectors[b].pins if p.net in ends]
-        gate = next(p for p in decoder.pins if p.net == f"GATE{n}")
+        gate = next(p for p in decoder.pins if p.net == f"E{n}_GATE")
         yield (
             f"{b}",
             pair[0].role[1:-1],
             f"E{n}",
             gauge.designator,
-            f"{arms[n][0].designator} to {arms[n][-1].designator}",
+            f"{printed(arms[n][0])} to {printed(arms[n][2])}",
             f"{leads[n][0].designator} to {leads[n][-1].designator}",
             f"X{n}",
-            f"{connectors[b].designator}.{pins[0]} to {pins[-1]}",
-            f"Q{n}",
-            f"{multiplexer.designator}.{pair[0].number} +, .{pair[1].number} −",
-            f"{decoder.designator}.{gate.number} {gate.role}",
+            f"{printed(connectors[b])}.{pins[0]} to {pins[-1]}",
+            printed(circuit.of_element("switch", n)),
+            f"{printed(multiplexer)}.{pair[0].number} +, .{pair[1].number} −",
+            f"{printed(decoder)}.{gate.number} {gate.role}",
             circuit.on_board("amplifier", b).net("out"),
         )
+
+
+def printed(component: Component) -> str:
+    """The designator as on the board."""
+    return component.designator.rpartition("-")[2]
 
 
 def _tables(heads: Sequence[str], rows: Sequence[tuple[str, ...]], kind: str) -> list[Page]:
@@ -237,7 +250,7 @@ def plan_page(layout: Layout, says: list[str]) -> Page:
         if abs(tie[1] - named.get(side, 1e9)) < 2 * LETTERS:
             continue  # a long row: those between are named in the list
         named[side] = tie[1]
-        name = f"J{10 * board.number + 2}"
+        name = f"A{board.number}-J2"
         start = end[0] + side * 1.5 - (width(name, LETTERS) if side < 0 else 0.0)
         items.append(Text((start, tie[1] - LETTERS / 2), name, LETTERS))
     items += _marks(layout, on)
@@ -281,22 +294,94 @@ def channel_page(circuit: Netlist, says: list[str]) -> Page:
     """The page of the first element's channel; `says` are its notes."""
     gauge = next(circuit.of_kind("gauge"))
     n, b = gauge.element, gauge.board
-    capacitors: list[Item] = []  # four below the bridge, the others below the decoder's lines
-    for i, c in enumerate(c for c in circuit.of_kind("capacitor") if c.board == b):
-        x, top = (92.0 + 26.0 * i, 140.0) if i < 4 else (246.0 + 32.0 * (i - 4), 128.0)
-        capacitors += capacitor((x, top), (x, top - 12.0), c.designator, c.value, c.net("1"))
     items = [
         *_array_side(circuit, gauge),
         *_bridge(circuit, n),
         *_switching(circuit, n, b),
         *_amplifier(circuit, b),
+        *_filter(circuit, b),
         *_card(circuit, b),
-        *capacitors,
         *dashed(24.0, 150.0, 39.0, 92.0, f"on the array: E{n}"),
-        *dashed(82.0, 112.0, 318.0, 164.0, f"board {b}, channel 1"),
+        *dashed(82.0, 112.0, 318.0, 164.0, f"board A{b}, channel 1"),
         *notes((26.0, 100.0), says, 190.0)[0],
     ]
     return Page(A3, "", tuple(items), "Circuit diagram")
+
+
+def around_page(circuit: Netlist) -> Page:
+    """The page of what stands around a board's circuits: supplies, digital lines, clamps."""
+    gauge = next(circuit.of_kind("gauge"))
+    own = [c for c in circuit.components if c.board == gauge.board and not c.element and c.fitted]
+    drawn = {p.net for p in circuit.on_board("amplifier", gauge.board).pins if p.role.startswith("rg")}
+    drawn |= {p.net for p in circuit.on_board("multiplexer", gauge.board).pins if p.role.startswith("out")}
+    drawn |= {p.net for p in circuit.on_board("amplifier", gauge.board).pins if p.role in ("plus", "minus")}
+    parts = [
+        c
+        for c in own
+        if c.kind in ("resistor", "capacitor", "diode")
+        and not drawn & {p.net for p in c.pins}
+        and _first_digits(c)
+    ]
+    items: list[Item] = []
+    for i, c in enumerate(parts):
+        x, top = 46.0 + 37.0 * (i % 10), 262.0 - 50.0 * (i // 10)
+        items += _between((x, top), c, gauge.board)
+    regulator = circuit.on_board("regulator", gauge.board)
+    x, y = 40.0, 70.0
+    items += box(x, y, 50.0, 6.0 * len(regulator.pins) + 4.0, printed(regulator), regulator.value)
+    for i, pin in enumerate(regulator.pins):
+        role = pin.role.replace("_", " ")
+        text = f"{pin.number}  {role}: {_local(pin.net, gauge.board) or 'open'}"
+        items.append(Text((x + 2.0, y + 6.0 * (len(regulator.pins) - 1 - i) + 3.0), text, 2.5))
+    return Page(A3, "", tuple(items), "Supplies and digital lines")
+
+
+def _first_digits(c: Component) -> bool:
+    """Not of a channel that reads no element."""
+    return c.kind != "resistor" or not 10 < int(printed(c)[1:]) < 90
+
+
+def _local(net: str, board: int) -> str:
+    """A board's own net without the board; a digital line before its resistor by its connector."""
+    own = net.removeprefix(f"A{board}_")
+    return f"J1, {net}" if own == net and re.fullmatch(r"A\d|ENABLE\d+", net) else own
+
+
+def _between(at: Point, c: Component, board: int) -> list[Item]:
+    """A component with two pins, upright, each pin's net at its end."""
+    (x, top), bottom = at, (at[0], at[1] - 24.0)
+    first, second = (_local(c.net(role), board) for role in "12")
+    ends = [Text((x, top + 1.2), first, SMALL, "middle"), Text((x, bottom[1] - 3.0), second, SMALL, "middle")]
+    if c.kind == "resistor":
+        return [*resistor(at, bottom, printed(c), c.value), *ends]
+    if c.kind == "diode":
+        return [*diode(at, bottom, printed(c), c.value), *ends]
+    lines = capacitor(at, bottom, printed(c), c.value, first)
+    return [item for item in lines if item not in ground(bottom)] + ends[1:]
+
+
+def _filter(circuit: Netlist, b: int) -> list[Item]:
+    """Between multiplexer and amplifier."""
+    amplifier = circuit.on_board("amplifier", b)
+    items: list[Item] = []
+    for role, y, below in (("plus", WHITE, False), ("minus", MINUS, True)):
+        resistor = next(
+            c for c, _ in circuit.nets[amplifier.net(role)] if c.kind == "resistor" and not c.element
+        )
+        items.append(rectangle(234.0, y - 1.5, 8.0, 3.0, LINE, "symbol"))
+        text = (238.0, y - 4.6 if below else y + 2.6)
+        items.append(Text(text, f"{printed(resistor)} {resistor.value}", SMALL, "middle"))
+    across = next(c for c, _ in circuit.nets[amplifier.net("plus")] if c.kind == "capacitor")
+    x, middle = 250.0, (WHITE + MINUS) / 2
+    items += [
+        dot((x, WHITE)),
+        dot((x, MINUS)),
+        line((x, WHITE), (x, middle + 0.7)),
+        line((x, middle - 0.7), (x, MINUS)),
+    ]
+    items += [line((x - 3.0, middle + s), (x + 3.0, middle + s)) for s in (0.7, -0.7)]
+    items.append(Text((x - 3.6, middle - 0.9), f"{printed(across)} {across.value}", SMALL, "end"))
+    return items
 
 
 def _array_side(circuit: Netlist, gauge: Component) -> list[Item]:
@@ -307,7 +392,7 @@ def _array_side(circuit: Netlist, gauge: Component) -> list[Item]:
     rows = [RED, WHITE, BLACK] if three else [RED, BLACK]
     colours = COLOURS["three-wire" if three else "two-wire"]
     connector = next(c for c, _ in circuit.nets[leads[0].net("2")] if c.kind == "connector")
-    x, terminal, pin = 42.0, 56.0, 90.0
+    x, terminal, pin = 46.0, 56.0, 90.0  # mm: left of x a value of eleven letters
     items: list[Item] = [
         *strain_gauge((x, RED), (x, BLACK), gauge.designator, gauge.value),
         line((x, RED), (terminal - 1.0, RED)),
@@ -316,7 +401,7 @@ def _array_side(circuit: Netlist, gauge: Component) -> list[Item]:
         ring((terminal, BLACK)),
         Text((terminal - 1.0, RED + 2.0), f"X{n}.1", SMALL, "middle"),
         Text((terminal - 1.0, BLACK - 4.0), f"X{n}.2", SMALL, "middle"),
-        Text((pin - 2.0, RED + 9.0), connector.designator),
+        Text((pin - 2.0, RED + 9.0), printed(connector)),
     ]
     for y, lead, colour in zip(rows, leads, colours):
         if y == WHITE:
@@ -334,20 +419,23 @@ def _array_side(circuit: Netlist, gauge: Component) -> list[Item]:
 
 def _bridge(circuit: Netlist, n: int) -> list[Item]:
     """The three other arms, and the lines to the multiplexer."""
-    arms = {c.designator: c for c in circuit.of_kind("resistor") if c.element == n}
-    first, second, third = (f"R{10 * n + k}" for k in (1, 2, 3))
+    own = [c for c in circuit.components if c.kind == "resistor" and c.element == n]
+    arms = {printed(c): c for c in own}
+    first, second, third, link = arms
     left, right, pin, multiplexer = 112.0, 148.0, 91.0, 196.0
-    three = any(c.net("2") == f"E{n}_RED" for c in circuit.of_kind("lead") if c.element == n)
-    plus: list[Item] = (
-        [line((pin, WHITE), (multiplexer, WHITE))]
-        if three
-        else [line((left, RED), (left, WHITE), (multiplexer, WHITE)), dot((left, RED))]
-    )
+    three = sum(c.element == n for c in circuit.of_kind("lead")) == 3
+    joint = 98.0
+    plus = [line((pin if three else joint, WHITE), (multiplexer, WHITE)), dot((joint, RED))]
+    plus += [item for item in resistor((joint, RED), (joint, WHITE), "", "") if not isinstance(item, Text)]
+    said = "left off" if three else arms[link].value
+    plus += [Text((joint + 3.0, WHITE + 8.0), link, SMALL), Text((joint + 3.0, WHITE + 5.0), said, SMALL)]
+    if three:
+        plus.append(dot((joint, WHITE)))
     return [
         line((left, RAIL), (right, RAIL), (250.0, RAIL)),
         dot((left, RAIL)),
         dot((right, RAIL)),
-        Text((252.0, RAIL - 1.0), EXCITATION),
+        Text((252.0, RAIL - 1.0), circuit.on_board("regulator", own[0].board).net("out")),
         *resistor((left, RAIL), (left, RED), first, arms[first].value),
         line((pin, RED), (left, RED)),
         *plus,
@@ -366,10 +454,10 @@ def _switching(circuit: Netlist, n: int, b: int) -> list[Item]:
     decoder, multiplexer = circuit.on_board("decoder", b), circuit.on_board("multiplexer", b)
     foot, gate = (128.0, BLACK), (196.0, 150.0)
     items: list[Item] = [dot(foot)]
-    items += mosfet(foot, (foot[0] + 12.0, BLACK - 8.0), switch.designator, switch.value)
+    items += mosfet(foot, (foot[0] + 12.0, BLACK - 8.0), printed(switch), switch.value)
     items.append(line((foot[0] + 12.0, BLACK - 8.0), (166.0, BLACK - 8.0), (166.0, gate[1]), gate))
-    items += box(196.0, 190.0, 30.0, 30.0, multiplexer.designator, multiplexer.value)
-    items += box(196.0, 128.0, 30.0, 30.0, decoder.designator, decoder.value)
+    items += box(196.0, 190.0, 30.0, 30.0, printed(multiplexer), multiplexer.value)
+    items += box(196.0, 128.0, 30.0, 30.0, printed(decoder), decoder.value)
     items.append(Text((196.0, 186.0), _fed(multiplexer), SMALL))
     items.append(Text((196.0, 124.0), _fed(decoder), SMALL))
     items.append(Text((198.0, gate[1] - 0.9), f"{_pin(decoder, 'Y0')} Y0", SMALL))
@@ -382,8 +470,8 @@ def _switching(circuit: Netlist, n: int, b: int) -> list[Item]:
     for i, role in enumerate((*address, "enable")):
         y, own = 154.0 - 6.0 * i, "E3" if role == "enable" else role
         items.append(Text((224.0, y - 0.9), f"{own} {_pin(decoder, own)}", SMALL, "end"))
-        also = "" if role == "enable" else f", also {multiplexer.designator}.{_pin(multiplexer, role)}"
-        named = f"{decoder.net(own)}{also}"
+        also = "" if role == "enable" else f", also {printed(multiplexer)}.{_pin(multiplexer, role)}"
+        named = f"{_local(decoder.net(own), b)}{also}"
         items += stub((226.0, y), named)
     return items
 
@@ -409,7 +497,7 @@ def _amplifier(circuit: Netlist, b: int) -> list[Item]:
         *amplifier((x, middle), size),
         Text((x - 2.0, WHITE + 1.5), _pin(part, "plus"), SMALL, "end"),
         Text((x - 2.0, MINUS - 3.3), _pin(part, "minus"), SMALL, "end"),
-        Text((x, middle + 17.6), part.designator),
+        Text((x, middle + 17.6), printed(part)),
         Text((x, middle + 13.8), part.value, SMALL),
         *stub(out, part.net("out")),
         Text((out[0] + 1.0, middle + 1.5), _pin(part, "out"), SMALL),
@@ -426,14 +514,15 @@ def _gain(circuit: Netlist, part: Component, at: Point) -> list[Item]:
     """What sets the gain between two pins on the triangle's lower edge: a resistor, a joint, or nothing."""
     (x, y), slope = at, 0.5
     left, right = ((x + dx, y - 12.0 + slope * dx) for dx in (3.0, 19.0))
-    resistor = next((c for c in circuit.of_kind("resistor") if c.board == part.board and not c.element), None)
+    ends = {p.net for p in part.pins if p.role.startswith("rg") and p.net}
+    resistor = next((c for c in circuit.of_kind("resistor") if ends & {p.net for p in c.pins}), None)
     low = y - 18.0
     items: list[Item] = [
         Text((left[0] - 1.0, low + 0.6), _pin(part, "rg1"), SMALL, "end"),
         Text((right[0] + 1.0, low + 0.6), _pin(part, "rg2"), SMALL),
     ]
     if resistor:
-        return items + resistor_below(left, right, low, resistor.designator, resistor.value)
+        return items + resistor_below(left, right, low, printed(resistor), resistor.value)
     if part.net("rg1"):
         return [*items, line(left, (left[0], low), (right[0], low), right)]
     return [*items, *(line(p, (p[0], low)) for p in (left, right))]
@@ -441,9 +530,9 @@ def _gain(circuit: Netlist, part: Component, at: Point) -> list[Item]:
 
 def _card(circuit: Netlist, b: int) -> list[Item]:
     """The connector to the converter's card, pin by pin."""
-    connector = next(c for c, _ in circuit.nets[EXCITATION] if c.kind == "connector" and c.board == b)
+    connector = next(c for c in circuit.of_kind("connector") if c.part_no == TO_CARD and c.board == b)
     x, top = 360.0, 250.0
-    items: list[Item] = [Text((x - 4.0, top + 8.0), f"{connector.designator}, to the card")]
+    items: list[Item] = [Text((x - 4.0, top + 8.0), f"{printed(connector)}, to the card")]
     for i, pin in enumerate(connector.pins):
         y = top - 7.0 * i
         items += [
@@ -503,6 +592,19 @@ def strain_gauge(top: Point, bottom: Point, name: str, value: str) -> list[Item]
         line((near[0] - 2.5, near[1]), near, far),
         Text((x - 4.5, middle + 0.8), name, anchor="end"),
         Text((x - 4.5, middle - 3.0), value, SMALL, "end"),
+    ]
+
+
+def diode(top: Point, bottom: Point, name: str, value: str) -> list[Item]:
+    """Upright, its cathode above; name and value to its right."""
+    x, middle = top[0], (top[1] + bottom[1]) / 2
+    return [
+        line(top, (x, middle + 2.0)),
+        line((x - 2.2, middle + 2.0), (x + 2.2, middle + 2.0)),
+        Fill(((x, middle + 2.0), (x - 2.2, middle - 2.0), (x + 2.2, middle - 2.0)), "symbol"),
+        line((x, middle - 2.0), bottom),
+        Text((x + 3.5, middle + 0.8), name),
+        Text((x + 3.5, middle - 3.0), value, SMALL),
     ]
 
 

@@ -292,7 +292,7 @@ def axes(at: Point, length: float = 8.0) -> list[Item]:
         arrow(right, at, role="symbol"),
         arrow(down, at, role="symbol"),
         Text((x + length + 1.0, y - LETTERS / 2), "+x", LETTERS),
-        Text((x, y - length - LETTERS - 1.0), "+y", LETTERS, "middle"),
+        Text((x + 1.5, y - length), "+y", LETTERS),  # not to its left: there are the elements' numbers
     ]
 
 

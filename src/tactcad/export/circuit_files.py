@@ -8,6 +8,7 @@ import csv
 import io
 import re
 
+from tactcad.circuit.harness import harness_csv
 from tactcad.circuit.netlist import Netlist
 from tactcad.circuit.netlist_files import deck_bytes, kicad_bytes, netlist_csv, wiring_csv
 from tactcad.design.family import family_of
@@ -43,6 +44,12 @@ def wiring_file(design: CommonTables, circuit: Netlist) -> bytes:
     data = wiring_csv(family.must("readout", "export").wiring(family.layout(design), circuit))
     check_leads(data, circuit)
     return data
+
+
+def harness_file(design: CommonTables, circuit: Netlist) -> bytes:
+    """Every wire with both its ends."""
+    family = family_of(design)
+    return harness_csv(circuit, family.must("readout", "export").wiring(family.layout(design), circuit))
 
 
 def nets_in_kicad(data: bytes) -> Nets:

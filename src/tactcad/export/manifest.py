@@ -24,6 +24,8 @@ KINDS = {f.kind for f in part_formats()} | {
     "netlist",
     "wiring",
     "robot",
+    "board",
+    "gerber",
 }
 
 

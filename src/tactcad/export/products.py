@@ -195,19 +195,50 @@ def _read(plan: Plan) -> bool:
 @product(_read)
 def circuit_files(plan: Plan) -> Iterator[Batch]:
     """The circuit that reads the array: its netlist in three forms, and the leads to cut."""
+    from tactcad.circuit.digital_readout import settings_header, settings_json
+
     from . import circuit_files as files
 
     design, family = plan.design, family_of(plan.design)
     circuit = family.must("readout", "export").netlist(family.layout(design))
     key = digest(("circuit", plan.shapes.made_by, circuit, design.design))
     for name, kind, make in (
-        ("circuit_{}.net", "netlist", files.kicad_file),
         ("circuit_{}.csv", "netlist", files.table_file),
         ("circuit_{}.cir", "netlist", files.deck_file),
         ("wiring_{}.csv", "wiring", files.wiring_file),
+        ("harness_{}.csv", "wiring", files.harness_file),
     ):
         path = f"circuit/{design.name}-{name.format(plan.revision)}"
         yield _one(Output(path, kind, "", f"{key} {path}"), partial(make, design, circuit))
+    converter = getattr(getattr(design, "readout", None), "converter", "card")
+    for ending, settings in (("h", settings_header), ("json", settings_json)) if converter != "card" else ():
+        path = f"circuit/{design.name}-{converter}_{plan.revision}.{ending}"
+        made_of = digest(("converter", plan.shapes.made_by, design, path))
+        written = partial(settings, family.layout(design), converter)
+        yield _one(Output(path, "netlist", "", made_of), written)
+
+
+@product(_read)
+def board_files(plan: Plan) -> Iterator[Batch]:
+    """The boards that read the array: each as it is fitted, and bare for who makes it."""
+    from . import board_files as files
+
+    design, family = plan.design, family_of(plan.design)
+    layout = family.layout(design)
+    readout = family.must("readout", "export")
+    made, supplies = readout.boards(layout), readout.supplies(layout)
+    key = digest(("boards", plan.shapes.made_by, made, supplies, design.design))
+
+    def batch(stem: str, ends: Sequence[str], make: Callable[[], Sequence[bytes]]) -> Batch:
+        paths = [f"circuit/boards/{stem}{end}" for end in ends]
+        kinds = ["gerber" if "gerber/" in path else "board" for path in paths]
+        outputs = (Output(path, kind, "", f"{key} {path}") for path, kind in zip(paths, kinds))
+        return Batch(tuple(outputs), make, FILES, 10)
+
+    for board in made:
+        make = partial(files.files_of, board, design, supplies)
+        yield batch(f"{board.netlist.name}_{plan.revision}", files.ENDS, make)
+    yield batch("", files.BARE, partial(files.bare_files, made[0], design))
 
 
 @product(lambda plan: plan.options.guides)

@@ -53,11 +53,10 @@ def canonical(text: str, header: Header, schema: str = AP214) -> str:
     roots = [n for n in bodies if n not in used and not bodies[n].startswith(_ANGLE)]
     styles = {n for n in roots if bodies[n].startswith(_STYLES)}
     digests = _digests(bodies, references, styles) if len(styles) > 1 else {}
-    # products in the kernel's order, which is the writing order; then styles, which have none, by content
-    roots.sort(key=lambda n: (n in styles, digests.get(n, ""), n))
     numbers: dict[int, int] = {}
     order: list[int] = []
-    for root in roots:
+
+    def take(root: int) -> None:
         stack = [root]
         while stack:
             n = stack.pop()
@@ -66,8 +65,24 @@ def canonical(text: str, header: Header, schema: str = AP214) -> str:
             numbers[n] = len(order) + 1
             order.append(n)
             stack.extend(reversed(references[n]))
+
+    # products in the kernel's order, which is the writing order; then styles, which have none, by content,
+    # and those of equal solids by the solids' places
+    for root in sorted(set(roots) - styles):
+        take(root)
+    for root in sorted(styles, key=lambda n: (digests.get(n, ""), _leads_to(n, references, numbers))):
+        take(root)
     lines = [f"#{numbers[n]}={_renumbered(bodies[n], numbers)};" for n in order]
     return "\n".join([_header(header, schema), "DATA;", *lines, "ENDSEC;", "END-ISO-10303-21;", ""])
+
+
+def _leads_to(root: int, references: dict[int, list[int]], numbers: dict[int, int]) -> list[int]:
+    """Numbers of the entities that have one already and that this one comes to first."""
+    found, stack = [], [root]
+    while stack:
+        for n in references[stack.pop()]:
+            (found if n in numbers else stack).append(numbers.get(n, n))
+    return sorted(found)
 
 
 def _plain(body: str) -> str:

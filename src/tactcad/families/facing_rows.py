@@ -46,14 +46,15 @@ FAMILY = Family(
     ),
     readout=FamilyReadout(
         netlist=Late("tactcad.circuit.bridges:netlist"),
+        boards=Late("tactcad.circuit.boards:laid_out"),
+        supplies=Late("tactcad.parts.array.supplies:electronic_supplies"),
         wiring=Late("tactcad.circuit.netlist_files:wiring"),
         sheets=Late("tactcad.drawing.circuit_sheets:circuit_written"),
         signals=Late("tactcad.review.effect:signals"),
     ),
     readings=FamilyReadings(
-        load_cell=Late("tactcad.lab.load_cell:of_design"),
-        overload=Late("tactcad.lab.load_cell:overload"),
-        against=Late("tactcad.lab.column_units:against_design"),
+        calibrate=Late("tactcad.cli.calibrate:calibrate_rows"),
+        stiffness=Late("tactcad.cli.stiffness:stiffness_rows"),
     ),
     variables=Late("tactcad.synthesis.synthesise:design"),
     checks="tactcad.checks.facing_rows",

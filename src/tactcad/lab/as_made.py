@@ -1,9 +1,11 @@
 """Stiffness, strain and strength of the elements as made: estimates from measured dimensions, beside those
 from the nominal ones.
 
-The intervals are for 95 %. The half-width (k = 2) of each dimension is propagated through the estimator by
-itself, and the results are added as squares. The half-width of a dimension that was not measured is its
-tolerance in the design's [tolerance]; that of one measured without an uncertainty is zero. A load arm that
+The intervals are for 95 %. The half-width of each dimension is propagated through the estimator by itself,
+and
+the results are put together (`as_built.together`). A dimension that was not measured lies anywhere within its
+tolerance in the design's [tolerance]; the half-width of one that was is two standard deviations (k = 2), zero
+where no uncertainty is given. A load arm that
 was not measured itself follows from arm and pad where both were. What the sheet does not ask for (modulus of
 the lot, recast layer, clamp) enters with its tolerance. The model's own error is not included.
 """
@@ -19,7 +21,7 @@ import numpy as np
 
 from tactcad.design.fields import present
 from tactcad.design.tree import Design
-from tactcad.mechanics.as_built import in_clamp, without_layer
+from tactcad.mechanics.as_built import in_clamp, together, without_layer
 from tactcad.mechanics.section import Array, HingeSection
 from tactcad.parts.array.hinge_section import hinge_section
 from tactcad.parts.array.layout import Layout
@@ -90,10 +92,13 @@ def as_made(
     drawn = {name: np.broadcast_to(getattr(designed, name), designed.shape) for name in parameters}
     values = {name: np.array([_value(r, n) for r, n in zip(table[name], drawn[name])]) for name in parameters}
     halves = {name: np.array([_half_width(r) for r in column]) for name, column in table.items()}
+    known = {
+        name: np.array([r is not None and r.measured is not None for r in table[name]]) for name in halves
+    }
     section = _rounded(designed.with_(**values))
     nominal = estimate_sections(layout, designed, rung, force)
     made = estimate_sections(layout, section, rung, force)
-    half_widths = _half_widths(layout, section, halves, rung, force)
+    half_widths = _half_widths(layout, section, halves, known, rung, force)
     return [
         AsMade(p.number, nominal[i], made[i], _intervals(layout, made[i], half_widths[:, i]), of[p.number])
         for i, p in enumerate(layout.elements)
@@ -131,7 +136,12 @@ def _half_width(r: Reading | None) -> float:
 
 
 def _half_widths(
-    layout: Layout, section: HingeSection, halves: dict[str, Array], rung: str, force: float
+    layout: Layout,
+    section: HingeSection,
+    halves: dict[str, Array],
+    known: dict[str, np.ndarray],
+    rung: str,
+    force: float,
 ) -> Array:
     """Half-widths of the estimates in INTERVALS, shape (len(INTERVALS), elements).
 
@@ -147,18 +157,21 @@ def _half_widths(
         # None becomes NaN
         return np.array([[getattr(row, name) for row in rows] for name in INTERVALS], dtype=float)
 
-    squares = np.zeros((len(INTERVALS), len(layout.elements)))
+    limits, measured = [], []
     for dimension, half in (halves | unmeasured).items():
         low, high = (
             at(section.with_(**{dimension: getattr(section, dimension) + sign * half}))
             for sign in (-1.0, 1.0)
         )
-        squares += ((high - low) / 2) ** 2
+        read = known.get(dimension, np.zeros(len(layout.elements), bool))
+        limits.append(np.where(read, 0.0, (high - low) / 2))
+        measured.append(np.where(read, (high - low) / 2, 0.0))
     made = at(section)
-    squares += (at(without_layer(section, tolerance.recast_layer)) - made) ** 2
+    limits.append(at(without_layer(section, tolerance.recast_layer)) - made)
     K = made[INTERVALS.index("stiffness")]
-    squares[INTERVALS.index("stiffness")] += (K - in_clamp(section, K, tolerance.clamp_compliance)) ** 2
-    return np.sqrt(squares)
+    turned = np.zeros_like(made)
+    turned[INTERVALS.index("stiffness")] = K - in_clamp(section, K, tolerance.clamp_compliance)
+    return together([*limits, turned], measured)
 
 
 def _intervals(

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping, Sequence
 
 from tactcad.design.messages import CheckFailure
+from tactcad.design.tree import Design
 from tactcad.lab.calibration import ElementCalibration
 from tactcad.lab.load_cell import LoadCell
 from tactcad.lab.readings import CalibrationReadings
@@ -50,19 +51,15 @@ def unlikely(
 
 
 def against_design(
-    readings: CalibrationReadings, rows: Sequence[ElementCalibration], cell: LoadCell, source: str
+    readings: CalibrationReadings, rows: Sequence[ElementCalibration], cell: LoadCell, design: Design
 ) -> list[str]:
     """Warnings where stiffness or signal of a calibration is far from what its design predicts."""
-    from tactcad.design.family import taken_as
-    from tactcad.design.tree import Design
     from tactcad.lab.array_estimate import estimate  # a calibration without a design needs no part
     from tactcad.mechanics.ladder import DEFAULT_RUNG
     from tactcad.mechanics.readout import volts_per_strain
     from tactcad.parts.array.hinge_section import design_readout
     from tactcad.parts.array.layout import Layout
-    from tactcad.parts.designs import load
 
-    design = taken_as(load(source), Design, "calibrate --design")
     force_below_yield = 1e-6  # N: no strain is estimated above yield
     try:
         estimates = {e.number: e for e in estimate(Layout(design), DEFAULT_RUNG, force_below_yield)}

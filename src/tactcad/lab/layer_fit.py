@@ -32,7 +32,10 @@ from tactcad.lab.regression import KNOWN, t_quantile
 from .calibration_file import Sensitivity
 
 UNIFORM = 3**-0.5  # standard deviation over half-width of what lies anywhere within limits
-MODEL = 0.005  # of each element's force by the layer rung: 0.4 % of punches, 0.3 % by the pads' law
+# Of each element's force by the layer rung, against the others': 0.2 % of the mean force where pads have
+# lifted, 0.06 %
+# where all press whole. What all have in common (0.4 % of punches) is one of the modulus.
+MODEL, COMMON = 0.002, 0.004
 # Standard deviation of ln K of a pad that presses and is not read: equal elements of Table 1 differ by a
 # factor of up to two.
 UNREAD = 0.35
@@ -44,10 +47,14 @@ WILD = 10.0  # times their errors by which elements disagree from which on no mo
 LAYERS = (0.25, 0.35, 0.5, 0.7, 1.0, 1.4, 2.0, 3.0, 5.0, 10.0, inf)
 STEPS = 40
 SETTLED = 0.1  # of a cost in squared standard errors: the estimate is then a third of one from its end
-STAGES = 3  # each finds the noise anew
+STAGES = 4  # each finds the noise anew
+# The first stage's noise over the least; it leaves all but modulus, slopes, offsets and approaches as they
+# are
+# expected: with all free from the start, one fit in ten ended beside the best, an unread pad lifted.
+ROUGH = 10.0
 # Of the largest change of a signal: error of a reading by the law of pads that lift, against single patches
-# (0.05 % of whole pads, 0.3 % where most have lifted).
-SHAPE = 1e-3
+# (0.01 % of whole pads, 0.06 % where most have lifted).
+SHAPE = 3.5e-4
 # Of the weight of the pads' heights in a pair's fit. The readings give heights over the approach; taken as
 # known, their size would tell the approach and so K_obj, by as much as one pair does.
 FREE_HEIGHTS = 0.01
@@ -55,6 +62,7 @@ SAME = 1e-6  # relative difference of stiffness below which two elements are no 
 LOOSE = 1e-4  # of a prior's weight where it is as good as none
 THICKER = 0.02  # relative step by which the layer's part in the sinks is found
 BATCH = 250  # grasps at once: 0.3 GB
+NEWTON, LOADED = 30, 1e-4  # steps at most to the approach of a load, and its relative error
 
 
 @dataclass(frozen=True)
@@ -163,9 +171,11 @@ class _Model:
         self.part = {name: slice(a, b) for name, a, b in zip(sizes, ends, ends[1:])}
         self.size = int(ends[-1])
 
-    def signals(self, q: np.ndarray, start: np.ndarray | None, columns: bool) -> tuple:
+    def signals(
+        self, q: np.ndarray, start: np.ndarray | None = None, lifted: np.ndarray | None = None
+    ) -> tuple:
         """Of parameters q [grasp, parameter]: signal [grasp, element, load], total force [grasp, load],
-        depths, forces [grasp, load, pad], and with `columns` the derivatives of the first two."""
+        depths, forces [grasp, load, pad], and the derivatives of the first two."""
         at, part, rows = self.at, self.part, self.rows
         G, T, n, m = len(q), len(self.load), len(at.number), len(rows)
         spread = lambda v: np.repeat(v[:, None], T, 1)  # noqa: E731
@@ -176,16 +186,21 @@ class _Model:
         b = contact.approached(
             q[:, part["approach"]], spread(q[:, part["slope"]]), spread(q[:, part["height"]])
         )
-        M = contact.system(E, K)
+        M = contact.system(E, K, lifted)
         r, g, d, J = contact.rest(M, b, b if start is None else start)
         sink = E[..., None] * np.einsum("gtni,ni->gtn", g, contact.move) / K
         force = E[..., None] * g[..., 0]
+        if at.thicker is not None:
+            step = np.log1p(THICKER)
+            other = at.thicker.near(at.thicker.system(E, K, lifted), b, r)
+            by_force = E[..., None] * (other - g)[..., 0] / step
+            by_sink = E[..., None] * np.einsum("gtni,ni->gtn", other - g, contact.move) / K / step
+            off = q[:, part["thickness"]][:, None]
+            sink, force = sink + off * by_sink, force + off * by_force
         resting = q[:, part["offset"], None]
         if self.time is not None:
             resting = resting + q[:, part["rate"], None] * self.time
         signal = resting + K_v[..., None] * sink[..., rows].swapaxes(1, 2)
-        if not columns:
-            return signal, force.sum(-1), r, force
         # by approach, slopes, heights, K, own modulus: right-hand sides of J dr
         right = np.zeros((G, T, n, 3, 3 + 2 * n + m))
         right[..., 0, 0] = 1.0
@@ -196,12 +211,6 @@ class _Model:
         right[:, :, i, :, 3 + n + i] = (sink[..., None] * contact.move).transpose(2, 0, 1, 3)
         blocks = M.reshape(G, T, 3 * n, n, 3)
         right[..., 3 + 2 * n :] = -np.einsum("gtrnk,gtnk->gtrn", blocks, g)[..., rows].reshape(G, T, n, 3, m)
-        if at.thicker is not None:
-            other = at.thicker.rest(at.thicker.system(E, K), b, r)[1]
-            by_thickness = (
-                E[..., None] * (other - g)[..., 0],
-                E[..., None] * np.einsum("gtni,ni->gtn", other - g, contact.move) / K,
-            )
         dr = np.linalg.solve(J, right.reshape(G, T, 3 * n, -1)).reshape(right.shape)
         dg = np.einsum("gtnij,gtnjq->gtniq", d, dr)
         ds = np.einsum("gtniq,ni->gtnq", dg, contact.move) * (E[..., None] / K)[..., None]
@@ -229,11 +238,8 @@ class _Model:
             A[:, e, :, part["rate"].start + e] = self.time
         A[:, e, :, part["K_v"].start + e] = (signal - resting).swapaxes(0, 1)
         if at.thicker is not None:
-            step = np.log1p(THICKER)
-            A[..., part["thickness"].start] = (
-                K_v[..., None] * by_thickness[1][..., rows].swapaxes(1, 2) / step
-            )
-            B[..., part["thickness"].start] = by_thickness[0].sum(-1) / step
+            A[..., part["thickness"].start] = K_v[..., None] * by_sink[..., rows].swapaxes(1, 2)
+            B[..., part["thickness"].start] = by_force.sum(-1)
         return signal, force.sum(-1), r, force, A, B
 
 
@@ -295,6 +301,7 @@ def _fit(
     resting = np.zeros(0) if time is None else time[~touching]
     part, size, m = model.part, model.size, len(rows)
     free = np.arange(part["own"].start)
+    plain = np.r_[part["E"], part["slope"], part["offset"], part["rate"], part["approach"]]
     priors = _priors(model, calibration)
     weigh, loose = priors.weigh, priors.loose
     before, pressed = signal[:, :, ~touching], signal[:, :, touching]
@@ -303,7 +310,7 @@ def _fit(
     count = pressed.shape[1] * pressed.shape[2] + m * rests
     load_weight = 1 / (LOAD * load.max()) ** 2
     least = np.maximum(SHAPE * np.ptp(signal, axis=2).max(1), 1e-12)
-    noise = least
+    noise = ROUGH * least
 
     def cost_of(i: np.ndarray, q: np.ndarray, state: tuple) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Of grasps i; what is left of signals and of loads."""
@@ -340,22 +347,27 @@ def _fit(
 
     every = np.arange(G)
     q = _start(model, pressed, before, load[touching])
-    state = model.signals(q, None, True)
-    for _ in range(STAGES):
+    state = model.signals(q)
+    lifted = at.contact.lifted(state[2])
+    for stage in range(STAGES):
+        chosen = free if stage else plain
+        if stage:
+            lifted = at.contact.lifted(state[2])
+            state = model.signals(q, state[2], lifted)
         cost = cost_of(every, q, state)[0]
         damping, at_work = np.full(G, 1e-6), every
         for _ in range(STEPS):
             i = at_work
             now = tuple(a[i] for a in state)
             N, down = normal(i, q[i], now)
-            N = (N + weigh)[:, free[:, None], free]
+            N = (N + weigh)[:, chosen[:, None], chosen]
             diagonal = np.einsum("gii->gi", N)
-            N = N + damping[i, None, None] * diagonal[:, None, :] * np.eye(len(free))
+            N = N + damping[i, None, None] * diagonal[:, None, :] * np.eye(len(chosen))
             step = np.zeros((len(i), size))
-            step[:, free] = _solve(N, down[:, free, None])[..., 0]
+            step[:, chosen] = _solve(N, down[:, chosen, None])[..., 0]
             far = np.maximum(np.abs(step[:, 0]) / 0.7, np.abs(step[:, part["slope"]]).max(1) / 0.05)
             tried_q = q[i] + step / np.maximum(far, 1.0)[:, None]
-            tried = model.signals(tried_q, now[2], True)
+            tried = model.signals(tried_q, now[2], lifted[i])
             gain = cost[i] - cost_of(i, tried_q, tried)[0]
             better = gain >= 0
             q[i[better]] = tried_q[better]
@@ -368,6 +380,9 @@ def _fit(
             at_work = i[~done]
             if not len(at_work):
                 break
+        if not stage:
+            noise = least
+            continue
         N, down = normal(every, q, state)
         down_loose = (down + q @ weigh - q @ loose)[:, free]
         N_loose = (N + loose)[:, free[:, None], free]
@@ -378,7 +393,7 @@ def _fit(
         dof = np.maximum(count + len(load[touching]) - spent, 1.0)
         noise_now = noise * np.maximum(quiet, 1e-18 * count) ** 0.5 / dof**0.5
         noise, before_ = np.maximum(noise_now, least), noise
-        if (noise < 1.5 * before_).all():
+        if ((noise < 1.5 * before_) & (noise > before_ / 1.5)).all():
             break
     K = model.K[rows]
     r = int(np.argmax(K)) if reference is None else int(np.flatnonzero(element == reference)[0])
@@ -479,6 +494,30 @@ def _start(model: _Model, pressed: np.ndarray, before: np.ndarray, load: np.ndar
     return q
 
 
+def _errors(
+    priors: _Priors,
+    calibration_dof: np.ndarray,
+    dof: np.ndarray,
+    level: float,
+    row: np.ndarray,
+    variance: np.ndarray,
+    known: np.ndarray,
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Of a quantity whose covariance with all parameters is `row` [grasp, parameter]: standard error,
+    Student's quantile, and how far the load cell's limits shift it."""
+    pull = np.einsum("eij,gej->gei", priors.of_element, row[:, priors.calibrated])
+    stated = np.einsum("gei,gei->g", pull, row[:, priors.calibrated])
+    actual = np.einsum("gei,eij,gej->ge", pull, priors.own, pull)
+    others = np.einsum("gi,ij,gj->g", row, known, row)
+    by_noise = np.maximum(variance - stated - others, 0.0)
+    total = by_noise + others + actual.sum(1)
+    bottom = by_noise**2 / dof + (actual**2 / calibration_dof).sum(1)
+    freedom = np.clip(total**2 / np.maximum(bottom, 1e-300), 1.0, KNOWN)
+    moved = np.array([np.einsum("gei,ei->g", pull, s) for s in priors.shift] or [np.zeros(len(row))])
+    quantile = np.array([t_quantile(level, float(f)) for f in freedom])
+    return total**0.5, quantile, np.abs(moved).max(0)
+
+
 def _results(
     at: LayeredArray,
     model: _Model,
@@ -502,22 +541,8 @@ def _results(
         full[:, keep[:, None], keep] = _solve(part_of, np.broadcast_to(np.eye(len(keep)), part_of.shape))
         return full
 
-    def errors(
-        row: np.ndarray, variance: np.ndarray, known: np.ndarray
-    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Of a quantity whose covariance with all parameters is `row` [grasp, parameter]: standard error,
-        Student's quantile, and how far the load cell's limits shift it."""
-        pull = np.einsum("eij,gej->gei", priors.of_element, row[:, priors.calibrated])
-        stated = np.einsum("gei,gei->g", pull, row[:, priors.calibrated])
-        actual = np.einsum("gei,eij,gej->ge", pull, priors.own, pull)
-        others = np.einsum("gi,ij,gj->g", row, known, row)
-        by_noise = np.maximum(variance - stated - others, 0.0)
-        total = by_noise + others + actual.sum(1)
-        bottom = by_noise**2 / dof + (actual**2 / c.dof).sum(1)
-        freedom = np.clip(total**2 / np.maximum(bottom, 1e-300), 1.0, KNOWN)
-        moved = np.array([np.einsum("gei,ei->g", pull, s) for s in priors.shift] or [np.zeros(G)])
-        quantile = np.array([t_quantile(level, float(f)) for f in freedom])
-        return total**0.5, quantile, np.abs(moved).max(0)
+    def errors(row: np.ndarray, variance: np.ndarray, known: np.ndarray) -> tuple[np.ndarray, ...]:
+        return _errors(priors, c.dof, dof, level, row, variance, known)
 
     full, loose = covariance(priors.weigh, free), covariance(priors.loose, free)
     # what the priors of K and K_v cost against as many freedoms as they take
@@ -538,6 +563,7 @@ def _results(
     for combination in (modulus, stiffness):
         row = full @ combination
         se, t, moved = errors(row, row @ combination, priors.others)
+        se = np.hypot(se, COMMON)
         x = q @ combination + np.log(at.unit)
         found.append(_even_in_ratio(x, none, t * se * widened + moved, K[r], soft))
         by_noise = _even_in_ratio(x, none, t * se, K[r], soft)
@@ -578,3 +604,123 @@ def _even_in_ratio(
         return np.where(ln_R <= 1e-15, inf, np.maximum(value, 0.0))
 
     return np.stack([object_(middle), object_(middle + steep * half), object_(middle - steep * half)], -1)
+
+
+@dataclass(frozen=True)
+class Expected:
+    """What `fit` will say of grasps, before any is made; arrays with one entry a grasp first.
+
+    object_     K_obj, N/mm, [estimate, low, high]; modulus: E, MPa, likewise
+    force       on each pad at the largest load, N; sink of its middle, mm, [grasp, pad]
+    first       force on the pad that bears least at the first load, N
+    """
+
+    object_: np.ndarray
+    modulus: np.ndarray
+    force: np.ndarray
+    sink: np.ndarray
+    first: np.ndarray
+
+
+def expected(
+    at: LayeredArray,
+    load: np.ndarray,
+    calibration: Sensitivity,
+    modulus: np.ndarray,
+    slope: np.ndarray,
+    noise: float,
+    *,
+    readings: int | None = None,
+    shared: tuple[np.ndarray, ...] = (),
+    stiffness: np.ndarray | None = None,
+    height: np.ndarray | None = None,
+    level: float = 0.95,
+) -> Expected:
+    """The intervals that `fit` gives on average, by its own equations made linear about the truth.
+
+    Parameters
+    ----------
+    at
+        The array on its layer, all of whose elements are read.
+    load
+        N, [load], above zero; one reading without load comes before.
+    calibration
+        As expected, all elements in their order.
+    modulus, slope
+        True, MPa, [grasp], and of the face, [grasp, 2].
+    noise
+        Of a reading, V.
+    readings
+        Number of loads that are read, where `load` has a few that stand for them.
+    shared
+        ln K and ln K_v of every element, [element, 2], for one standard deviation of each error that all
+        have alike.
+    stiffness, height
+        True, where they are not as drawn and level: N/mm and mm, [grasp, pad].
+    """
+    n, G, T = len(at.number), len(modulus), len(load)
+    rows, several = np.arange(n), (readings or T) / T
+    model = _Model(at, rows, calibration, load, None)
+    part, free = model.part, np.arange(model.part["own"].start)
+    q = np.zeros((G, model.size))
+    q[:, 0], q[:, part["slope"]] = np.log(modulus), slope
+    q[:, part["height"]] = 0.0 if height is None else height
+    q[:, part["K"]] = 0.0 if stiffness is None else np.log(stiffness / model.K)
+    depth = _approaches(model, q)
+    signal, _, _, force, A, B = model.signals(q, depth)
+    sigma = np.maximum(noise, SHAPE * np.ptp(signal, axis=2).max(1)) / several**0.5
+    A = A.reshape(G, n * T, model.size) / sigma[:, None, None]
+    N = A.swapaxes(1, 2) @ A + B.swapaxes(1, 2) @ B * (several / (LOAD * load.max()) ** 2)
+    o = np.arange(part["offset"].start, part["offset"].stop)
+    N[:, o, o] += 1 / several / sigma[:, None] ** 2
+    priors = _priors(model, calibration)
+    N = (N + priors.weigh)[:, free[:, None], free]
+    dof = np.full(G, max(n * (several * T + 1) - n - several * T - 3.0, 1.0))
+    K = model.K
+    soft, stiff = float(K.min()), float(K.max())
+    found = []
+    for by_thickness in (at.unit_by_thickness, 0.0):
+        quantity = np.zeros(len(free))
+        quantity[0], quantity[part["thickness"].start] = 1.0, by_thickness
+        row = np.zeros((G, model.size))
+        row[:, free] = _solve(N, np.broadcast_to(quantity[:, None], (G, len(free), 1)))[..., 0]
+        se, t, moved = _errors(
+            priors, calibration.dof, dof, level, row, row[:, free] @ quantity, priors.others
+        )
+        pull = np.einsum("eij,gej->gei", priors.of_element, row[:, priors.calibrated])
+        alike = sum(np.einsum("gei,ei->g", pull, each) ** 2 for each in shared)
+        x = np.log(modulus * at.unit)
+        half = t * np.sqrt(se**2 + COMMON**2 + alike) + moved
+        found.append(_even_in_ratio(x, np.zeros(G), half, stiff, soft))
+    sink = (signal / model.K_v[:, None])[:, :, -1]
+    return Expected(found[0], found[1] / at.unit, force[:, -1], sink, force[:, 0].min(1))
+
+
+def _approaches(model: _Model, q: np.ndarray) -> np.ndarray:
+    """Sets the approaches at which the pads bear the loads, by Newton's method; the pads' depths there."""
+    at, part, contact = model.at, model.part, model.at.contact
+    G, T, n = len(q), len(model.load), len(model.at.number)
+    spread = lambda v: np.repeat(v[:, None], T, 1)  # noqa: E731
+    E, K = spread(np.exp(q[:, 0])), spread(model.K * np.exp(q[:, part["K"]]))
+    slope, height = spread(q[:, part["slope"]]), spread(q[:, part["height"]])
+    M, along = contact.system(E, K), np.zeros((3 * n, 1))
+    along[::3] = 1.0
+    alone = 1 / (1 / (E * at.unit) + 1 / K.mean(-1))
+    back = height + slope[..., :1] * at.contact.x + slope[..., 1:] * at.contact.y
+    ready = np.sort(back, -1)
+    # the approach on separate springs, all alike
+    number = np.arange(1, n + 1)
+    each = (model.load[:, None] / alone[..., None] + np.cumsum(ready, -1)) / number
+    approach = np.take_along_axis(each, np.maximum((each > ready).sum(-1, keepdims=True) - 1, 0), -1)[..., 0]
+    depth = contact.approached(approach, slope, height)
+    for _ in range(NEWTON):
+        depth, g, d, J = contact.rest(M, contact.approached(approach, slope, height), depth)
+        off = model.load - E * g[..., 0].sum(-1)
+        if (np.abs(off) < LOADED * model.load).all():
+            break
+        move = np.linalg.solve(J, np.broadcast_to(along, (G, T, 3 * n, 1))).reshape(depth.shape)
+        steep = E * np.einsum("gtnj,gtnj->gt", d[..., 0, :], move)
+        step = off / np.maximum(steep, 1e-3 * alone)
+        approach, depth = approach + step, depth + step[..., None, None] * move
+    q[:, part["approach"]] = approach
+    return depth

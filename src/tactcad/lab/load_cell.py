@@ -108,11 +108,6 @@ def of_design(design: Design) -> LoadCell | None:
     return LoadCell(rig.load_cell_stiffness, rig.load_cell_accuracy * rig.load_cell_stiffness)
 
 
-def overload(design: Design) -> float:
-    """Force that no element of facing rows may meet, N."""
-    return design.rating.overload_force
-
-
 @dataclass(frozen=True)
 class Estimate:
     """A value with its interval; standard error as used for the interval. Same unit throughout."""

@@ -15,7 +15,7 @@ from tactcad.design.tree import CommonTables, Design
 from tactcad.lab.layer_fit import LAYERS, LayeredArray, layer
 from tactcad.lab.readings import GraspReadings
 from tactcad.mechanics import gauge_signal, ladder, readout
-from tactcad.mechanics.sample_coupling import pad_stiffness, shares_between
+from tactcad.mechanics.sample_coupling import shares_between
 from tactcad.mechanics.strength import tip_compliance
 from tactcad.parts.array.hinge_section import design_gauge, design_readout, hinge_section, not_reached
 from tactcad.parts.array.layout import Layout
@@ -24,9 +24,6 @@ from tactcad.parts.designs import load
 
 SOFT = 0.49  # Poisson's ratio of rubber and tissue as layers: the paper's samples
 INCOMPRESSIBLE = 0.5  # Poisson's ratio of soft tissue and rubber; a half-space's shares do not depend on it
-# Layers thinner than this share of a pad's side cannot give way sideways, so that the even pressure which the
-# relation between modulus and stiffness takes is no longer near what a rigid pad gives; chosen.
-LEAST_LAYER = 0.5
 
 
 def places(layout: Layout) -> tuple[np.ndarray, np.ndarray]:
@@ -34,35 +31,6 @@ def places(layout: Layout) -> tuple[np.ndarray, np.ndarray]:
     side = np.array([1.0 if p.row == 1 else -1.0 for p in layout.elements])
     y = np.array([p.y for p in layout.elements])
     return side * layout.design.array.row_pitch / 2, side * y
-
-
-def stiffness_per_modulus(design: CommonTables, thickness: float, where: str) -> float:
-    """K_obj under one pad over the Young's modulus of an incompressible layer, N/mm for each MPa.
-
-    Parameters
-    ----------
-    design
-        Whose pads press.
-    thickness
-        Of the layer, bonded to a rigid base, mm; inf for a half-space.
-    where
-        What gave the thickness, for the message.
-
-    Raises
-    ------
-    InputError
-        The layer is thinner than LEAST_LAYER of a pad's side.
-    """
-    *_, length, width = family_of(design).must("pads", where).places(design)
-    least = LEAST_LAYER * (length * width) ** 0.5
-    if not thickness >= least:
-        raise InputError(
-            where,
-            "too thin for the relation between modulus and stiffness",
-            value=thickness,
-            legal=f"at least {least:.3g} mm, {LEAST_LAYER:g} of a pad's side; inf for a half-space",
-        )
-    return pad_stiffness(1.0, length, width, thickness, INCOMPRESSIBLE)
 
 
 def coupling(source: str, readings: GraspReadings, share: float) -> np.ndarray | None:

@@ -258,6 +258,28 @@ def switched(excitation: float, gauge: Gauge, power: Power) -> Heating:
     return _heating(steady.power * power.on_time / power.period, rise, gauge, power)
 
 
+def warmth(excitation: float, gauge: Gauge, power: Power, after: float) -> float:
+    """Rise of the grid over the body, K, `after` s from the moment that its power comes on in the settled
+    cycle.
+
+    Parameters
+    ----------
+    excitation
+        Of the bridge, V.
+    gauge, power
+        The gauge, and what heats it.
+    after
+        s, up to power.on_time.
+    """
+    steady, tau = continuous(excitation, gauge, power), time_constant(gauge, power)
+    if tau == 0.0:
+        return steady.rise
+    leaf = steady.power * power.leaf_resistance
+    on, off = exp(-power.on_time / tau), exp(-(power.period - power.on_time) / tau)
+    cold = 1 - (1 - on) * off / (1 - on * off)  # share of the way that is left as power comes on
+    return leaf + (steady.rise - leaf) * (1 - cold * exp(-after / tau))
+
+
 def leaf_resistance(hinge_length: float, thickness: float, width: float, conductivity: float) -> float:
     """From the middle of a leaf to the body, K/W: half its length conducts, the arm beyond takes no heat.
 

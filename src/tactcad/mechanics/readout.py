@@ -30,9 +30,9 @@ from .section import Array, HingeSection
 class ReadOut:
     """Bridge and amplifier; volts, but gain, offset (dR/R of the unloaded bridge) and counts.
 
-    noise: rms of one sample at the amplifier's output. headroom: how near the output comes to its supplies.
-    adc_range: the converter takes -adc_range to +adc_range. transmission: share of the bridge's slope that
-    leads and switch leave.
+    noise: rms of one sample at the amplifier's output, adc_noise: likewise by the converter. headroom: how
+    near the output comes to its supplies. adc_range: the converter takes -adc_range to +adc_range.
+    transmission: share of the bridge's slope that leads and switch leave.
     """
 
     excitation: float
@@ -45,6 +45,7 @@ class ReadOut:
     adc_bits: int
     adc_range: float
     samples: int
+    adc_noise: float = 0.0
     transmission: float = 1.0
 
     @property
@@ -64,8 +65,9 @@ class ReadOut:
 
     @property
     def averaged_noise(self) -> float:
-        """Standard deviation of the mean of `samples` readings, V: noise and rounding by the converter."""
-        return ((self.noise**2 + self.adc_step**2 / 12) / self.samples) ** 0.5
+        """Standard deviation of the mean of `samples` readings, V: noise of amplifier and converter, and
+        rounding."""
+        return ((self.noise**2 + self.adc_noise**2 + self.adc_step**2 / 12) / self.samples) ** 0.5
 
 
 def transmission(gauge: float, arm: float, lead: float, on: float, three_wires: bool) -> float:

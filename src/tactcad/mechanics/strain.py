@@ -25,6 +25,7 @@ from .section import Array, HingeSection
 
 Constants = plane.Constants
 
+NARROW = 1.5  # b/l below which a leaf curls over its whole width
 SMALL_STEP = 30.0  # below it the rise of ln(1 + e^z) is computed without a difference
 
 
@@ -35,7 +36,11 @@ def nominal(s: HingeSection, force: Array | float) -> Array:
 
 
 def gauge(
-    s: HingeSection, force: Array | float, grid_length: Array | float, rung: str = ladder.DEFAULT_RUNG
+    s: HingeSection,
+    force: Array | float,
+    grid_length: Array | float,
+    rung: str = ladder.DEFAULT_RUNG,
+    data: dict | None = None,
 ) -> Array:
     """Mean strain at mid-width under a grid on the gauge face, centred on the hinge, less what friction at
     the pad takes of the bending moment. (`peak` and the stresses are those without friction, which may be
@@ -51,6 +56,8 @@ def gauge(
         Of the gauge's grid, mm.
     rung
         A closed-form rung.
+    data
+        As data/strain.json, by default the shipped one.
 
     Raises
     ------
@@ -59,10 +66,12 @@ def gauge(
     """
     ladder.require_range(s, rung)
     bent = nominal(s, force) / friction.factor(s)
-    return bent * grid_factor(s, grid_length, rung) * width_reduction(s, rung, "grid")
+    return bent * grid_factor(s, grid_length, rung) * width_reduction(s, rung, "grid", grid_length, data)
 
 
-def peak(s: HingeSection, force: Array | float, rung: str = ladder.DEFAULT_RUNG) -> Array:
+def peak(
+    s: HingeSection, force: Array | float, rung: str = ladder.DEFAULT_RUNG, data: dict | None = None
+) -> Array:
     """Largest surface strain at mid-width: at the slot-side fillet towards the body.
 
     The rungs short, beam and section do not model the fillet: theirs is the nominal strain at the slot's end
@@ -76,6 +85,8 @@ def peak(s: HingeSection, force: Array | float, rung: str = ladder.DEFAULT_RUNG)
         At the load line, N.
     rung
         A closed-form rung.
+    data
+        As data/strain.json, by default the shipped one.
 
     Raises
     ------
@@ -87,7 +98,7 @@ def peak(s: HingeSection, force: Array | float, rung: str = ladder.DEFAULT_RUNG)
         factor: Array | float = fillet_factor(s)
     else:
         factor = 1.0 if rungs()[rung].constant_moment else 1.0 + s.straight_length / 2.0 / s.load_arm
-    return nominal(s, force) * factor * width_reduction(s, rung, "fillet")
+    return nominal(s, force) * factor * width_reduction(s, rung, "fillet", data=data)
 
 
 def peak_stress(s: HingeSection, force: Array | float) -> Array:
@@ -126,42 +137,68 @@ def mid_width_share(s: HingeSection, data: dict | None = None) -> Array:
     """Largest principal stress at mid-width over the closed form's mean over the width, at the fillet.
 
     1 + nu^2 P, where P is a polynomial of second degree in l/b, t/b, nu and ln(r/t), each clipped to the
-    range that was sampled. The error of the closed form is fitted with it.
+    range that was sampled, times `narrow`. The error of the closed form is fitted with it.
 
     Parameters
     ----------
     s
         One design or many.
     data
-        Constants by notch form, by default the shipped ones.
+        As data/strain.json, by default the shipped one.
     """
-    share = np.ones(s.shape)
-    for side, k in (data or strain_data()["mid-width share"]).items():
-        own = np.broadcast_to(s.two_sided == (side == "two"), s.shape)
-        if own.any():
-            rows = s.rows(np.flatnonzero(own.ravel()))
-            share[own] += np.broadcast_to(rows.poisson, rows.shape) ** 2 * (
-                share_terms(rows, k) @ np.array(k["coefficients"])
-            )
-    return share
+    data = data or strain_data()
+    return (1.0 + s.poisson**2 * _polynomial(s, features(s), data["mid-width share"])) * narrow(
+        s, "stress", data=data
+    )
 
 
-def share_features(s: HingeSection) -> Array:
-    """l/b, t/b, nu and ln(r/t) of every design, one row for each."""
+def narrow(s: HingeSection, at: str, grid_length: Array | float = 0.0, data: dict | None = None) -> Array:
+    """Factor on strain ("grid", "fillet") or stress ("stress") at mid-width where a leaf is hardly wider than
+    long.
+
+    1 + nu^2 P (l/b - 1/NARROW), and 1 where b is NARROW l or more. P as for `mid_width_share`, under a grid
+    with grid/l besides.
+
+    Parameters
+    ----------
+    s
+        One design or many.
+    at
+        "grid", "fillet" or "stress".
+    grid_length
+        Of the gauge's grid, mm.
+    data
+        As data/strain.json, by default the shipped one.
+    """
+    slender = np.maximum(s.hinge_length / s.width - 1.0 / NARROW, 0.0)
+    if not slender.any():
+        return np.ones(s.shape)
+    known = features(s, grid_length if at == "grid" else None)
+    return 1.0 + s.poisson**2 * slender * _polynomial(s, known, (data or strain_data())["narrow"][at])
+
+
+def features(s: HingeSection, grid_length: Array | float | None = None) -> Array:
+    """l/b, t/b, nu and ln(r/t), and grid/l of a grid (mm): [..., feature]."""
     l, t, b = s.hinge_length, s.hinge_thickness, s.width
-    # a slot without fillets is out of every range, yet bounds are wanted for it
-    columns = l / b, t / b, s.poisson, np.log(np.maximum(s.fillet_radius / t, np.finfo(float).tiny))
-    return np.stack([np.broadcast_to(c, s.shape).ravel() for c in columns], axis=1)
+    tiny = np.finfo(float).tiny  # a slot without fillets is out of every range, yet bounds are wanted for it
+    found = [l / b, t / b, s.poisson, np.log(np.maximum(s.fillet_radius / t, tiny))]
+    if grid_length is not None:
+        found.append(np.asarray(grid_length) / l)
+    return np.stack(np.broadcast_arrays(*found, s.two_sided)[: len(found)], axis=-1)
 
 
-def share_terms(s: HingeSection, k: Mapping[str, list[float]]) -> Array:
-    """1, the features scaled to -1 to 1 over the sampled range, and their products; one row for each
-    design.
-    """
+def terms(known: Array, k: Mapping[str, list[float]]) -> Array:
+    """1, the features scaled to -1 to 1 over the sampled range, and their products: [..., term]."""
     low, high = np.array(k["low"]), np.array(k["high"])
-    z = np.clip(2.0 * (share_features(s) - low) / (high - low) - 1.0, -1.0, 1.0)
-    first, second = np.triu_indices(z.shape[1])
-    return np.concatenate([np.ones((len(z), 1)), z, z[:, first] * z[:, second]], axis=1)
+    z = np.clip(2.0 * (known - low) / (high - low) - 1.0, -1.0, 1.0)
+    first, second = np.triu_indices(z.shape[-1])
+    return np.concatenate([np.ones((*z.shape[:-1], 1)), z, z[..., first] * z[..., second]], axis=-1)
+
+
+def _polynomial(s: HingeSection, known: Array, k: Mapping[str, Mapping[str, list[float]]]) -> Array:
+    """P by each design's notch form."""
+    two, one = (terms(known, k[side]) @ np.array(k[side]["coefficients"]) for side in ("two", "one"))
+    return np.where(s.two_sided, two, one)
 
 
 def face_stress(s: HingeSection, force: Array | float) -> Array:
@@ -179,16 +216,21 @@ def _require_fitted(s: HingeSection) -> None:
         raise CheckFailure(f"the closed forms for stress do not reach this design: {rule}")
 
 
-def width_reduction(s: HingeSection, rung: str, at: str) -> Array | float:
+def width_reduction(
+    s: HingeSection, rung: str, at: str, grid_length: Array | float = 0.0, data: dict | None = None
+) -> Array | float:
     """Strain per newton at mid-width over that in plane stress; 1 on rungs that do not model the width.
 
-    `at` is "grid" or "fillet". K2D/K3D, since strain per deflection hardly changes, times `mid_width`.
+    `at` is "grid" (of this length, mm) or "fillet". K2D/K3D, since strain per deflection hardly changes,
+    times
+    `mid_width` and `narrow`.
     """
     if "width" not in rungs()[rung].fitted:
         return 1.0
     # a leaf longer than wide curls no more than one as long as wide, up to which the polynomial was fitted
     curled = s.with_(hinge_length=np.minimum(s.hinge_length, s.width))
-    return ladder.compliance(s, rung) / ladder.compliance(s, "plane") * mid_width(curled, at)
+    softer = ladder.compliance(s, rung) / ladder.compliance(s, "plane")
+    return softer * mid_width(curled, at) * narrow(s, at, grid_length, data)
 
 
 def mid_width(s: HingeSection, at: str, k: Constants | None = None) -> Array:

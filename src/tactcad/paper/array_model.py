@@ -14,7 +14,7 @@ from tactcad.lab import pads
 from tactcad.mechanics.gauge_signal import Gauge, Power
 from tactcad.mechanics.readout import ReadOut
 from tactcad.mechanics.section import HingeSection
-from tactcad.parts.array.bridge_figures import power_of
+from tactcad.parts.array.bridge_figures import power_of, zero_drift
 from tactcad.parts.array.hinge_section import design_gauge, design_readout, hinge_section
 from tactcad.parts.array.layout import Layout
 
@@ -88,7 +88,7 @@ def from_design(design: Design) -> ArrayModel:
         # leads and switch of the published array are not known
         replace(design_readout(design), transmission=1.0),
         power_of(layout),
-        design.tolerance,
+        replace(design.tolerance, zero_drift=zero_drift(layout)),
         design.stiffness_factor or 1.0,
         modulus_per_kelvin(design.material.alloy),
         MeasuringRig(

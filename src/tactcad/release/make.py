@@ -200,7 +200,7 @@ def _path_in_zip(file: FileRecord) -> str:
     if file.path.startswith("guide/"):
         return file.path
     parts = {form.kind for form in part_formats() if form.released}
-    if file.kind in parts | {"step-assembly", "inspection", "netlist", "wiring"}:
+    if file.kind in parts | {"step-assembly", "inspection", "netlist", "wiring", "board", "gerber"}:
         return file.path
     if file.kind == "drawing" and file.path.endswith(".pdf"):
         return f"pdf/{Path(file.path).name}"

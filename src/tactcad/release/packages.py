@@ -15,13 +15,14 @@ from tactcad.export import inspection
 from tactcad.export.contents import sha256_of
 from tactcad.parts.array.element import least_passes
 from tactcad.parts.bought.electronic_parts import BOARD
-from tactcad.parts.bought.supply import ELECTRONIC, MECHANICAL
+from tactcad.parts.bought.supply import BARE_BOARD, ELECTRONIC, MECHANICAL
 from tactcad.parts.language.description import Part, cut_section
 from tactcad.parts.language.limits import FACES
 
 from .release_contents import OrderLine, ReleaseContents
 
 ORDER = "order.csv"
+BOARDS = "circuit/boards/"
 PART_INSPECTION = "inspection-parts.csv"
 Row = dict[str, object]
 
@@ -77,15 +78,11 @@ def _belongs(package: Package, line: OrderLine) -> bool:
 def _files_of(
     package: Package, line: OrderLine, design: CommonTables, files: Mapping[str, bytes]
 ) -> dict[str, str]:
-    """The part's files that the package takes, by kind; of the board what it is laid out by."""
+    """The part's files that the package takes, by kind; of the board all that it is made and fitted from."""
     revision = design.design.revision
     if line.row.part_no == BOARD:
-        circuit = f"{design.name}-circuit_{revision}"
-        return {
-            "netlist": f"circuit/{circuit}.net",
-            "netlist_table": f"circuit/{circuit}.csv",
-            "sheets": f"pdf/{circuit}.pdf",
-        }
+        made = {path.removeprefix(BOARDS): path for path in sorted(files) if path.startswith(BOARDS)}
+        return made | {"sheets": f"pdf/{design.name}-circuit_{revision}.pdf"}
     stem = f"{line.row.part_no}_{revision}"
     paths = {
         "dxf": f"dxf/{stem}.dxf",
@@ -199,6 +196,7 @@ PACKAGES = (
     SHEET,
     Package("purchase-mechanical", "purchase, mechanical", (MECHANICAL,), (), _bought_row),
     Package("purchase-electronic", "purchase, electronic", (ELECTRONIC,), (), _bought_row),
+    Package("circuit-boards", "circuit boards", (BARE_BOARD,), (), _bought_row),
 )
 
 

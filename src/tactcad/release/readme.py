@@ -31,8 +31,8 @@ DRAFT = f"{MARK}: for discussion only. Do not make anything from these files."
 SAMPLE = "SAMPLE, NOT FOR ORDER: nobody has asked for these parts, and nobody answers for them."
 FOLDERS = {
     **{f.folder: f.released for f in sorted(part_formats(), key=lambda f: -f.ordered) if f.released},
-    "circuit/": "the circuit that reads the array: KiCad netlist, the same as a table and as a SPICE "
-    "deck, and the list of leads to cut",
+    "circuit/": "the circuit that reads the array as a table and as a SPICE deck, the list of leads to cut, "
+    "the harness; in boards/ the boards: KiCad, Gerber, drills, bill, places",
     "pdf/": "a drawing sheet for every part made, and an assembly sheet with parts list for every scene",
     "guide/": "how each scene is put together, step by step: open guide/SCENE.html in a browser",
     "bom": "bills of materials: bom.csv of the array, bom-SCENE.csv of the other scenes",
@@ -230,7 +230,8 @@ PACKAGE_FOLDERS = {
     ORDER: "what is ordered, a line each, with the files that it is made from and their SHA-256",
     "dxf/": "cut files, exact nominal contours, millimetres, one part a file; tool compensation is yours",
     "pdf/": "drawing sheets",
-    "circuit/": "netlist of the boards (KiCad, and the same as a table, a row a pin)",
+    "circuit/": "the boards: gerber/ for the bare board; KiCad's board and netlist, bill and places of each "
+    "as it is fitted",
     "step/": "solids (AP214, millimetres); NAME-ap242.step with limits and datums on the faces (AP242)",
     "inspection.csv": "what to measure on every numbered element: fill in `measured` and send it back",
     PART_INSPECTION: "what to measure on the other parts",
@@ -239,12 +240,10 @@ PACKAGE_FOLDERS = {
 
 
 BOARDS = (
-    "No layout comes with this order: who makes the boards lays them out by the netlist, which names no "
-    "footprints, and by the circuit sheets. The netlist holds the circuits of all boards: U, J and C of a "
-    "board begin with its number, Q and R with that of the element that it reads. All boards are alike, with "
-    "room for every channel of the multiplexer, and for a link from each of its inputs to GND, which the "
-    "netlist has where no element is read: there Q and R stay off. Leads W, gauges B and terminals X are not "
-    "on them. Keep the lines between lead header, resistors and multiplexer short, those of + and - alike."
+    "All bare boards are alike: make them by the files in gerber/ (Gerber X2, drills in millimetres; layers "
+    "by their file function) and outline.dxf; 4 layers, FR-4 1.6 mm, copper 35 um, tracks and gaps of 0.2 mm "
+    "or more, vias of 0.3 mm. To fit them, NAME-bill.csv says what stands where, and what is left off; "
+    "NAME-places.csv has the places of what a machine fits. NAME.kicad_pcb is the same board for KiCad 6."
 )
 
 

@@ -104,7 +104,7 @@ class Step:
     designators that come together on their usual way; () brings in what lies on the bench. The step's other
     parts follow one by one. `at` is where its parts stay for now: an offset from their final place, mm.
     `sets` and `leaves` say which freedoms it fixes and leaves, where contacts do not tell; `needs` what else
-    must be there or away.
+    must be there or away. `limit` is what the step has to reach: the assembly drawing notes it.
     """
 
     title: str
@@ -122,6 +122,7 @@ class Step:
     sets: tuple[str, ...] = ()
     leaves: tuple[str, ...] = ()
     needs: tuple[Need, ...] = ()
+    limit: str = ""
 
 
 @dataclass(frozen=True)

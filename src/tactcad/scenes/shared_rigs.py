@@ -46,6 +46,7 @@ JAM_SPANNER = f"spanner {screws.JAM_NUT[2][0]:g} mm: the tip's jam nut"
 def place_stand(b: Builder, rig: StandLayout, stages: bool) -> str:
     """Base plate (STAND) and post; returns the post's designator."""
     b.unit("stand")
+    b.supplies += supplies("stand", {})
     base = b.place("BP", rigs.base_plate(rig), (0, 0, -BASE[1]))
     post = b.place("PO", rigs.post(rig), (0, POST_Y, 0), ALONG_Y)
     b.meet(base, post)

@@ -1,10 +1,9 @@
 """The virtual mechanic: puts an array together as the guide says, from parts as they were made.
 
-Pins are pressed into the tapped plate; elements slide on them; the stack stands with its pads on a surface
-plate and is clamped there, each element free within its dowel's play; the head plate is levelled within its
-own; the stop plate lies on all ledges. Parts are rigid. With several dowels a row, the first one locates.
-
-Contacts between the parts are small linear programs, solved for many arrays at a time.
+Pins are pressed into the tapped plate; elements slide on them; both plates stand with their lower edges on
+the setting fixture's steps. Pressed down there, an element touches its floor with its pad and its pin with
+the top of its hole: that sets its height and its turn about the dowel. The stop plate lies on all ledges.
+Parts are rigid. With several dowels a row, the first one locates.
 """
 
 from __future__ import annotations
@@ -43,10 +42,12 @@ from .variables import (
     MODULUS,
     PIN,
     SHEET,
+    STEPS,
     Axis,
     Plate,
     bore_in,
     of_element,
+    over_edge,
     own_holes,
     pair_holes,
     squareness,
@@ -78,7 +79,7 @@ class Assembled:
         anew."""
         changed = Assembled(self.layout, {**self.made, of.name: deviations})
         if of.matters != "pads":
-            changed.__dict__["pose"] = self.pose
+            changed.__dict__["turn"] = self.turn
             if of.matters != "plate":
                 changed.__dict__["plate"] = self.plate
         return changed
@@ -112,12 +113,7 @@ class Assembled:
         """Of both rows, among all pins."""
         return [0, len(self.layout.dowel_x)]
 
-    @property
-    def at_dowels(self) -> Array:
-        """Places of the elements' dowel holes, (elements, 2)."""
-        return np.column_stack([self.side * self.dowel_x, self.y])
-
-    # --- pins and the pads on the surface plate ---
+    # --- pins and pads over the fixture's floor ---
 
     def holes(self, which: Plate, axis: Axis) -> Array:
         """How far the first dowel holes of both rows are off in the `tapped` or `head` plate, (arrays, 2)."""
@@ -125,13 +121,26 @@ class Assembled:
         own = self.made[own_holes(which, axis)]
         return (pair + own)[:, self.first_pins]
 
+    def over_floor(self, which: Plate) -> Array:
+        """How much higher than drawn the first holes of both rows stand in a plate on the fixture,
+        (arrays, 2)."""
+        step = self.made[STEPS][:, [1 if which == "tapped" else 0]]
+        return step + self.made[over_edge(which)][:, self.first_pins]
+
     def pin(self, axis: Axis, y: Array | float) -> Array:
-        """How far the first pins of both rows are off along an axis at y, (arrays, 2)."""
+        """How far the first pins of both rows are off along an axis at y, (arrays, 2); along z over the
+        fixture's floor, where the head plate holds their ends within its play."""
         layout = self.layout
         # as a share of the squareness's zone, which is as wide as SQUARE
         zone = self.made[squareness(axis)][:, self.first_pins]
-        slope = lean(layout) / (layout.stack + layout.design.clamp.end_plate_thickness)
-        return self.holes("tapped", axis) + zone / (SQUARE / 2) * slope * (layout.stack / 2 - y)
+        thick = layout.design.clamp.end_plate_thickness
+        slope = zone / (SQUARE / 2) * lean(layout) / (layout.stack + thick)
+        if axis == "x":
+            return self.holes("tapped", axis) + slope * (layout.stack / 2 - y)
+        root, far = self.over_floor("tapped"), layout.stack + thick / 2
+        off = root + slope * far - self.over_floor("head")
+        bent = np.sign(off) * np.maximum(np.abs(off) - self.head_play, 0.0)
+        return root + (slope - bent / far) * (layout.stack / 2 - y)
 
     def _pin_at_elements(self, axis: Axis) -> Array:
         at = {y: self.pin(axis, y) for y in sorted(set(self.y))}
@@ -149,22 +158,20 @@ class Assembled:
         )
 
     @cached_property
-    def pose(self) -> Array:
-        """Where the tapped plate stands over the surface plate: its height in the middle, its slopes along x
-        and y, as level as the pads allow, and by how much the worst pad misses."""
-        heights = self.made[PAD] - self._pin_at_elements("z")
-        return nearest_pose(self.at_dowels, heights, self.play / 2)
+    def turn(self) -> Array:
+        """How far each element is turned about its dowel, rad, its rear end up: its pad stands on the floor
+        by the edge that the turn leaves it, its hole hangs on its pin."""
+        high = self._pin_at_elements("z") - self.play / 2 - self.made[PAD]
+        return high / (self.dowel_x - np.where(high > 0.0, self.layout.pad_inner, self.layout.pad_outer))
 
-    def stands(self, points: Array) -> Array:
-        """Height of the tapped plate's frame over the surface plate at points (n, 2), (arrays, n)."""
-        return self.pose[:, :1] + self.pose[:, 1:3] @ points.T
+    def raised(self, x: float) -> Array:
+        """What the turn adds to the height of an element at so far from the middle line."""
+        return self.turn * (x - np.where(self.turn > 0.0, self.layout.pad_inner, self.layout.pad_outer))
 
     @cached_property
     def pads(self) -> Array:
-        """Height of each pad over the surface plate: what its pin carries it off; negative where it would
-        press into the plate, and so lifts the others."""
-        beyond = self.stands(self.at_dowels) + self._pin_at_elements("z") - self.made[PAD]
-        return np.sign(beyond) * np.maximum(np.abs(beyond) - self.play / 2, 0.0)
+        """Height of each pad's middle over the floor."""
+        return self.raised((self.layout.pad_inner + self.layout.pad_outer) / 2)
 
     @property
     def pads_apart(self) -> Array:
@@ -197,21 +204,13 @@ class Assembled:
 
     @property
     def tilt(self) -> Array:
-        """The carrier's angles against the plane of the pads, along the row and across, degrees, (arrays, 2).
-
-        The head plate is levelled with the tapped one as far as the play of its holes allows.
-        """
-        layout = self.layout
-        y = layout.stack / 2 + layout.design.clamp.end_plate_thickness / 2
-        ends = {}  # heights of the upper edges over the pins, as drawn 0
-        sides: tuple[tuple[Plate, float], ...] = (("tapped", y), ("head", -y))
-        for which, at in sides:
-            points = np.array([[self.dowel_x, at], [-self.dowel_x, at]])
-            ends[which] = self.stands(points) + self.pin("z", at) - self.holes(which, "z")
-        off = ends["head"] - ends["tapped"]
-        left = np.sign(off) * np.maximum(np.abs(off) - self.head_play, 0.0)
-        along = left.mean(axis=1, keepdims=True) / (2 * y)
-        across = (ends["tapped"][:, :1] - ends["tapped"][:, 1:]) / (2 * self.dowel_x)
+        """The carrier's angles against the fixture's floor, along the row and across, degrees, (arrays, 2),
+        by the upper edges of both plates over their lower ones."""
+        y = self.layout.stack / 2 + self.layout.design.clamp.end_plate_thickness / 2
+        tapped = self.over_floor("tapped") - self.holes("tapped", "z")
+        head = self.over_floor("head") - self.holes("head", "z")
+        along = (head - tapped).mean(axis=1, keepdims=True) / (2 * y)
+        across = (tapped[:, :1] - tapped[:, 1:]) / (2 * self.dowel_x)
         return np.degrees(np.hstack([along, across]))
 
     # --- rows ---
@@ -219,7 +218,8 @@ class Assembled:
     @cached_property
     def tips(self) -> Array:
         """How far each tip is off along x, away from the middle, mm."""
-        place = self.made[IN_PLAY] * self.play / 2
+        d = self.layout.design
+        place = self.made[IN_PLAY] * self.play / 2 + self.turn * (d.holes.height + d.element.pad_height)
         return self.side * self._pin_at_elements("x") + place - self.made[of_element(TIP_PLACE)]
 
     @property
@@ -232,23 +232,21 @@ class Assembled:
 
     # --- the stop ---
 
-    @cached_property
-    def ledges(self) -> Array:
-        """Height of each ledge over its nominal one, pads on the surface plate."""
-        return self.pads + self.made[of_element(LEDGE)]
+    def ledges(self, x: float) -> Array:
+        """Height of each ledge over its nominal one at so far from the middle line, pads on the floor."""
+        return self.raised(x) + self.made[of_element(LEDGE)]
 
     @cached_property
     def plate(self) -> Array:
         """The stop plate's underside over the ledges' nominal plane: height in the middle and
         slopes along x and y, (arrays, 3). It lies on elements and blanks, where the set screws press."""
         layout, seat = self.layout, self.layout.hold_down_x
-        points, heights = np.column_stack([self.side * seat, self.y]), self.ledges
-        if blanks := layout.blanks():
+        points, heights = np.column_stack([self.side * seat, self.y]), self.ledges(seat)
+        if blanks := layout.blanks():  # their fronts lie on the fixture's strip
             way = np.array([1.0 if row == 1 else -1.0 for row, _ in blanks])
             y = np.array([layout.position_y(index) for _, index in blanks])
-            pins = self.stands(np.column_stack([way * self.dowel_x, y]))
             points = np.vstack([points, np.column_stack([way * seat, y])])
-            heights = np.hstack([heights, pins + self.made[BLANK_LEDGE]])
+            heights = np.hstack([heights, self.made[BLANK_LEDGE]])
         return resting_plane(points, heights)
 
     @cached_property
@@ -256,7 +254,7 @@ class Assembled:
         """Stop plate over each element's own ledge, at its stop land."""
         land = self.layout.pad_inner + self.layout.design.stop.land_length / 2
         over = self.plate[:, :1] + self.plate[:, 1:2] * (self.side * land) + self.plate[:, 2:] * self.y
-        return over - self.ledges + self.made[FLATNESS]
+        return over - self.ledges(land) + self.made[FLATNESS]
 
     @cached_property
     def gaps(self) -> Array:
@@ -340,46 +338,6 @@ def resting_plane(points: Array, heights: Array) -> Array:
 
 
 ROCKING = 1e-3
-
-
-def nearest_pose(points: Array, heights: Array, play: Array) -> Array:
-    """Pose of a rigid body whose points are to meet given heights, each within its own play.
-
-    Parameters
-    ----------
-    points
-        (n, 2) places of the points, mm.
-    heights
-        (arrays, n) heights to meet, mm.
-    play
-        (arrays, n) by how much each may miss its height, either way, mm.
-
-    Returns
-    -------
-    Array
-        (arrays, 4): height at the origin, slopes along both axes, and by how much the worst point misses
-        beyond its play; that is least, and 0 where all meet. Where the points leave a choice, it is level.
-    """
-    n = len(points)
-    plane = np.column_stack([np.ones(n), points])
-    miss, none = -np.ones((n, 1)), np.zeros((n, 2))
-    slopes, off = np.eye(3)[1:], -np.eye(2)
-    design = np.vstack(
-        [
-            np.hstack([plane, miss, none]),
-            np.hstack([-plane, miss, none]),
-            np.hstack([slopes, np.zeros((2, 1)), off]),
-            np.hstack([-slopes, np.zeros((2, 1)), off]),
-        ]
-    )
-    limits = np.hstack([heights + play, play - heights, np.zeros((len(heights), 4))])
-    free, more = (None, None), (0.0, None)
-    cost = [0.0, 0.0, 0.0, 1.0, LEVEL, LEVEL]
-    return _blocks(design, limits, cost, [free, free, free, more, more, more])[:, :4]
-
-
-# Weight of a slope off level, mm for each mm/mm: beside what misses it only decides between equals.
-LEVEL = 1e-2
 
 
 def _blocks(design: Array, limits: Array, cost: list[float], bounds: list[tuple]) -> Array:

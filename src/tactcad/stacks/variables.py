@@ -11,16 +11,18 @@ from scipy.special import ndtr, ndtri
 
 from tactcad.design.fields import present
 from tactcad.mechanics.section import Array
-from tactcad.parts.array.clamp import STACK, end_plate, stop_plate
+from tactcad.parts.array.clamp import OVER_EDGE, STACK, end_plate, stop_plate
 from tactcad.parts.array.element import DOWEL_HOLE, LEDGE, PAD_HEIGHT, blank, element, spacer
 from tactcad.parts.array.layout import Layout
 from tactcad.parts.bought.standard_parts import dowel_limits
 from tactcad.parts.language.description import Part
+from tactcad.parts.rigs.setting_fixture import FLOOR, SettingLayout, setting_fixture
 from tactcad.scenes.requirement import SHEET, Deviations, DimensionLimits, Matters, of_element, variable
 
 # The stack's length once its spacers are chosen to the measured sheet.
 STACK_LENGTH = "stack: length, spacers to suit"
 IN_PLAY, MODULUS = "element: place in its dowel hole's play, share", "sheet: Young's modulus, relative"
+STEPS = "setting fixture: steps over the floor"
 PIN, BLANK_LEDGE = "dowel pin: diameter", "blank: ledge over the dowel hole"
 SPACER, STOP_PLATE, FLATNESS = "spacer: thickness", "stop plate: thickness", "stop plate: flatness"
 Plate = Literal["tapped", "head"]
@@ -41,6 +43,11 @@ def squareness(axis: Axis) -> str:
 def own_holes(which: Plate, axis: Axis) -> str:
     """An end plate's dowel holes against the pair's."""
     return f"end plate, {which}: dowel holes against the pair's along {axis}"
+
+
+def over_edge(which: Plate) -> str:
+    """An end plate's dowel holes over its lower edge."""
+    return f"end plate, {which}: {OVER_EDGE}"
 
 
 def bore_in(which: Plate) -> str:
@@ -93,12 +100,17 @@ def _array(layout: Layout) -> Iterable[DimensionLimits]:
             for axis in AXES:
                 yield _zone(pair_holes(axis), "dowel holes", pins, "pads", *pair)
                 yield _zone(squareness(axis), "dowel holes' squareness", pins, "pads", part)
+        yield _zone(over_edge(which), OVER_EDGE, pins, "pads", part)
         for axis in AXES:
             yield _zone(own_holes(which, axis), "dowel holes of the pair", pins, on, part)
         bore = next(c for c in part.characteristics if c.name == DOWEL_HOLE)
         size = float(d.clamp.dowel)  # pin and hole are both counted from it
         of = ((part.part_no, bore.name),)
         yield variable(bore_in(which), bore.lower - size, bore.upper - size, pins, of, on)
+    fixture = setting_fixture(SettingLayout(d))
+    steps = [c for c in fixture.characteristics if c.name.startswith(FLOOR)]
+    low, high = (limit - steps[0].nominal for limit in (steps[0].lower, steps[0].upper))
+    yield variable(STEPS, low, high, 2, tuple((fixture.part_no, c.name) for c in steps), "pads")
     plate = stop_plate(layout)
     flat = next(g for g in plate.geometric if g.name == "flatness")
     of = ((plate.part_no, flat.name),)

@@ -3,8 +3,10 @@ that decide how much room an array takes."""
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from math import inf
 from typing import Any
 
 import numpy as np
@@ -16,11 +18,11 @@ from tactcad.parts.rules import broken_rules
 
 from . import relax
 from .candidates import SEARCHED, Stand, stands
-from .interval import motion
 from .made_arrays import MadeSensor
 from .search import Found, refusals, search
 from .target import Target
 
+BESIDE = 4.0  # s, for each search beside the answer where the object is a body
 NEAR = 0.02  # relative; a limit with less room left is one that the answer lies on
 # Fields of the base design that bound the search, and the factor of a step that eases them.
 OF_BASE = {
@@ -115,8 +117,9 @@ def bound(found: Found, field: str) -> Bound | None:
         stepped = eased[field]
         value, further = relax.value_of(target, field), relax.value_of(stepped, field)
         whose = "written" if field.partition("[")[0] in target.written else "default"
+    until = soon(target)
     got = [
-        search(s, narrowest, rules=refusals, start=numbers(found, s), evolve=False)
+        search(s, narrowest, rules=refusals, start=numbers(found, s), evolve=False, until=until)
         for s in near(stepped, found)
     ]
     best = min((f.half_width for f in got if f.accepted), default=None)
@@ -128,6 +131,11 @@ def narrowest(c: Any) -> Any:
     return c.half_width
 
 
+def soon(target: Target) -> float:
+    """Until when a search beside the answer goes on, of `time.perf_counter`."""
+    return time.perf_counter() + BESIDE if target.on_layer else inf
+
+
 def near(target: Target, found: Found) -> list[Stand]:
     """Stands of a target that are the found one's, but for tolerances or for more kinds than it may have."""
     here = found.candidate.stand
@@ -137,7 +145,18 @@ def near(target: Target, found: Found) -> list[Stand]:
         kinds = s.kinds == here.kinds or s.kinds > here.target.elements.kinds
         return kinds and own == (s.base.sheet, s.base.material.alloy)
 
-    return [s for s in stands(target) if alike(s)] or stands(target)
+    return [_placed(s, here) for s in stands(target) if alike(s)] or stands(target)
+
+
+def _placed(stand: Stand, here: Stand) -> Stand:
+    """The stand with the pads where the found one has them, or as near as its room lets them be."""
+    if not stand.on_layer:
+        return stand
+    d, array, least = stand.base, here.base.array, stand.target.room.pitch
+    pitch, across = max(array.pitch, least), max(array.row_pitch, least)
+    moved = replace(d.array, pitch=pitch, row_pitch=across, spacer=round(pitch - d.sheet.thickness, 6))
+    base = replace(d, array=moved, element=replace(d.element, pad_length=here.base.element.pad_length))
+    return replace(stand, base=base, pattern=here.pattern)
 
 
 def numbers(found: Found, stand: Stand) -> Any:
@@ -183,13 +202,12 @@ def base_breaks(target: Target) -> list[str]:
         broken.append(f"stock: a sheet of {base.sheet.thickness:g} mm {base.material.alloy}")
     if broken or not np.isfinite(made.drawn.stiffness).all():
         return broken or ["the estimator does not reach its elements"]
-    ones, grip = np.ones(1), target.grasp
-    largest = max(motion(made.drawn, ones, x, grip.force, grip.loads).largest.max() for x in made.points)
+    width, forces = made.worst()
+    largest, grip = float(forces.max()), target.grasp
     if largest > grip.element_force * (1.0 + 1e-9):
         broken.append(f"grasp.element_force: {largest:.3g} N, at most {grip.element_force:g} N")
     if made.cannot_bear:
         broken.append(f"grasp.force: {made.cannot_bear}")
-    width = float(made.interval(made.points).half_width(made.points).max())
     if wanted is not None and not 100.0 * width <= wanted:
         broken.append(f"target.half_width: {100 * width:.3g} %, at most {wanted:g} %")
     return broken

@@ -18,9 +18,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tactcad.circuit.element_signals import smallest_output
+from tactcad.contact.stated_errors import LINEAR_REACH
 from tactcad.design.load import paths
 from tactcad.design.materials import ALLOYS, Alloy
 from tactcad.design.tree import Design, Hinge, SheetMaterial
+from tactcad.lab.pads import places
 from tactcad.mechanics import as_built, ladder, strength, validity
 from tactcad.mechanics.section import Array, HingeSection
 from tactcad.mechanics.strength import largest_closing_force, tip_compliance
@@ -66,12 +68,20 @@ SEARCHED = (
 class Stand:
     """One choice of what is not searched: sheet, alloy, hinge tolerance and how many kinds of element.
 
-    base    the target's base design with sheet, alloy, tolerance, pitch, forces and rows set
+    base      the target's base design with sheet, alloy, tolerance, pitch, forces and rows set
+    pattern   how kinds are dealt out over the rows: 0 spread evenly, else one of chance
+    springs   whether a body counts as a spring under each pad, for a first guess
     """
 
     target: Target
     base: Design
     kinds: int
+    pattern: int = 0
+    springs: bool = False
+
+    @property
+    def on_layer(self) -> bool:
+        return self.target.on_layer and not self.springs
 
     @cached_property
     def layout(self) -> Layout:
@@ -95,6 +105,17 @@ class Stand:
         """Width of the carrier along the rows, mm, by the elements of the longer row, from none on."""
         most = int(self.target.room.elements[1]) // self.target.room.rows + 1
         return np.array([0.0, *(_with_rows(self.base, n).carrier_width for n in range(1, most + 1))])
+
+    @cached_property
+    def _places(self) -> dict[tuple[int, ...], tuple[Array, Array]]:
+        return {}
+
+    def places(self, rows: tuple[int, ...]) -> tuple[Array, Array]:
+        """x and y of the pads of so many elements a row, mm."""
+        if rows not in self._places:
+            array = replace(self.base.array, row_arms=tuple((PLAIN,) * n for n in rows if n))
+            self._places[rows] = places(Layout(replace(self.base, array=array)))
+        return self._places[rows]
 
     @property
     def in_a_row(self) -> int:
@@ -148,7 +169,12 @@ class Stand:
         of_kinds = of_kinds.reshape(len(rows), self.kinds, len(own))
         values = {s.name: of_kinds[..., i] * s.step for i, s in enumerate(own)}
         values |= {s.name: of_all[:, i] * s.step for i, s in enumerate(shared)}
-        return Candidates(self, **values | {"radius": np.minimum(values["radius"], values["slot"] / 2)})
+        values["radius"] = np.minimum(values["radius"], values["slot"] / 2)
+        if self.on_layer:
+            from .on_layer import CandidatesOnLayer
+
+            return CandidatesOnLayer(self, **values)
+        return Candidates(self, **values)
 
 
 def _with_rows(d: Design, elements: int) -> Layout:
@@ -251,27 +277,36 @@ class Candidates:
         bears = np.minimum(bears, rig.load_cell_range / full)
         return np.floor(np.clip(bears.min(axis=1, keepdims=True), 0.0, most) + 1e-9)
 
-    @cached_property
-    def half_width(self) -> Array:
-        """Largest relative half-width over the object's range."""
+    def feel(self) -> tuple[Array, Array, Array]:
+        """Largest relative half-width over the object's range, largest force of each kind, N, and how deep
+        pads press into a body, of every candidate."""
         s = self.stand
         known = knowledge(s.target, s.base, self.elements, np.maximum(self.steps, LEAST_STEPS))
         grip = s.target.grasp
         got = bounds(self.elements, self.count, known, s.points, s.noise, grip.force, grip.loads)
-        return got.half_width(s.points[..., 0]).max(axis=0)
+        width = got.half_width(s.points[..., 0]).max(axis=0)
+        largest = motion(self.elements, self.count, s.points, grip.force, grip.loads).largest
+        return width, largest.max(axis=0), np.zeros(len(self.arm))
 
     @cached_property
+    def felt(self) -> tuple[Array, Array, Array]:
+        return self.feel()
+
+    @property
+    def half_width(self) -> Array:
+        """Largest relative half-width over the object's range."""
+        return self.felt[0]
+
+    @property
     def largest_force(self) -> Array:
         """Of each kind, over the object's range, N."""
-        s = self.stand
-        m = motion(self.elements, self.count, s.points, s.target.grasp.force, s.target.grasp.loads)
-        return m.largest.max(axis=0)
+        return self.felt[1]
 
     @cached_property
     def misses(self) -> dict[str, Array]:
         """By limit, how far each candidate is beyond it, relative; 0 and below where it is kept."""
         s, e = self.stand, self.elements
-        grip, room, d = s.target.grasp, s.target.room, s.base
+        grip, d = s.target.grasp, s.base
         tip = tip_compliance(self.section, e.stiffness, self.arm)
         rated = self.yield_force / d.rating.deflection_factor
         overload = d.rating.overload_force
@@ -284,13 +319,22 @@ class Candidates:
         soft = tip * (1.0 + 3.5 * thin)
         volts = e.signal * self.largest_force / e.stiffness
         readout = design_readout(d)
-        length = self.layout.carrier_length
         return {
             "grasp.element_force": (self.largest_force / grip.element_force - 1.0).max(axis=1),
             "strength": (self.largest_force * strong / self.yield_force - 1.0).max(axis=1),
             "stop": (self.largest_force * soft / np.maximum(least_gap, 1e-6) - 1.0).max(axis=1),
             "readout": (volts / min(readout.highest, -readout.lowest) - 1.0).max(axis=1),
             **self._resolution,
+            **self.of_shape,
+            **({"grasp.force": self.felt[2] / LINEAR_REACH - 1.0} if s.on_layer else {}),
+        }
+
+    @property
+    def of_shape(self) -> dict[str, Array]:
+        """Misses that hang on no force."""
+        s, room = self.stand, self.stand.target.room
+        length: Any = self.layout.carrier_length
+        return {
             "room.elements": np.maximum(self.total / room.elements[1], room.elements[0] / self.total) - 1.0,
             "room.width": s.widths[np.minimum(self.in_a_row, s.in_a_row)] / room.width - 1.0,
             "room.length": length / room.length - 1.0,
@@ -367,8 +411,8 @@ class Candidates:
         return 1.0 + (np.diff(code, axis=1) > 0).sum(axis=1)
 
 
-def order(count: list[int], rows: int) -> list[list[int]]:
-    """Kind of every place, row by row: each kind spread evenly along both rows.
+def order(count: list[int], rows: int, pattern: int = 0) -> list[list[int]]:
+    """Kind of every place, row by row: each kind spread evenly along both rows, or by `pattern`, a seed.
 
     A pair that feels the same spot of the object gives its ratio best, so each kind's elements are dealt out
     where it lags most behind its share.
@@ -381,13 +425,15 @@ def order(count: list[int], rows: int) -> list[list[int]]:
         kind = int(np.argmax(lag))
         dealt[kind] += 1
         dealing.append(kind)
+    if pattern:
+        dealing = np.random.default_rng(pattern).permutation(dealing).tolist()
     first = ceil(total / rows)
     return [dealing[:first], dealing[first:][::-1]][:rows]
 
 
 def dealt(c: Candidates) -> list[list[int]]:
     """Kind of every place of one candidate (the first), row by row."""
-    return order([int(n) for n in c.count[0]], c.stand.target.room.rows)
+    return order([int(n) for n in c.count[0]], c.stand.target.room.rows, c.stand.pattern)
 
 
 def realised(c: Candidates) -> Design:

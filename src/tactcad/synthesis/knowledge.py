@@ -20,7 +20,9 @@ from tactcad.design.tree import Design
 from tactcad.lab.regression import KNOWN
 from tactcad.mechanics import as_built, gauge_signal, ladder, readout
 from tactcad.mechanics.section import Array, HingeSection
+from tactcad.parts.array.bridge_figures import reading_scatter, zero_drift
 from tactcad.parts.array.hinge_section import design_gauge, design_readout
+from tactcad.parts.array.layout import Layout
 from tactcad.stacks.variables import OFFSET_SHARE, SIGMAS
 
 from .target import Target
@@ -101,11 +103,11 @@ def as_made(section: HingeSection, design: Design, layer: Array | float, turn: A
 
 
 def reading_noise(design: Design) -> float:
-    """Standard deviation of one averaged reading in a grasp, V: the read-out's noise, and the drift of the
+    """Standard deviation of one averaged reading in a grasp, V: the read-out's own, and the drift of the
     bridge's zero by its leads' warmth, whose half-width is taken as two standard deviations."""
-    r = design_readout(design)
-    drift = r.excitation * r.gain * design.tolerance.zero_drift / 4.0
-    return float(np.hypot(r.averaged_noise, drift / SIGMAS))
+    r, layout = design_readout(design), Layout(design)
+    drift = r.excitation * r.gain * zero_drift(layout) / 4.0
+    return float(np.hypot(reading_scatter(layout), drift / SIGMAS))
 
 
 def knowledge(target: Target, design: Design, e: Elements, steps: Array | None = None) -> Knowledge:

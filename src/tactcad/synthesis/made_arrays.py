@@ -11,10 +11,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
 from tactcad.design.tree import Design
+from tactcad.lab.pads import places
 from tactcad.mechanics import strength
 from tactcad.mechanics.section import Array
 from tactcad.mechanics.strength import tip_compliance
@@ -29,10 +31,11 @@ from tactcad.stacks.virtual_build import DECIDING, Sensor, of_share, sensor
 from .candidates import POINTS
 from .interval import Bounds, Covariance, Evaluated, Evaluation, bounds, motion
 from .knowledge import Elements, Knowledge, as_made, elements, knowledge, reading_noise
+from .on_layer import LayerGrasps, Poses, level, of_elements, poses
 from .target import Target
 
 SEED = 20261123
-AT_ONCE = 2000  # arrays in memory at a time
+AT_ONCE, AT_ONCE_ON_BODY = 2000, 250  # arrays in memory at a time
 
 
 @dataclass(frozen=True)
@@ -87,7 +90,7 @@ class MadeSensor:
     @cached_property
     def points(self) -> Array:
         """K_obj at which arrays are tried, N/mm."""
-        return np.geomspace(*self.target.stiffness_range, POINTS)
+        return np.geomspace(*self.target.range_of(self.design), POINTS)
 
     def built(self, count: int, wanted: float, seed: int = SEED) -> Yield:
         """`count` arrays of each deciding distribution, held against a half-width (relative)."""
@@ -112,8 +115,9 @@ class MadeSensor:
         known = self.__dict__.setdefault("tried", {})
         if (name, count, seed) not in known:
             rng, why, widths = np.random.default_rng(seed), dict[str, int](), []
-            for start in range(0, count, AT_ONCE):
-                lacks, width = self._some(name, min(AT_ONCE, count - start), rng)
+            most = AT_ONCE_ON_BODY if self.target.on_layer else AT_ONCE
+            for start in range(0, count, most):
+                lacks, width = self._some(name, min(most, count - start), rng)
                 for what, bad in lacks.items():
                     why[what] = why.get(what, 0) + int(bad.sum())
                 widths.append(width)
@@ -124,25 +128,46 @@ class MadeSensor:
         self, distribution: Distribution, count: int, rng: np.random.Generator
     ) -> tuple[dict[str, Array], Array]:
         arrays = Assembled(self.layout, made(self.parts.variables, count, distribution, rng))
-        lacks: dict[str, np.ndarray] = {
+        lacks: dict[str, Any] = {
             f"assembly: {name}": bad for name, bad in self.parts.missed(arrays, count).items() if bad.any()
         }
         e = as_made(arrays.section, self.design, *self.softening(count, distribution, rng))
         grip, alloy = self.target.grasp, design_alloy(self.design)
-        forces = np.max(
-            [motion(e, np.ones(1), x, grip.force, grip.loads).largest for x in self.points], axis=0
-        )
-        rate = e.stiffness * self.points[-1] / (e.stiffness + self.points[-1])
-        last = (rate * (arrays.pads.max(axis=1, keepdims=True) - arrays.pads)).sum(axis=1)
-        lacks["pads not all touching at the first load"] = last > grip.force / grip.loads
+        behind = arrays.pads.max(axis=1, keepdims=True) - arrays.pads
+        if self.target.on_layer:
+            forces, widths = self._on_body(e, behind, rng)
+        else:
+            forces = np.max(
+                [motion(e, np.ones(1), x, grip.force, grip.loads).largest for x in self.points], axis=0
+            )
+            rate = e.stiffness * self.points[-1] / (e.stiffness + self.points[-1])
+            last = (rate * behind).sum(axis=1)
+            lacks["pads not all touching at the first load"] = last > grip.force / grip.loads
+            widths = self._half_widths(e, rng)
         arm = np.array([p.arm for p in self.layout.elements])
         closing = arrays.gaps / tip_compliance(e.section, e.stiffness, arm)
         lacks["stop closes under the largest force"] = (forces > closing).any(axis=1)
         yields = strength.yield_force_where_known(e.section, alloy) / self.design.rating.yield_factor
         lacks["hinge beyond its rated force"] = (forces > yields).any(axis=1)
         lacks["force on one element"] = (forces > grip.element_force * (1.0 + 1e-9)).any(axis=1)
-        width = np.where(np.logical_or.reduce(list(lacks.values())), np.inf, self._half_widths(e, rng))
-        return lacks, width
+        return lacks, np.where(np.logical_or.reduce(list(lacks.values())), np.inf, widths)
+
+    def _on_body(self, e: Elements, behind: Array, rng: np.random.Generator) -> tuple[Array, Array]:
+        """Largest force on each element of arrays as made, N, and their half-widths, in the poses that are
+        worst as drawn; a calibration's own estimate of its scatter makes half-widths of arrays differ."""
+        at = poses(self.target, self.design)
+        got = self.on_body.expected(at)
+        some = {int(self.on_body.half_width(at, got).argmax()), *map(int, got.force.argmax(axis=0))}
+        count = len(behind)
+        forces, widths = np.zeros(behind.shape), np.zeros(count)
+        for pose in some:
+            alike = Poses(np.full(count, at.modulus[pose]), np.tile(at.slope[pose], (count, 1)))
+            there = self.on_body.expected(alike, stiffness=e.stiffness, height=behind)
+            forces = np.maximum(forces, there.force)
+            widths = np.maximum(widths, self.on_body.half_width(alike, there))
+        dof = behind.shape[1] * (self.target.known.runs - 1.0)
+        own = np.sqrt(rng.chisquare(dof, count) / dof) if self.calibrated else np.ones(count)
+        return forces, widths * own
 
     def softening(
         self, count: int, distribution: Distribution, rng: np.random.Generator
@@ -153,8 +178,32 @@ class MadeSensor:
         share = np.abs(within_limits(rng.standard_normal((2, count, 1)), distribution))
         return t.recast_layer * share[0], t.clamp_compliance * share[1]
 
+    @cached_property
+    def on_body(self) -> LayerGrasps:
+        """The array as drawn on the target's body."""
+        x, y = places(self.layout)
+        arm = np.array([p.load_arm for p in self.layout.elements])
+        e = self.drawn
+        known = of_elements(self.known(e), lambda of: np.broadcast_to(of, e.stiffness.shape))
+        return LayerGrasps(self.target, self.design, x, y, arm, e.stiffness, e.signal, known, self.noise)
+
+    def worst(self) -> tuple[float, Array]:
+        """Largest half-width over the object, inclined or not, and the largest force on each element, N."""
+        if not self.target.on_layer:
+            grip, ones = self.target.grasp, np.ones(1)
+            forces = [motion(self.drawn, ones, x, grip.force, grip.loads).largest for x in self.points]
+            return float(self.interval(self.points).half_width(self.points).max()), np.max(forces, axis=0)
+        at = poses(self.target, self.design, angles=2)
+        got = self.on_body.expected(at, min(self.target.grasp.loads, 10))
+        return float(self.on_body.half_width(at, got).max()), got.force.max(axis=0)
+
     def interval(self, x: Array, members: list[int] | None = None) -> Bounds:
-        """The interval at K_obj `x` (N/mm) as drawn, of all elements or of those of these indices."""
+        """The interval at K_obj `x` (N/mm) as drawn, of all elements or of those of these indices; on a body
+        that is level, of all."""
+        if self.target.on_layer:
+            there = level(x / self.target.unit(self.design))
+            half = self.on_body.half_width(there, self.on_body.expected(there)) * x
+            return Bounds(x - half, x + half, half)
         ones, grip = np.ones(len(self.drawn.stiffness)), self.target.grasp
         used = None if members is None else np.isin(np.arange(len(ones)), members) * ones
         known, at = self.known(self.drawn), x[:, np.newaxis]
@@ -163,9 +212,7 @@ class MadeSensor:
     @property
     def cannot_bear(self) -> str:
         """Why the array as drawn does not bear the target's forces; "" where it does."""
-        e, grip = self.drawn, self.target.grasp
-        forces = [motion(e, np.ones(1), x, grip.force, grip.loads).largest for x in self.points]
-        largest = np.max(forces, axis=0)
+        e, (_, largest) = self.drawn, self.worst()
         gaps = np.array([stop_gap(self.layout, p) for p in self.layout.elements])
         arm = np.array([p.arm for p in self.layout.elements])
         if (largest * tip_compliance(e.section, e.stiffness, arm) > gaps).any():

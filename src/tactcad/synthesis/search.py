@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from itertools import combinations, product
 from math import inf
@@ -27,6 +27,7 @@ from tactcad.mechanics.section import Array
 from tactcad.parts.rules import broken_rules
 
 from .candidates import Candidates, Stand, realised
+from .on_layer import others
 
 SEED = 20261122
 POPULATION = 12  # candidates for each number
@@ -39,6 +40,9 @@ DESCENT = 0.4  # of the time, at least, for what follows evolution
 REFUSED = 100  # candidates by rules or checks, after which no more are tried
 LOOKED_BACK = 8  # candidates, where time is over and the best is refused
 SEVERAL = 400  # moves of several numbers, by chance
+# On a body, where a candidate costs milliseconds: candidates before the best of them is taken, steps of
+# several numbers, share of the time for the first guess on springs, and the spread at which it stops.
+AT_ONCE, FEW, GUESS, GUESSED = 16, 100, 0.2, 0.02
 
 Goal = Callable[[Candidates], Array]
 Refusals = Callable[[Design], dict[str, str]]
@@ -119,6 +123,8 @@ def search(
     until
         Of `time.perf_counter`, when the best yet is the answer.
     """
+    if stand.on_layer:
+        return _on_layer(stand, goal, rules, start, evolve, until)
     low, high = stand.limits
     high = np.maximum(low, high)
     refused: dict[str, str] = {}
@@ -229,3 +235,95 @@ def moves(count: int) -> Array:
     both = [a * unit[i] + b * unit[j] for i, j in combinations(range(count), 2) for a, b in product(BY, BY)]
     several = np.random.default_rng(SEED).choice((0, 0, 0, *BY), (SEVERAL, count))
     return np.vstack([*alone, *both, several])
+
+
+def _on_layer(
+    stand: Stand, goal: Goal, rules: Refusals | None, start: Array | None, evolve: bool, until: float
+) -> Found:
+    """From a start, or from the best on springs, the first better one of all around it, in a random order,
+    until none is better; with `evolve` kinds are dealt out otherwise, and pitches and pads moved, too."""
+    began, looked, starts = time.perf_counter(), 0, list[Array]()
+    if start is not None:
+        starts = [start]
+    else:
+        low, high = stand.target.room.elements
+        # without an inclination more elements are better
+        some = {high} if not stand.target.object.angle[1] else {low, round((low * high) ** 0.5), high}
+        for n in sorted(some, reverse=True):
+            of = replace(stand, springs=True, target=stand.target.with_("room.elements", (n, n)))
+            share = GUESS * (until - began) / len(some)
+            guess = search(of, goal, rules=None, within=GUESSED, until=time.perf_counter() + share)
+            starts.append(guess.row)
+            looked += guess.evaluations
+    rng, why = np.random.default_rng(SEED), dict[str, str]()
+    best, passed = (inf, stand, starts[0]), list[tuple[float, Stand, Array]]()
+
+    def better(at: Stand, rows: Array) -> bool:
+        nonlocal best, looked
+        looked += len(rows)
+        c = at.candidates(rows)
+        with np.errstate(all="ignore"):
+            bad, wanted = c.violation, goal(c)
+            value = np.where(bad > 0.0, FAR * (1.0 + np.minimum(bad, 1e3)), wanted)
+        value = np.where(np.isfinite(value), value, FAR * 1e4)
+        for i in np.argsort(value):
+            if not value[i] < best[0] * (1.0 - WORTH):
+                return False
+            if value[i] < FAR and rules:
+                if refused := refusals(realised(at.candidates(rows[i : i + 1]))):
+                    why.update(refused)
+                    continue
+            best = float(value[i]), at, rows[i]
+            if value[i] < FAR:
+                passed.append(best)
+            return True
+        return False
+
+    def descend(until: float) -> None:
+        moved = True
+        while moved and time.perf_counter() < until:
+            moved, (_, at, row) = False, best
+            low, high = at.limits
+            some = np.unique(np.clip(row + few_moves(len(row)), low, np.maximum(low, high)), axis=0)
+            parts = np.array_split(rng.permutation(some), max(len(some) // AT_ONCE, 1))
+            steps = [(at, part) for part in parts]
+            if evolve:
+                steps += [(other, row[np.newaxis]) for other in others(at, rng)]
+            for k in rng.permutation(len(steps)):
+                if time.perf_counter() > until:
+                    break
+                if better(*steps[k]):
+                    moved = True
+                    break
+
+    ends = []
+    for left, first in zip(range(len(starts), 0, -1), starts):
+        best, now = (inf, stand, first), time.perf_counter()
+        better(stand, first[np.newaxis])
+        descend(now + (until - now) / (left + 0.5))
+        ends.append(best)
+    best = min(ends, key=lambda end: end[0])
+    descend(until)
+    passed.sort(key=lambda one: -one[0])
+    accepted = bool(passed)
+    if rules and rules is not refusals and passed:
+        tries = passed[::-1][:: 1 + len(passed) // LOOKED_BACK]
+        whys = [(one, rules(realised(one[1].candidates(one[2][np.newaxis])))) for one in tries[:1]]
+        for one in tries[1:]:
+            if not whys[-1][1]:
+                break
+            why.update(whys[-1][1])
+            whys.append((one, rules(realised(one[1].candidates(one[2][np.newaxis])))))
+        best, refused = whys[-1]
+        accepted = not refused
+    value, at, row = best
+    in_time = time.perf_counter() < until
+    return Found(at.candidates(row[np.newaxis]), row, value, accepted, looked, why, in_time)
+
+
+@lru_cache
+def few_moves(count: int) -> Array:
+    """Steps of one number, and a few of several by chance."""
+    alone = [step * np.eye(count) for step in (*BY, *FURTHER)]
+    several = np.random.default_rng(SEED).choice((0, 0, 0, *BY), (FEW, count))
+    return np.vstack([*alone, several])

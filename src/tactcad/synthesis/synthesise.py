@@ -43,6 +43,8 @@ QUICK = 2e-3  # relative; searches beside the answer stop there
 # s from the beginning on, where nothing else is asked: the search for the answer, and all before the report;
 # with bounds, yield and report they keep 30 s and 2 minutes.
 SEARCHING, IN_ALL = 20.0, 105.0
+# The same with a body under the pads: a candidate costs milliseconds, and so do arrays made.
+ON_BODY, ALL_ON_BODY, ARRAYS_ON_BODY = 70.0, 160.0, 400
 SHARE = 0.4  # of the seconds asked for, for the search
 HEARD = 0.2  # s, between looks at the clock
 ANSWER = "answer"  # what is done for it
@@ -171,8 +173,13 @@ class Synthesis:
     @cached_property
     def base_half_width(self) -> float | None:
         """Of the base design as it is, under the same forces and knowledge; None beyond the estimator."""
+        sensor = MadeSensor(self.target, self.target.base)
+        if not np.isfinite(sensor.drawn.stiffness).all():
+            return None
+        if self.target.on_layer:
+            return sensor.worst()[0]
         x = np.geomspace(*self.target.stiffness_range, CURVE)
-        got = MadeSensor(self.target, self.target.base).interval(x).half_width(x)
+        got = sensor.interval(x).half_width(x)
         return float(got.max()) if np.isfinite(got).all() else None
 
     @cached_property
@@ -184,6 +191,11 @@ class Synthesis:
     def scenes_left_out(self) -> list[LeftOut]:
         """Rigs of the base design that do not take the chosen array."""
         return left_out(self.found.design) if self.found.accepted else []
+
+    @property
+    def object_range(self) -> tuple[float, float]:
+        """Least and largest K_obj under the design's pads, N/mm."""
+        return self.target.range_of(self.found.design)
 
     @property
     def ratio(self) -> float:
@@ -242,6 +254,7 @@ def attempt(
     """
     looked, best, rules = 0, None, refusals if near else all_refusals
     arrays = min(arrays, TRIED) if near else arrays
+    arrays = min(arrays, ARRAYS_ON_BODY) if target.on_layer else arrays
     for margin, some in tries(target):
         if best and time.perf_counter() > until:
             break
@@ -359,7 +372,8 @@ def design(
     """
     started = time.perf_counter()
     tell(0, 1, "searching")
-    searching = SEARCHING if seconds is None else min(SHARE * seconds, max(SEARCHING, seconds / 4.0))
+    usual, in_all = (ON_BODY, ALL_ON_BODY) if target.on_layer else (SEARCHING, IN_ALL)
+    searching = usual if seconds is None else min(SHARE * seconds, max(usual, seconds / 4.0))
     got = attempt(target, arrays, until=started + searching)
     on = _together([partial(bounds.bound, got.found, field) for field in bounds.touched(got.found)])
     got = replace(got, bounds=tuple(each for each in on if each))
@@ -369,7 +383,7 @@ def design(
         )
     tasks = list(_beside(got) if got.met else _changes(got, arrays))
     answered(_told(got, tasks, {}))
-    until, done = started + (seconds or IN_ALL) - ending(), dict[int, Any]()
+    until, done = started + (seconds or in_all) - ending(), dict[int, Any]()
 
     def hear(what: str) -> None:
         tell(len(done), len(tasks), what)
@@ -409,7 +423,8 @@ def _told(got: Synthesis, tasks: Sequence[Task], done: dict[int, Any]) -> Synthe
 def _beside(got: Synthesis) -> Iterator[Task]:
     """What the report tells beside the answer, what matters most first."""
     on = (*relax.NOT_NARROWING, *(b.field for b in got.bounds))
-    yield Task("variance shares", lambda: tuple(variance_shares(got.sensor)))
+    if not got.target.on_layer:  # they are those of springs
+        yield Task("variance shares", lambda: tuple(variance_shares(got.sensor)))
     for name, other in relax.eased(got.target):
         if name not in on:
             yield Task(f"what limits it: {name}", partial(_limit, got, name, other))
@@ -429,10 +444,18 @@ def _solid(got: Synthesis) -> tuple[float, ...] | str:
 
 def _near(target: Target, found: Found, goal: Goal = bounds.narrowest) -> Found:
     """The best for nearly the same target: around the found one; from anywhere where nothing is there."""
-    some = bounds.near(target, found)
-    for evolve in (False, True):
+    some, until = bounds.near(target, found), bounds.soon(target)
+    for evolve in (False,) if target.on_layer else (False, True):
         near = [
-            search(s, goal, rules=refusals, start=bounds.numbers(found, s), evolve=evolve, within=QUICK)
+            search(
+                s,
+                goal,
+                rules=refusals,
+                start=bounds.numbers(found, s),
+                evolve=evolve,
+                within=QUICK,
+                until=until,
+            )
             for s in some
         ]
         best = min(near, key=lambda f: (not f.accepted, f.goal))

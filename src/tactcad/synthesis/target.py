@@ -11,6 +11,8 @@ from math import ceil, floor, inf
 from pathlib import Path
 from typing import Any
 
+from tactcad.contact.elastic_body import Body
+from tactcad.contact.press import THINNEST, pad_stiffness
 from tactcad.design.family import family_of, taken_as
 from tactcad.design.fields import Number, Numbers, OneOf, SomeOf, TextLine, Whole, given, shown_text
 from tactcad.design.files import read_text
@@ -21,12 +23,13 @@ from tactcad.design.schema import table_schema, table_text
 from tactcad.design.text_values import parse_toml
 from tactcad.design.tree import Array, Design, Element, Identity, Rating, Sheet, Tolerance
 from tactcad.lab.calibration import RUN_SCATTER
-from tactcad.lab.pads import stiffness_per_modulus
+from tactcad.lab.pads import SOFT
 from tactcad.lab.simulate import Noise
 
 ARM, THICKNESS = 0.1, 0.005  # mm, steps that a drawing states and a shop's wire can tell apart
 LEAST = ("width", "kinds", "room", "cut", "tolerance")
 KNOWN = ("drawn", "inspected", "calibrated")
+REFERENCES = ("stiffness", "modulus")
 
 
 def _spec(kind: Any, name: str) -> Any:
@@ -79,6 +82,15 @@ class Object:
     thickness: float | None = given(
         Number("mm", 0.1, 1e3, "of the object, bonded to a rigid base"), None, "a half-space"
     )
+    poisson: float = given(Number("", 0, 0.5, "Poisson's ratio of a layer or half-space"), SOFT)
+    thickness_limits: float = given(
+        Number("%", 0, 50, "half-width of what the thickness is known within, in use"), 0.0
+    )
+    angle: tuple[float, ...] = given(
+        _range(Number("degrees", 0, 30, "inclination"), "least and largest inclination of its face, any way"),
+        (0.0, 0.0),
+    )
+    reference: str = given(OneOf(REFERENCES, "what the half-width is of"), "stiffness")
 
 
 @dataclass(frozen=True)
@@ -134,6 +146,11 @@ class Kinds:
     hinges: tuple[float, ...] = given(
         _range(_spec(Element, "hinge_thickness"), "thinnest and thickest hinge"), (0.15, 0.6)
     )
+    pads: tuple[float, ...] | None = given(
+        _range(_spec(Element, "pad_length"), "shortest and longest pad, for a body under rigid pads"),
+        None,
+        "the base design's",
+    )
     kinds: int = given(Whole(2, 4, "different elements, at most"), 2)
     of_a_kind: int = given(Whole(1, 500, "elements of each kind, at least"), 1)
 
@@ -178,13 +195,36 @@ class Target:
     written: frozenset[str] = frozenset()
 
     @property
+    def on_layer(self) -> bool:
+        """Whether the object is a body under rigid pads, not a spring under each."""
+        return self.object.modulus is not None or self.object.thickness is not None
+
+    @property
     def stiffness_range(self) -> tuple[float, float]:
-        """Least and largest K_obj, N/mm."""
+        """Least and largest K_obj, N/mm; under one level pad of the base's where the object is a body."""
+        return self.range_of(self.base)
+
+    def range_of(self, design: Design) -> tuple[float, float]:
+        """As `stiffness_range`, under a design's pads."""
         if self.object.stiffness:
             return self.object.stiffness[0], self.object.stiffness[1]
         low, high = self.object.modulus or (0.0, 0.0)
-        unit = stiffness_per_modulus(self.base, self.object.thickness or inf, "object.thickness")
+        unit = self.unit(design)
         return low * unit, high * unit
+
+    @property
+    def body(self) -> Body:
+        """The object at 1 MPa."""
+        return Body(1.0, self.object.poisson, self.object.thickness or inf)
+
+    def unit(self, design: Design) -> float:
+        """K_obj under one of a design's pads, level and alone, for each MPa, N/mm."""
+        return pad_stiffness(self.body, design.element.pad_length, design.sheet.thickness)
+
+    def moduli(self, design: Design) -> tuple[float, float]:
+        """Least and largest modulus, MPa, under a design's pads."""
+        (low, high), unit = self.range_of(design), self.unit(design)
+        return low / unit, high / unit
 
     def with_(self, path: str, value: Any) -> Target:
         """A copy with another value of one field, "grasp.force"."""
@@ -285,8 +325,19 @@ def _refuse_contradictions(target: Target) -> None:
     o, room, e = target.object, target.room, target.elements
     if (o.stiffness is None) == (o.modulus is None):
         raise InputError("object", "needs one of stiffness and modulus", legal="stiffness = [2, 10] (N/mm)")
-    if o.stiffness and o.thickness:
-        raise InputError("object.thickness", "belongs to a modulus", value=o.thickness, legal="left out")
+    if o.angle[1] > 0 and not target.on_layer:
+        legal = "a modulus, or a thickness beside the stiffness"
+        raise InputError(
+            "object.angle", "needs a body that can be inclined", value=list(o.angle), legal=legal
+        )
+    thinnest = THINNEST * (target.base.element.pad_length * max(target.stock.sheets)) ** 0.5
+    if o.thickness is not None and o.thickness < thinnest:
+        raise InputError(
+            "object.thickness",
+            "too thin for rigid pads",
+            value=o.thickness,
+            legal=f"at least {thinnest:.3g} mm, {THINNEST:g} of a pad's side; left out for a half-space",
+        )
     for path, values in (
         ("stock.sheets", target.stock.sheets),
         ("stock.hinge_tolerances", target.stock.hinge_tolerances),
@@ -296,9 +347,11 @@ def _refuse_contradictions(target: Target) -> None:
     for path, pair in (
         ("object.stiffness", o.stiffness),
         ("object.modulus", o.modulus),
+        ("object.angle", o.angle),
         ("room.elements", room.elements),
         ("elements.arms", e.arms),
         ("elements.hinges", e.hinges),
+        ("elements.pads", e.pads),
     ):
         if pair and pair[0] > pair[1]:
             raise InputError(path, "its first value is above its second", value=list(pair), legal="low, high")
@@ -316,7 +369,6 @@ def _refuse_contradictions(target: Target) -> None:
             value=target.known.how,
             legal="drawn or inspected, or another target.base",
         )
-    _ = target.stiffness_range  # refuses an object that is too thin
     _refuse_between_steps(target)
     _refuse_illegal_pitch(target)
 

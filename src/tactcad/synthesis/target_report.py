@@ -25,10 +25,12 @@ from tactcad.scenes.rigs.calibration import RIG as CALIBRATION
 from .bounds import SIZES, deciding
 from .candidates import dealt
 from .interval import LEVEL
+from .on_layer import Poses
 from .shares import SLIGHT
 from .synthesise import CURVE, PAPERS_RATIO, Synthesis
 
 COUPLINGS = (0.0, SLIGHT, 1.0)
+GRID = 9  # angles a side of the map
 USEFUL = 0.5  # half-width of K_obj beyond which an array tells hardly more than that something is there
 LISTED = 8  # rows of limits and shares on the page
 STYLE = """
@@ -57,7 +59,8 @@ def record(got: Synthesis) -> dict[str, Any]:
         "yield_distribution": got.made.distribution,
         "yield_lacks": got.made.why,
         "level": LEVEL,
-        "object_range": list(got.target.stiffness_range),
+        "object_range": list(got.object_range),
+        "object": _object(got),
         "evaluations": got.evaluations,
         "changes": [asdict(c) for c in got.changes],
         "left_out": list(got.left_out),
@@ -69,7 +72,7 @@ def record(got: Synthesis) -> dict[str, Any]:
     }
     if not got.found.accepted:
         return out | {"object_interval": [], "binding": [], "shares": [], "front": []}
-    x = np.geomspace(*got.target.stiffness_range, CURVE)
+    x = np.geomspace(*got.object_range, CURVE)
     whole = got.sensor.interval(x)
     pairs = [
         {
@@ -77,7 +80,7 @@ def record(got: Synthesis) -> dict[str, Any]:
             "reference": r + 1,
             "half_width": [float(v) for v in got.sensor.interval(x, [m, r]).half_width(x)],
         }
-        for m, r in _pairs(got)
+        for m, r in ([] if got.target.on_layer else _pairs(got))
     ]
     return out | {
         "object_interval": [
@@ -88,7 +91,10 @@ def record(got: Synthesis) -> dict[str, Any]:
         "binding": [asdict(limit) for limit in got.binding],
         "shares": [asdict(s) for s in got.shares],
         "front": [entry.record() for entry in got.front],
-        "coupling": [{"share": c, "shift": got.coupling(c)} for c in COUPLINGS],
+        "coupling": []
+        if got.target.on_layer
+        else [{"share": c, "shift": got.coupling(c)} for c in COUPLINGS],
+        "inclined": _inclined(got),
         "ratio": got.ratio,
         "ratios": [{"ratio": q, "half_width": w} for q, w in got.ratios],
         "papers_ratio": PAPERS_RATIO,
@@ -96,6 +102,67 @@ def record(got: Synthesis) -> dict[str, Any]:
         "size_mm": [round(size(Layout(got.found.design)), 3) for size in SIZES.values()],
         "read_from": got.target.grasp.force / got.target.grasp.loads,
     }
+
+
+def _object(got: Synthesis) -> str:
+    """What is pressed, where it is a body: "0.4 to 1.4 MPa, a layer of 10 mm within 5 %, inclined up to 3
+    degrees"."""
+    if not got.target.on_layer:
+        return ""
+    o, (low, high) = got.target.object, got.target.moduli(got.found.design)
+    known = f" within {o.thickness_limits:g} %" if o.thickness_limits else ""
+    layer = f"a layer of {o.thickness:g} mm{known}" if o.thickness else "a half-space"
+    inclined = f", inclined up to {o.angle[1]:g} degrees" if o.angle[1] else ""
+    return f"{low:.3g} to {high:.3g} MPa, {layer}{inclined}"
+
+
+def _inclined(got: Synthesis) -> list[dict[str, Any]]:
+    """Half-width over both angles of the face, degrees, at the softest, middle and stiffest object; None
+    where an element would be pressed beyond what it bears."""
+    most = got.target.object.angle[1]
+    if not most:
+        return []
+    s, side = got.sensor, np.linspace(-most, most, GRID)
+    angles = np.array([(a, b) for b in side for a in side])
+    slope, E, out = np.tan(np.radians(angles)), s.points / s.target.unit(s.design), []
+    for x, modulus in zip(s.points, E):
+        at = Poses(np.full(len(slope), modulus), slope)
+        got_there = s.on_body.expected(at)
+        width, within = s.on_body.half_width(at, got_there), np.hypot(*angles.T) <= most * (1 + 1e-9)
+        out.append(
+            {
+                "object": float(x),
+                "angles": [float(a) for a in side],
+                "half_width": [[float(w) for w in row] for row in width.reshape(GRID, GRID)],
+                "within": [[bool(w) for w in row] for row in within.reshape(GRID, GRID)],
+            }
+        )
+    return out
+
+
+def _inclined_part(r: dict[str, Any]) -> str:
+    if not r["inclined"]:
+        return ""
+    tables = [100 * np.where(m["within"], m["half_width"], np.nan) for m in r["inclined"]]
+    low, high = np.nanmin(tables), np.nanmax(tables)
+    with panels(1, len(tables), (3.8 * len(tables), 3.8)) as (figure, axes):
+        for ax, table, m in zip(axes, tables, r["inclined"]):
+            a = m["angles"]
+            shown = ax.pcolormesh(a, a, table, cmap="viridis", vmin=low, vmax=high, shading="nearest")
+            ax.set(
+                title=f"{m['object']:.3g} N/mm",
+                xlabel="along the arms, degrees",
+                ylabel="along the rows, degrees",
+                aspect="equal",
+            )
+        figure.colorbar(shown, ax=list(axes), label="half-width of K_obj, %")
+        picture = svg(figure, "inclined")
+    return (
+        "<h2>On an inclined face</h2>"
+        f"<p>Half the 95 % interval over both angles of the object's face: {percent(low / 100)} to "
+        f"{percent(high / 100)}. Within the circle every hinge, stop and signal keeps its limits.</p>"
+        f"{picture}"
+    )
 
 
 def _beyond(got: Synthesis) -> dict[str, float]:
@@ -179,7 +246,14 @@ def report_page(got: Synthesis) -> bytes:
     parts = [f"<h1>{escape(title)}</h1>", _answer(got, r), _bounds_part(r)]
     if got.found.accepted:
         parts.append(_size_part(got, r))
-        parts += [_interval_part(got, r), _yield_part(r), _limits_part(r), _ratio_part(r), _front_part(r)]
+        parts += [
+            _interval_part(got, r),
+            _inclined_part(r),
+            _yield_part(r),
+            _limits_part(r),
+            _ratio_part(r),
+            _front_part(r),
+        ]
         parts += [_elements_part(r)]
     if r["left_out"]:
         parts.append(f"<p>Left out for time: {escape(', '.join(r['left_out']))}.</p>")
@@ -277,16 +351,26 @@ def _interval_part(got: Synthesis, r: dict[str, Any]) -> str:
         log_ticks(ax.xaxis, _ticks(float(x[0]), float(x[-1])))
         ax.legend()
         picture = svg(figure, "interval")
+    return f"<h2>How surely it feels</h2>{picture}<p>{_pressed_how(r)} {_read_from(r)}</p>"
+
+
+def _pressed_how(r: dict[str, Any]) -> str:
+    if r["object"]:
+        return (
+            f"Rigid pads on a body ({r['object']}), as <code>tactcad stiffness --thickness</code> evaluates "
+            "them: level in the picture. The error of a linear body at this depth is in it."
+        )
     lines = ", ".join(f"{percent(c['share'])}: {c['shift']:+.1%}" for c in r["coupling"][1:])
     return (
-        f"<h2>How surely it feels</h2>{picture}<p>Pads are taken to press on separate springs. "
-        f"Where the object couples "
-        f"them, K_obj is believed larger by so much of itself, at a share of a half-space's "
-        f"coupling of {lines}; "
-        "<code>tactcad stiffness</code> widens its interval for that unless "
-        "<code>--coupling</code> says what is "
-        f"known. Read from {r['read_from']:.3g} N on, where all pads touch.</p>"
+        "Pads are taken to press on separate springs. Where the object couples them, K_obj is believed "
+        f"larger by so much of itself, at a share of a half-space's coupling of {lines}; <code>tactcad "
+        "stiffness</code> widens its interval for that unless <code>--coupling</code> says what is known."
     )
+
+
+def _read_from(r: dict[str, Any]) -> str:
+    touching = "" if r["inclined"] else ", where all pads touch"
+    return f"Read from {r['read_from']:.3g} N on{touching}."
 
 
 def _ticks(low: float, high: float) -> list[float]:
@@ -443,10 +527,11 @@ def answer(r: dict[str, Any]) -> str:
         than = f"{base['name']} as it is does not meet the target: {'; '.join(base['breaks'])}"
     else:
         than = f"{base['name']} as it is: {percent(base['half_width'])}"
+    pressed = f" ({r['object']})" if r["object"] else ""
     best = "Best to be had: no half-width was asked. " if r["met"] is None else ""
     return (
-        f"{best}{len(e)} elements feel {low:.3g} to {high:.3g} N/mm within {percent(r['wanted_half_width'])} "
-        f"(half the 95 % interval; as drawn {percent(r['half_width'])}). "
+        f"{best}{len(e)} elements feel {low:.3g} to {high:.3g} N/mm{pressed} within "
+        f"{percent(r['wanted_half_width'])} (half the 95 % interval; as drawn {percent(r['half_width'])}). "
         f"{percent(r['yield'])} of arrays made within "
         f"their tolerances keep that ({percent(r['yield_interval'][0])} to "
         f"{percent(r['yield_interval'][1])}). Size {' x '.join(f'{v:g}' for v in r['size_mm'])} mm. {than}."

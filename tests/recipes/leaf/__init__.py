@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tactcad.design.family import Family, FamilyEstimate, FamilyStack, Late
+from tactcad.design.family import Family, FamilyEstimate, FamilyReadings, FamilyStack, Late
 
 from .tables import LeafDesign
 
@@ -31,7 +31,9 @@ FAMILY = Family(
     ),
     pads=None,
     readout=None,
-    readings=None,
+    readings=FamilyReadings(
+        calibrate=Late(f"{HERE}.parts:calibrate"), stiffness=Late("tactcad.scenes.rig:none")
+    ),
     variables=None,
     checks=f"{HERE}.scene",
 )

@@ -93,6 +93,14 @@ def rows(layout: LeafLayout, _rung: str, force: float | None) -> list[LeafEstima
     return [LeafEstimate(1, length, stiffness, None, load, at_yield, rated, load < at_yield, strain, strain)]
 
 
+def calibrate(args, design) -> int:
+    """Three components at once, in a table of this family's own: a line a load, the tip's ways and forces."""
+    table = [[float(v) for v in line.split(",")] for line in open(args.file, encoding="utf-8")]
+    softness = [w / f for row in table for w, f in zip(row[:3], row[3:], strict=True) if f]
+    print(f"{design.name}: " + ", ".join(f"{1 / c:.4g} N/mm" for c in softness))
+    return 0
+
+
 def golden(design) -> dict[str, dict]:
     layout = LeafLayout(design)
     (row,), no = rows(layout, "", None), leaf(layout).part_no

@@ -11,12 +11,13 @@ from collections import Counter
 from collections.abc import Iterator
 
 from tactcad.checks.check import Check
-from tactcad.circuit.bridges import EXCITATION, netlist
+from tactcad.circuit.bridges import netlist
 from tactcad.circuit.element_signals import element_signals
 from tactcad.circuit.netlist import GROUND, Component, Kind, Netlist
 from tactcad.design.tree import Design
 from tactcad.parts.array.hinge_section import design_readout
 from tactcad.parts.array.layout import Layout
+from tactcad.parts.bought.electronic_parts import LINK, WIRE_LINK
 from tactcad.parts.language.finding import Finding
 from tactcad.parts.rules.gauge_rules import leads_have_room
 from tactcad.parts.rules.readout_rules import (
@@ -55,7 +56,8 @@ def check_bridges(circuit: Netlist) -> Iterator[Finding]:
     arms, pairs = _arms(circuit, joined), _channels(circuit, joined)
     found: Counter[str] = Counter()
     for switch in circuit.of_kind("switch"):
-        found.update(_gauges_of_bridge(arms, pairs, joined[switch.net("drain")]))
+        supply = joined[circuit.on_board("regulator", switch.board).net("out")]
+        found.update(_gauges_of_bridge(arms, pairs, supply, joined[switch.net("drain")]))
     for gauge in circuit.of_kind("gauge"):
         count = found[gauge.designator]
         if count != 1:
@@ -87,7 +89,7 @@ def _fed(circuit: Netlist) -> set[str]:
             a, b = component.net("1"), component.net("2")
             beside.setdefault(a, set()).add(b)
             beside.setdefault(b, set()).add(a)
-    reached, new = set[str](), {EXCITATION, GROUND}
+    reached, new = set[str](), {*circuit.excitations, GROUND}
     while new:
         reached |= new
         new = {net for at in new for net in beside.get(at, ())} - reached
@@ -95,7 +97,7 @@ def _fed(circuit: Netlist) -> set[str]:
 
 
 def _joined_by_leads(circuit: Netlist) -> dict[str, str]:
-    """One name for all nets that leads and terminals join."""
+    """One name for all nets that leads, terminals and links join."""
     parent = {net: net for net in circuit.nets}
 
     def root(net: str) -> str:
@@ -103,8 +105,9 @@ def _joined_by_leads(circuit: Netlist) -> dict[str, str]:
             net = parent[net]
         return net
 
-    for lead in circuit.of_kind("lead"):
-        parent[root(lead.net("2"))] = root(lead.net("1"))
+    links = (c for c in circuit.of_kind("resistor") if c.part_no in (LINK, WIRE_LINK))
+    for joint in (*circuit.of_kind("lead"), *links):
+        parent[root(joint.net("2"))] = root(joint.net("1"))
     return {net: root(net) for net in parent}
 
 
@@ -114,7 +117,8 @@ Arms = dict[str, dict[str, list[Component]]]
 def _arms(circuit: Netlist, joined: dict[str, str]) -> Arms:
     """Resistors and gauges by the nets at their two ends, either way round."""
     arms: Arms = {}
-    for component in (*circuit.of_kind("resistor"), *circuit.of_kind("gauge")):
+    resistors = (c for c in circuit.of_kind("resistor") if c.part_no not in (LINK, WIRE_LINK))
+    for component in (*resistors, *circuit.of_kind("gauge")):
         first, second = (joined[component.net(role)] for role in "12")
         for a, b in ((first, second), (second, first)):
             arms.setdefault(a, {}).setdefault(b, []).append(component)
@@ -131,10 +135,10 @@ def _channels(circuit: Netlist, joined: dict[str, str]) -> set[frozenset[str]]:
     return set(map(frozenset, pairs.values()))
 
 
-def _gauges_of_bridge(arms: Arms, pairs: set[frozenset[str]], foot: str) -> list[str]:
+def _gauges_of_bridge(arms: Arms, pairs: set[frozenset[str]], supply: str, foot: str) -> list[str]:
     """Gauges among the four arms between the bridges' supply and a switch; none where there are other than
     four, their middles carry others too, or are no channel's pair."""
-    upper, lower = arms.get(EXCITATION, {}), arms.get(foot, {})
+    upper, lower = arms.get(supply, {}), arms.get(foot, {})
     middles = [net for net in lower if net in upper]
     around = [c for net in middles for c in (*upper[net], *lower[net])]
     ends = sum(len(found) for net in middles for found in arms[net].values())

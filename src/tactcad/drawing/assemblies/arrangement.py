@@ -9,12 +9,11 @@ from typing import TYPE_CHECKING
 
 from tactcad.design.family import family_of
 from tactcad.design.messages import CheckFailure
-from tactcad.design.tree import CommonTables, Design
+from tactcad.design.tree import CommonTables
 from tactcad.parts.array import seating
 from tactcad.parts.array.layout import Layout
 from tactcad.parts.language.description import Kind
 from tactcad.scenes.rig import ARRAY
-from tactcad.scenes.rigs.array import COPLANAR
 from tactcad.scenes.scene import Scene
 
 from ..engine.boxes import Box, Point, grown
@@ -208,8 +207,8 @@ def notes_of(design: CommonTables, scene: Scene) -> tuple[str, ...]:
         how = f"to {torques}" if torques else seating.words(layout)
         lines.append(f"Turn set screws in {how}, locked with thread lacquer")
     for step in scene.steps:
-        if isinstance(design, Design) and step.title == COPLANAR:
-            lines.append(f"All pads in one plane within {2 * design.tolerance.pad_height:g} mm. {step.text}")
+        if step.limit:
+            lines.append(f"{step.limit}. {step.text}")
     lines.append("Item numbers are those of the bill of materials; what has no solid has no balloon")
     lines.append(
         "Dimensions in parentheses are for information; "

@@ -16,19 +16,19 @@ from dataclasses import dataclass
 
 from tactcad.design.sensing import MULTIPLEXERS
 
+from ..bought.electronic_parts import CARD_SIGNALS
 from .layout import Layout
 
 Place = tuple[float, float]
 
 THICKNESS = 1.6  # mm; chosen: what every board house has in stock
 PITCH = 2.54  # of the headers' pins, mm
-HOLE, AT_CORNER = 3.2, 4.0  # mm: a hole for M3 (ISO 273, medium 3.4, fine 3.2), from both edges of its corner
-LEADS_FROM_EDGE = (
-    4.0  # mm, the lead connector's pins from the upper edge; chosen: the ties' holes beside them
-)
+HOLE, AT_CORNER = 3.2, 4.0  # mm: a hole for M3 (ISO 273, fine), from both edges of its corner
+LEADS_FROM_EDGE = 10.0  # mm, the lead connector's pins from the upper edge: before them are the ties' holes
+CARD_FROM_EDGE = 5.0  # mm, the other connector's pins from the lower edge: their names are printed below
 HIGHEST = 8.5  # mm, pin headers: insulator 2.54 and pins of 6; the foil resistors are 8.3
 PIN_LENGTH = 1.4  # mm that soldered pins reach below the board; chosen: pins of 3 mm through 1.6 mm
-WIDTH, HEIGHT = 80.0, 85.0  # mm; chosen: what the routed board takes
+WIDTH, HEIGHT = 90.0, 102.0  # mm; chosen: what the routed board takes
 
 
 @dataclass(frozen=True)
@@ -52,9 +52,14 @@ class BoardOutline:
 
 
 def lead_pins(layout: Layout) -> int:
-    """Of a board's lead connector: three a channel, and one each for the cable's shield and the array's
+    """Of a board's lead connector: three a channel, and one each for the leads' shield and the array's
     metal."""
     return 3 * MULTIPLEXERS[layout.design.readout.multiplexer].channels + 2
+
+
+def card_pins(layout: Layout) -> int:
+    """Of a board's connector to the converter's card."""
+    return CARD_SIGNALS + len(MULTIPLEXERS[layout.design.readout.multiplexer].address)
 
 
 def board_outline(layout: Layout) -> BoardOutline:

@@ -1,23 +1,28 @@
 """Figures of the bridges and of what reads them, by closed forms: imbalance, voltages at the inputs,
-settling, drift. Volts, ohm, seconds.
+settling, drift, and what the instant of the samples costs. Volts, ohm, seconds.
 """
 
 from __future__ import annotations
 
-from math import log, pi
+from math import hypot, log, pi
+
+import numpy as np
 
 from tactcad.design.materials import leaf_conductivity
-from tactcad.design.sensing import AMPLIFIERS, MULTIPLEXERS, SWITCHES
+from tactcad.design.sensing import AMPLIFIERS, JITTER, MULTIPLEXERS, SWITCHES, Readout
 from tactcad.design.tree import Design
 from tactcad.mechanics import gauge_signal
 from tactcad.mechanics.gauge_signal import Heating, Power, leaf_resistance
 
-from ..bought.electronic_parts import completion_drift, completion_resistance
-from .hinge_section import design_gauge
+from ..bought.electronic_parts import completion_drift, completion_resistance, completion_tolerance
+from .hinge_section import design_gauge, design_readout
 from .layout import Layout
 from .leads import longest_lead_resistance
 
 COPPER = 0.0039  # 1/K, annealed copper at 20 C, IEC 60028
+APART = 0.5  # K between the two leads of a bridge; chosen: one lies on the warmer side of its bundle
+MAINS = 50.0  # Hz, where none is said
+MAINS_OFF = 0.01  # relative, of the mains' frequency: EN 50160, 1 % for 99.5 % of a year
 
 
 def bridge_signal(
@@ -78,7 +83,9 @@ def amplified(design: Design, lead: float, x: float, sign: float, arm: float) ->
     """
     gauge = sign * design.gauge.resistance_tolerance
     plus, minus = bridge_signal(design, lead, x, gauge, sign * arm)
-    return design.readout.gain * (plus - minus + sign * AMPLIFIERS[design.readout.amplifier].offset)
+    return design.readout.gain * (
+        plus - minus + sign * AMPLIFIERS[design.readout.amplifier].offset(design.readout.gain)
+    )
 
 
 def settling_time(design: Design) -> float:
@@ -117,20 +124,83 @@ def drift(layout: Layout) -> float:
     """By how much the amplifier's output drifts between zero and reading, V, as the half-width of a band.
 
     Root of the sum of squares of: the gauge's thermal output, the completion's three arms, the amplifier's
-    offset, the leads' warmth (tolerance.zero_drift; of two wires also their whole resistance in the gauge's
-    arm). Self-heating is alike
-    in all readings of a settled cycle, and so in the zero.
+    offset, the bridges' supply over their largest imbalance, the leads' warmth (`zero_drift`; of two wires
+    also their whole resistance in the gauge's arm). Self-heating is alike in all readings of a settled
+    cycle, and so in the zero, but for the instant of the samples (`instant_error`).
     """
     d = layout.design
     r, span = d.readout, d.readout.temperature_span
     per_x = r.excitation * r.gain / 4
-    leads = d.tolerance.zero_drift
+    unloaded = imbalance(d, longest_lead_resistance(layout), completion_tolerance(d))
+    leads = zero_drift(layout)
     if r.connection == "two-wire":
         leads += 2 * longest_lead_resistance(layout) / d.gauge.resistance * COPPER * span
     shares = (
         per_x * d.gauge.factor * d.gauge.thermal_output * span,
         per_x * 3**0.5 * completion_drift(d) * span,
-        r.gain * AMPLIFIERS[r.amplifier].drift * span,
+        r.gain * AMPLIFIERS[r.amplifier].drift(r.gain) * span,
+        r.excitation_drift * max(map(abs, unloaded)),
         per_x * leads,
     )
     return sum(share**2 for share in shares) ** 0.5
+
+
+def zero_drift(layout: Layout) -> float:
+    """dR/R by which a bridge's zero drifts during a grasp, by its leads' warmth: tolerance.zero_drift, or
+    that of the longest lead's copper, APART kelvin between the two of a bridge."""
+    own = layout.design.tolerance.zero_drift
+    if own is not None:
+        return own
+    return longest_lead_resistance(layout) / layout.design.gauge.resistance * COPPER * APART
+
+
+def sample_spacing(r: Readout) -> float:
+    """From sample to sample of a reading, s."""
+    return 1 / r.sample_rate if r.mains is None else 1 / (r.mains * r.samples)
+
+
+def instants(design: Design) -> np.ndarray:
+    """Of the samples of a reading after ENABLE, s."""
+    r = design.readout
+    apart = sample_spacing(r)
+    first = r.on_time - r.samples * apart if r.instant is None else r.instant
+    return first + apart * np.arange(r.samples)
+
+
+def warm_output(layout: Layout, after: np.ndarray) -> np.ndarray:
+    """What the grid's warmth adds to the amplifier's output, V, at instants after ENABLE in the settled
+    cycle."""
+    d = layout.design
+    power, gauge, chain = power_of(layout), design_gauge(d), design_readout(d)
+    rise = np.array([gauge_signal.warmth(chain.excitation, gauge, power, float(t)) for t in after])
+    x = rise * power.resistance_per_kelvin * power.reference_mismatch
+    return chain.excitation * chain.gain * chain.transmission * x / 4
+
+
+def jitter(design: Design) -> float:
+    """Of the samples' instant from reading to reading, s, plus and minus."""
+    own = design.readout.jitter
+    return JITTER[design.readout.timing] if own is None else own
+
+
+def instant_error(layout: Layout) -> float:
+    """Half-width of what the instant's jitter costs a reading, V: the grid warms while the samples are
+    taken."""
+    at, late = instants(layout.design), jitter(layout.design)
+    means = [float(warm_output(layout, np.maximum(at + shift, 0.0)).mean()) for shift in (-late, 0.0, late)]
+    return max(abs(m - means[1]) for m in means)
+
+
+def hum_left(design: Design) -> float:
+    """Rms of the mains that the mean of a reading's samples keeps, V: over a whole period what the mains'
+    frequency is off by, else about all of it."""
+    r, at = design.readout, instants(design)
+    about = (r.mains or MAINS) * (1 + MAINS_OFF * np.array([-1.0, 1.0]))
+    return r.hum * float(np.abs(np.exp(2j * pi * about[:, None] * at).mean(1)).max())
+
+
+def reading_scatter(layout: Layout) -> float:
+    """Standard deviation of one reading, V: noise and rounding, hum, and half of what the instant's jitter
+    costs."""
+    noise = design_readout(layout.design).averaged_noise
+    return hypot(noise, hum_left(layout.design), instant_error(layout) / 2)

@@ -192,11 +192,16 @@ def end_plate(layout: Layout, head: bool) -> Part:
         notes=(
             BREAK_EDGES,
             *(() if head else (_dowels_stand(layout, c),)),
-            "upper edge and dowel holes of both end plates machined in one clamping; mark the pair",
+            "both edges and the dowel holes of both end plates machined in one clamping; mark the pair",
         ),
         characteristics=(bore,),
         geometric=(*_places(layout), *(() if head else (SQUARENESS,))),
-        datums=(DatumFeature("A", INNER), DatumFeature("B", "upper edge"), DatumFeature("C", "left edge")),
+        datums=(
+            DatumFeature("A", INNER),
+            DatumFeature("B", "upper edge"),
+            DatumFeature("C", "left edge"),
+            DatumFeature("D", "lower edge"),
+        ),
     )
 
 
@@ -215,6 +220,7 @@ BENT = 0.01
 INNER = FACES[1]
 # Zones in mm; chosen: what a jig borer or wire holds in one clamping.
 HOLES, PAIR, SQUARE = 0.03, 0.01, 0.003
+OVER_EDGE = "dowel holes over the lower edge"  # by which the setting fixture holds the plates' height
 
 
 def lean(layout: Layout) -> float:
@@ -246,6 +252,7 @@ def _places(layout: Layout) -> tuple[Geometric, ...]:
     return (
         Geometric("dowel holes", "position", HOLES, dowels, FRAME, True),
         Geometric("dowel holes of the pair", "position", PAIR, dowels, ("A", "B"), True),
+        Geometric(OVER_EDGE, "position", PAIR, dowels, ("A", "D"), True),
         Geometric("screw holes", "position", PLACE, screws, FRAME, True),
         Geometric("carrier threads", "position", PLACE, ("carrier",), FRAME, True),
     )

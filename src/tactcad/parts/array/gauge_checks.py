@@ -9,9 +9,11 @@ from math import log10
 import numpy as np
 
 from tactcad.design.fields import present
+from tactcad.design.messages import CheckFailure
 from tactcad.mechanics import gauge_signal, readout, strain
 from tactcad.mechanics.section import Array
 
+from .bridge_figures import zero_drift
 from .hinge_section import design_gauge, design_readout, hinge_section
 from .layout import Layout
 
@@ -52,16 +54,19 @@ class GaugeChecks:
 def gauge_checks(layout: Layout) -> GaugeChecks:
     """The limits, from read-out, tolerances and the elements' own strain.
 
-    Strains are by the closed forms also beyond the range that they were fitted for: they only scale the
-    room that the signal leaves.
+    Strains are the foil's by the estimator, as every signal is; where an element is out of its range, by
+    beam theory on the composite section.
     """
     d = layout.design
     R, factor = d.gauge.resistance, d.gauge.factor
     hurt = max(HURT, d.gauge.resistance_tolerance)
     s = hinge_section(layout, layout.elements)
     gauge, electronics = design_gauge(d), design_readout(d)
-    # Foil strain per newton, 1/N: beam theory's on the composite section, which has no rung's range.
-    per_newton = strain.nominal(s, 1.0) * gauge_signal.composite(s, gauge).reading
+    leak = zero_drift(layout)
+    try:
+        per_newton = gauge_signal.foil_strain_per_force(s, gauge)
+    except CheckFailure:  # out of the rung's range; beam theory says up to a fifth more
+        per_newton = strain.nominal(s, 1.0) * gauge_signal.composite(s, gauge).reading
     signal = factor * per_newton * d.rating.force
     # as 4 V/(U G) of what the output may span less the signal: the bridge's slope at zero
     room = 4 * min(electronics.highest, -electronics.lowest) / (electronics.excitation * electronics.gain)
@@ -71,7 +76,7 @@ def gauge_checks(layout: Layout) -> GaugeChecks:
         hurt,
         (R * (1 - hurt), R * (1 + hurt)),
         FRESH_INSULATION,
-        R / d.tolerance.zero_drift if d.tolerance.zero_drift else FRESH_INSULATION,
+        R / leak if leak else FRESH_INSULATION,
         max(0.0, room - float(np.max(signal))),
         d.tolerance.creep * log10(CREEP_TO / CREEP_FROM),
         push,

@@ -9,7 +9,7 @@ from typing import TypeVar
 import numpy as np
 
 from tactcad.design.materials import ALLOYS, OPTIONAL, PROPERTIES, Alloy
-from tactcad.design.sensing import AMPLIFIERS, MULTIPLEXERS, SWITCHES
+from tactcad.design.sensing import ADC_NOISE, AMPLIFIERS, MULTIPLEXERS, SWITCHES
 from tactcad.design.tree import Design
 from tactcad.mechanics import ladder, validity
 from tactcad.mechanics.gauge_signal import Gauge
@@ -112,7 +112,8 @@ def design_readout(design: Design) -> ReadOut:
     own = {
         name: getattr(given, name) for name in inspect.signature(ReadOut).parameters if hasattr(given, name)
     }
-    return ReadOut(**own | {"noise": noise, "transmission": left})
+    converter = ADC_NOISE * given.adc_range if given.adc_noise is None else given.adc_noise
+    return ReadOut(**own | {"noise": noise, "adc_noise": converter, "transmission": left})
 
 
 def derived_noise(design: Design) -> float:

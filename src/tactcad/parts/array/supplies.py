@@ -17,11 +17,14 @@ from ..bought.electronic_parts import (
     completion_tolerance,
     gain_resistance,
     lead_part,
+    supply_resistance,
+    value_code,
 )
 from ..bought.supply import Supply, board_spares, bonded_spares
 from ..language.tables import rows
+from .board_outline import board_outline, card_pins, lead_pins
 from .layout import Layout
-from .leads import board_size, boards, colours, header_pins, lead_routes, leads
+from .leads import boards, colours, lead_routes, leads
 
 COLOUR_NAMES = {"RD": "red", "WH": "white", "BK": "black"}
 ROWS = rows(__file__, "supplies")
@@ -79,23 +82,40 @@ def electronic_supplies(layout: Layout) -> tuple[Supply, ...]:
         ppm=1e6 * drift,
         end=f" ({kind.mpn}); or equal" if kind.mpn and own else "; any maker's",
     )
-    (to_leads, to_card), (length, width) = header_pins(d), board_size(d)
+    part, outline = MULTIPLEXERS[r.multiplexer], board_outline(layout)
+    free, small = part.channels * count - n, kind.package == "0805"
+    links = 3 * free if small else free
+    if leads(layout) == 2:
+        links += n
+    ohm = supply_resistance(d)
     on_boards = supplies(
         "boards",
-        {"elements": n, "boards": count, "supply pins": (ON_SUPPLIES + 1) * count},
+        {
+            "elements": n,
+            "boards": count,
+            "supply pins": (ON_SUPPLIES + 1) * count,
+            "pairs": 2 * count,
+            "threes": 3 * count,
+            "lines": (len(part.address) + 1) * count,
+            "links": links,
+            "wire links": 0 if small else 2 * free,
+        },
         name=d.name,
         switch=SWITCHES[r.switch],
         amplifier=AMPLIFIERS[r.amplifier],
-        multiplexer=MULTIPLEXERS[r.multiplexer],
-        leads=leads(layout),
-        to_leads=to_leads,
-        to_card=to_card,
-        length=length,
-        width=width,
+        multiplexer=part,
+        volts=r.excitation,
+        ohm=ohm,
+        code=value_code(ohm),
+        to_leads=lead_pins(layout),
+        to_card=card_pins(layout),
+        length=outline.width,
+        width=outline.height,
     )
-    ohm = gain_resistance(d)
-    gain = () if ohm is None else supplies("gain", {"boards": count}, ohm=ohm)
-    return (*completion, *lead_supplies(layout), *on_boards, *gain)
+    fitted = (line for line in on_boards if line.qty)
+    gain = gain_resistance(d)
+    set_by = () if gain is None else supplies("gain", {"boards": count}, ohm=gain, code=value_code(gain))
+    return (*completion, *lead_supplies(layout), *fitted, *set_by)
 
 
 def wire_metres(layout: Layout) -> float:

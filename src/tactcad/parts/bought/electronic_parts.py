@@ -13,6 +13,13 @@ BOARD = "CIRCUIT-BOARD"
 # At every supply pin of every circuit, and at the bridges' supply of every board; chosen: usual practice.
 DECOUPLING, RESERVOIR = "CAPACITOR-100N", "CAPACITOR-10U"
 TO_LEADS, TO_CARD = "HEADER-LEADS", "HEADER-CARD"
+REFERENCE, SET_RESISTOR = "LT3042EMSE#PBF", "SET-RESISTOR"
+SET_AMPERE = 100e-6  # out of the LT3042's SET pin, 1 %: its sheet, front page
+CLAMP, LINK, WIRE_LINK = "1N5819HW-7-F", "LINK-0R", "LINK-WIRE"
+SERIES, PULL_DOWN = "RESISTOR-1K", "RESISTOR-100K"
+FILTER_RESISTOR, ANTI_ALIAS = "RESISTOR-10R", "CAPACITOR-100P"
+# In each input of the amplifier; chosen: with 100 pF between them, 8 MHz; their noise is 0.2 %.
+FILTER_OHM = 10.0
 ON_SUPPLIES = 5  # of decoupling capacitors: two at the amplifier, two at the multiplexer, one at the decoder
 CARD_SIGNALS = 8  # of the connector to the card beside the address: supplies, ground twice, enable, output
 
@@ -53,6 +60,20 @@ def nearest_e192(ohm: float) -> float:
     series = [round(100 * 10 ** (i / 192)) for i in range(193)]
     series[185] = 920  # IEC 60063 has 920 where the formula gives 919
     return min((decade * s / 100 for s in series), key=lambda r: abs(log10(r / ohm)))
+
+
+def value_code(ohm: float) -> str:
+    """A resistance as makers' numbers have it, its letter for the point: 499R, 27K1."""
+    for letter, unit in (("M", 1e6), ("K", 1e3), ("R", 1.0)):
+        if ohm >= unit:
+            break
+    whole, _, rest = f"{ohm / unit:.4g}".partition(".")
+    return f"{whole}{letter}{rest}"
+
+
+def supply_resistance(design: Design) -> float:
+    """That sets the bridges' supply, ohm, of the series E192."""
+    return nearest_e192(design.readout.excitation / SET_AMPERE)
 
 
 def set_gain(design: Design) -> float:

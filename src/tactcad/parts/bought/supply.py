@@ -9,6 +9,7 @@ from math import ceil
 
 # What the bill's column `process` says of what is bought, and so who is asked for it.
 ELECTRONIC = "electronic"
+BARE_BOARD = "circuit board"
 MECHANICAL = "bought"
 
 

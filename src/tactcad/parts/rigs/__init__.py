@@ -12,6 +12,7 @@ from .cart import axle_shim, cart_plate, holder_body, holder_lid, hose_fitting, 
 from .force_gauge import axis_plate, flat_tip, force_gauge, gauge_plate, roller_tip
 from .linear_guide import carriage, rail, riser
 from .moving_weight import ballast, bar, disc_weight, foot, pin, platform
+from .setting_fixture import setting_fixture, setting_strip
 from .stand import array_mount, base_plate, micrometer, post, stage_fixed, stage_moving
 
 __all__ = [
@@ -42,6 +43,8 @@ __all__ = [
     "riser",
     "roller_tip",
     "sample",
+    "setting_fixture",
+    "setting_strip",
     "stage_fixed",
     "stage_moving",
 ]

@@ -10,7 +10,7 @@ from typing import Any
 from tactcad.design.sensing import AMPLIFIERS, MULTIPLEXERS, SWITCHES, WIRES, Readout, StrainGauge, Wiring
 from tactcad.design.tree import Design
 
-from ..array.bridge_figures import bridge_signal, heating, imbalance, settling_time
+from ..array.bridge_figures import bridge_signal, heating, imbalance, sample_spacing, settling_time
 from ..array.hinge_section import design_readout
 from ..array.layout import Layout
 from ..array.leads import AHEAD_OF_LEADS, WHOLE, boards, lead_routes, longest_lead_resistance, recess_length
@@ -328,9 +328,18 @@ def inputs_within_common_mode(layout: Layout) -> Iterator[Finding]:
 @rule()
 def switching_settles(layout: Layout) -> Iterator[Finding]:
     r = layout.design.readout
-    settling, sampling = settling_time(layout.design), r.samples / r.sample_rate
+    settling, sampling = settling_time(layout.design), r.samples * sample_spacing(r)
     least, left = settling + sampling, r.on_time - settling
-    if r.on_time < least:
+    if r.mains is not None and r.samples * r.mains > r.sample_rate:
+        what = f"{r.samples} samples in a period of the mains are more than readout.sample_rate gives"
+        yield wrong("readout.samples", what, r.samples, f"at most {floor(r.sample_rate / r.mains)}")
+    elif r.instant is not None and not settling - SAME <= r.instant <= r.on_time - sampling + SAME:
+        span = f"from {settling:.3g} s, when the output has settled, to {r.on_time - sampling:.3g} s"
+        yield wrong("readout.instant", "samples do not lie in what is settled and powered", r.instant, span)
+    elif r.mains is not None and r.on_time < least:
+        what = f"settling takes {settling:.3g} s and a period of the mains {sampling:.3g} s"
+        yield wrong("readout.on_time", what, r.on_time, f"at least {least * 1.005:.3g} s")
+    elif r.on_time < least:
         legal = {"on_time": f"at least {least * 1.005:.3g} s"}
         if left * r.sample_rate >= 1.0:
             legal |= {"samples": f"at most {floor(left * r.sample_rate)}"}

@@ -184,7 +184,7 @@ STOP_PLATE = "Stop plate"
 CARRIER = "Carrier"
 HOLD_DOWN = "Hold the stop plate down"
 
-LEVEL = 0.01  # mm; chosen: 0.02 degrees over the smallest stack, what a lever indicator tells with ease
+STACKED = (FIRST_PLATE, STACK, OTHER_PLATE)  # steps that make the loose stack
 LEANING = 1 / 3  # of the head plate's play; chosen: the pins' own lean and places have the rest
 ABREAST = 2  # rows that are stacked side by side
 
@@ -221,9 +221,10 @@ def array_steps(layout: Layout, placed: Mapping[str, Sequence[Placement]]) -> tu
         tools: tuple[str, ...] = (),
         fan: int = 0,
         elements: bool = False,
+        limit: str = "",
     ) -> Step:
         names = tuple(p.designator for p in placed.get(title, ()))
-        return Step(title, names, explode, text, fan=fan, tools=tools, elements=elements)
+        return Step(title, names, explode, text, fan=fan, tools=tools, elements=elements, limit=limit)
 
     return (
         step(
@@ -240,9 +241,10 @@ def array_steps(layout: Layout, placed: Mapping[str, Sequence[Placement]]) -> tu
         step(
             COPLANAR,
             (0, -way - 20.0 - 1.6 * width, 0),
-            _coplanar(layout, c),
-            flatness_tools(layout),
+            f"In the setting fixture (scene setting). {setting_words(layout)}",
+            (*flatness_tools(layout), "setting fixture"),
             elements=True,
+            limit=f"All pads in one plane within {2 * d.tolerance.pad_height:g} mm",
         ),
         step(STOP_PLATE, (0, 0, 0.8 * width), _laying_stop_plate(layout)),
         step(
@@ -331,8 +333,17 @@ def _other_plate(c: Clamping, plate: Placement) -> str:
     )
 
 
-def _coplanar(layout: Layout, c: Clamping) -> str:
-    d = layout.design
+def wedge(layout: Layout) -> str:
+    """By how much an element can still turn about its one dowel, its pad on the fixture's floor."""
+    h, low = layout.design.holes, dowel_limits(layout.design.clamp.dowel)[0]
+    play = h.dowel_hole + h.dowel_hole_upper - low
+    lever = min(layout.dowel_x) - layout.pad_outer
+    return f"{1e3 * play / lever:.2g} mrad at most, {1e3 * play:.0f} um of play on {lever:.1f} mm"
+
+
+def setting_words(layout: Layout) -> str:
+    """How the stack is tightened in the setting fixture, and measured."""
+    d, c = layout.design, clamping(layout)
     tolerance = d.tolerance.pad_height
     tight = "the nuts of the tie rods, the one at the other end held," if c.rod else "the clamping screws"
     gap = (
@@ -346,14 +357,14 @@ def _coplanar(layout: Layout, c: Clamping) -> str:
         "to a micrometre"
     )
     return (
-        "Turn the stack over and set its pads down on a surface plate (grade 1 or better). Press the "
-        "rear bodies down with a bar of rubber so that every pad stands on the plate, then tighten "
-        f"{tight} crosswise, in three rounds: a third, two thirds, the whole torque. Before the last "
-        "round tap the head end plate until its upper edge is as high over the surface plate as the "
-        f"other's, at both ends within {LEVEL:g} mm. {gap}No pad may let a {2 * tolerance * 1e3:g} um "
-        "feeler pass. Then turn the array on its back and read each pad with a lever indicator against "
-        f"the surface plate: all within {2 * tolerance * 1e3:g} um{same if d.calibration else ''}. Record "
-        "them; loosen and repeat if one is off, and repeat it all whenever the clamping was loosened."
+        "Press both end plates down on the fixture's steps, and with a bar of rubber on the ledges, between "
+        "pads and dowels, every pad down on its floor. Press nowhere behind the dowels: that lifts the pads. "
+        f"Tighten {tight} crosswise, in three rounds: a third, two thirds, the whole torque. An element can "
+        f"still turn about its dowel by {wedge(layout)}: pressed on its ledge it lies at one end of that. "
+        f"{gap}No pad may let a {2 * tolerance * 1e3:g} um feeler pass. Then lay the array on its back on a "
+        "surface plate (grade 1 or better) and read each pad with a lever indicator: all within "
+        f"{2 * tolerance * 1e3:g} um{same if d.calibration else ''}. Record them; loosen and repeat if one "
+        "is off, and repeat it all whenever the clamping was loosened."
     )
 
 

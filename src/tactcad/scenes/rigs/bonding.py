@@ -230,7 +230,7 @@ def resistance(rig: BondingLayout) -> str:
         f"ohm, which is the gauge's own within {100 * c.hurt:g} %; more says that the grid was hurt. "
         f"Insulation from grid to element: at least {c.insulation / 1e9:g} Gohm, the least that gauge makers "
         f"let pass in a laboratory; flux or moisture is below. Never use one below {c.leak / 1e6:.2g} Mohm: "
-        "a leak of that, which comes and goes, reads as all of tolerance.zero_drift."
+        "a leak of that, which comes and goes, reads as all of the drift by warm leads."
     )
 
 
@@ -255,7 +255,7 @@ def zero(rig: BondingLayout) -> str:
         f"Zero: the unloaded bridge within {100 * c.zero:.2g} % of dR/R, or amplifier or converter is full "
         "before the pad bears rating.force. Sign: hold the rear body, pad up, and set a weight of "
         f"{1e3 * c.push / STANDARD_GRAVITY:.2g} g ({c.push:g} N) on the pad, which is how the object pushes. "
-        f"The resistance must rise, by about {arms} (beam theory). Where it falls, the gauge is not on the "
+        f"The resistance must rise, by about {arms}. Where it falls, the gauge is not on the "
         "pads' side; where only the read-out falls, two leads are exchanged."
     )
 

@@ -15,6 +15,7 @@ from tactcad.design.tree import Design
 from tactcad.parts import rigs
 from tactcad.parts.array.clamp import carrier_screw
 from tactcad.parts.array.layout import Layout
+from tactcad.parts.array.supplies import supplies
 from tactcad.parts.bought.screws import cap_screw
 from tactcad.parts.bought.standard_parts import dowel, dowel_diameter
 from tactcad.parts.language.finding import Finding
@@ -174,6 +175,7 @@ def _latched(on: bool) -> list[Move]:
 def _guide(b: Builder, rig: GuideLayout, post: str, latched: bool) -> str:
     """Riser, rail, end stop, and the latch under the lifted carriage or beside it; returns the rail's
     designator."""
+    b.supplies += supplies("guide", {})
     front = POST_Y - rig.riser_depth
     z = rig.riser_middle
     length = rig.grasping.rail_length

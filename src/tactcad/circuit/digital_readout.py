@@ -1,0 +1,212 @@
+"""The array read by a sigma-delta converter beside it: no amplifier, no multiplexer of ours, no card.
+
+EXC --+-----------+--- REFIN+      The bridges stand in parallel between EXC and ground and stay warm: EXC is
+what
+      |           |                the grid's backing bears all the time, EXC = 2 sqrt(p A R). It is the
+    bridge n   converter           converter's reference too, so its drift cancels. The converter's own
+    multiplexer
+      |  +AIN 2n |                 takes one differential input after the other, and its filter of third
+      order needs |  -AIN 2n+1                 three periods of its rate after each change.
+GND --+-----------+--- REFIN-
+"""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from math import ceil, hypot
+
+import numpy as np
+
+from tactcad.design.sensing import CONVERTERS, Converter
+from tactcad.mechanics import gauge_signal
+from tactcad.mechanics.readout import BOLTZMANN, ROOM
+from tactcad.parts.array.bridge_figures import zero_drift
+from tactcad.parts.array.hinge_section import design_gauge, hinge_section
+from tactcad.parts.array.layout import ElementPlace, Layout
+from tactcad.parts.bought.electronic_parts import completion_drift, completion_tolerance
+
+from .element_signals import element_signals
+
+RATE = (
+    50.0  # Hz, results a second while one input is read; chosen: the filter's first notch lies on the mains
+)
+ORDER = 3  # of the filter
+HEAT_LEFT = 0.999  # of what the backing bears
+
+
+@dataclass(frozen=True)
+class DigitalReadout:
+    """Figures of the array read so.
+
+    excitation  V, all the time; gain of the converter's input; rate Hz; settling s, from one input to the
+    next noise       V rms of one result, at the bridge; drift: V, half-width, at the bridge, between zero
+    and reading per_force   V/N at the bridge, by element; resolution: N, as that of the other read-out
+    chips       each with its elements, in the order of its inputs
+    """
+
+    converter: Converter
+    excitation: float
+    gain: float
+    rate: float
+    settling: float
+    noise: float
+    drift: float
+    per_force: np.ndarray
+    resolution: np.ndarray
+    chips: tuple[tuple[ElementPlace, ...], ...]
+
+
+def borne_excitation(layout: Layout) -> float:
+    """The supply under which a grid takes what its backing bears all the time, V."""
+    d, gauge = layout.design, design_gauge(layout.design)
+    area = gauge.grid_length * gauge.grid_width * 1e-6
+    return 2 * (HEAT_LEFT * d.gauge.power_density * 1e3 * area * d.gauge.resistance) ** 0.5
+
+
+def digital_readout(layout: Layout, name: str) -> DigitalReadout:
+    """The design read by the converter of that name. Raises CheckFailure out of the estimator's range."""
+    d, part, gauge = layout.design, CONVERTERS[name], design_gauge(layout.design)
+    volts, span = borne_excitation(layout), d.readout.temperature_span
+    per_strain = volts * gauge.factor / 4
+    strains = gauge_signal.foil_strain_per_force(hinge_section(layout, layout.elements), gauge)
+    per_force = per_strain * np.broadcast_to(strains, (len(layout.elements),))
+    largest = volts * (d.gauge.resistance_tolerance + 3 * completion_tolerance(d)) / 4
+    largest += abs(per_strain) * max(signal.overload_strain for signal in element_signals(layout))
+    gain = max((g for g in part.gains if volts / g >= largest), default=min(part.gains))
+    own = part.noise * (part.noise_gain / gain) * (RATE / part.noise_rate) ** 0.5
+    thermal = (4 * BOLTZMANN * ROOM * d.gauge.resistance * RATE / 2) ** 0.5
+    noise = hypot(own, thermal)
+    drift = (
+        (per_strain * d.gauge.thermal_output * span) ** 2
+        + (volts / 4 * 3**0.5 * completion_drift(d) * span) ** 2
+        + (part.drift * span) ** 2
+        + (volts / 4 * zero_drift(layout)) ** 2
+    ) ** 0.5
+    rows = [[p for p in layout.elements if p.row == row] for row in (1, 2)]
+    chips = tuple(
+        tuple(own_row[i : i + part.inputs]) for own_row in rows for i in range(0, len(own_row), part.inputs)
+    )
+    resolution = np.hypot(2 * noise, drift) / np.abs(per_force)
+    return DigitalReadout(part, volts, gain, RATE, ORDER / RATE, noise, drift, per_force, resolution, chips)
+
+
+@dataclass(frozen=True)
+class Register:
+    """A register's address, bytes and value, and from where each of its bits is known."""
+
+    name: str
+    address: int
+    size: int
+    value: int
+    why: str
+
+
+LINUX = "Linux, drivers/iio/adc/ad7124.c"
+HEADER = "the maker's ad7124.h"
+
+
+def registers(found: DigitalReadout, chip: int) -> list[Register]:
+    """What one AD7124-8 is set to; of each value where its bits were read, or `unread`."""
+    clock, places = found.converter.clock, found.chips[chip]
+    fs = ceil(clock / (32 * found.rate))
+    pga = found.converter.gains.index(found.gain)
+    control = Register(
+        "ADC_CONTROL",
+        0x01,
+        2,
+        2 << 6,
+        f"{LINUX}: power mode in bits 7 to 6, full power is 2; mode in bits 5 to 2; "
+        "unread: mode 0 is continuous",
+    )
+    config = Register(
+        "CONFIG_0",
+        0x19,
+        2,
+        1 << 11 | 3 << 7 | 3 << 5 | 0 << 3 | pga,
+        f"{LINUX}: bipolar bit 11, input buffers bits 6 to 5, reference bits 4 to 3 (0: REFIN1), "
+        "gain 2^n in bits 2 to 0; "
+        f"{HEADER}: reference buffers bits 8 and 7",
+    )
+    filter_ = Register(
+        "FILTER_0",
+        0x21,
+        3,
+        2 << 21 | fs,
+        f"{LINUX}: filter in bits 23 to 21, 2 is sinc3; FS in bits 10 to 0, clock/(32 rate), "
+        f"clock {clock:g} Hz at full power",
+    )
+    channels = [
+        Register(
+            f"CHANNEL_{i}",
+            0x09 + i,
+            2,
+            1 << 15 | 0 << 12 | 2 * i << 5 | 2 * i + 1,
+            f"{LINUX}: enable bit 15, setup bits 14 to 12, AINP bits 9 to 5, AINM bits 4 to 0; "
+            f"element {place.number}",
+        )
+        for i, place in enumerate(places)
+    ]
+    return [control, config, filter_, *channels]
+
+
+def settings_json(layout: Layout, name: str) -> bytes:
+    """Registers, inputs by element and figures, as JSON."""
+    found = digital_readout(layout, name)
+    chips = [
+        {
+            "inputs": [
+                {
+                    "element": p.number,
+                    "AINP": 2 * i,
+                    "AINM": 2 * i + 1,
+                    "resolution_mN": _of(found, layout, p),
+                }
+                for i, p in enumerate(places)
+            ],
+            "registers": [
+                {"name": r.name, "address": r.address, "bytes": r.size, "value": r.value, "why": r.why}
+                for r in registers(found, chip)
+            ],
+        }
+        for chip, places in enumerate(found.chips)
+    ]
+    data = {
+        "schema": "tactcad-converter-1",
+        "converter": found.converter.name,
+        "source": found.converter.source,
+        "excitation_V": round(found.excitation, 6),
+        "gain": found.gain,
+        "rate_Hz": found.rate,
+        "from_input_to_input_s": found.settling,
+        "noise_nV": round(found.noise * 1e9, 3),
+        "drift_nV": round(found.drift * 1e9, 3),
+        "chips": chips,
+    }
+    return (json.dumps(data, indent=1) + "\n").encode()
+
+
+def _of(found: DigitalReadout, layout: Layout, place: ElementPlace) -> float:
+    return round(float(found.resolution[layout.elements.index(place)]) * 1e3, 4)
+
+
+def settings_header(layout: Layout, name: str) -> bytes:
+    """The same registers as a C header: values to write in their order, each with its reason; no code."""
+    found = digital_readout(layout, name)
+    lines = [
+        f"/* {layout.design.name}: {found.converter.name}, gain {found.gain:g}, "
+        f"{found.rate:g} results a second; EXC {found.excitation:.4g} V. Written by tactcad. */",
+        "#ifndef TACTCAD_CONVERTER_H",
+        "#define TACTCAD_CONVERTER_H",
+        "#include <stdint.h>",
+        "struct tactcad_register { uint8_t address; uint8_t bytes; uint32_t value; };",
+    ]
+    for chip, places in enumerate(found.chips, start=1):
+        numbers = ", ".join(str(p.number) for p in places)
+        lines.append(f"static const uint8_t tactcad_elements_{chip}[] = {{{numbers}}}; /* by channel */")
+        lines.append(f"static const struct tactcad_register tactcad_registers_{chip}[] = {{")
+        for r in registers(found, chip - 1):
+            value = f"0x{r.value:0{2 * r.size}X}"
+            lines.append(f"    {{0x{r.address:02X}, {r.size}, {value}}}, /* {r.name}. {r.why} */")
+        lines.append("};")
+    return ("\n".join([*lines, "#endif"]) + "\n").encode()

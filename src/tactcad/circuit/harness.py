@@ -1,0 +1,83 @@
+"""The harness: every wire with both its ends. Leads from the array to the boards, with shield and the array's
+metal; cables from the boards to the converter's card and the supplies; what each wire carries, and each
+supply in all.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Iterator, Sequence
+
+from tactcad.parts.bought.electronic_parts import TO_CARD
+
+from .netlist import GROUND, Component, Netlist
+from .netlist_files import Lead
+
+HEAD = ("from", "to", "signal", "wire", "length_mm", "current_mA")
+# mA that a board's circuits take beside its warm bridge, at most; chosen: twice what amplifier (1.3) and
+# LT3042 (2) take, and a decoder that drives nothing.
+OWN = {"VPOS": 7.0, "VNEG": 3.0, "V5": 1.0}
+CABLE = 500.0  # mm, the bill's
+AT_CARD = {"OUT": "analogue input {b} +", "EXC": "analogue input, free, to see the bridges' supply"}
+Row = tuple[str, str, str, str, float, float]
+
+
+def harness_csv(circuit: Netlist, leads: Sequence[Lead]) -> bytes:
+    """The table (RFC 4180, UTF-8)."""
+    text = io.StringIO(newline="")
+    writer = csv.writer(text)
+    writer.writerow(HEAD)
+    for *names, length, current in _rows(circuit, leads):
+        writer.writerow((*names, f"{length:g}", f"{current:.3g}"))
+    return text.getvalue().encode()
+
+
+def _rows(circuit: Netlist, leads: Sequence[Lead]) -> Iterator[Row]:
+    # a bridge is two halves of twice the resistance beside each other; the gauge's half carries half of it
+    warm = {g.board: 1e3 * circuit.excitation / g.figure("ohm") for g in circuit.of_kind("gauge")}
+    for lead in leads:
+        signal = circuit.pin_at(lead.end).net
+        current = 0.0 if signal.endswith("PLUS") else warm[lead.bundle] / 2
+        wire = f"{lead.designator}: {lead.wire} {lead.colour}"
+        yield lead.start, lead.end, signal, wire, lead.length, current
+    for connector in circuit.of_kind("connector"):
+        if connector.part_no == TO_CARD:
+            yield from _cable(connector, warm[connector.board])
+        else:
+            shield, array = connector.pins[-2:]
+            name = connector.designator
+            yield (
+                f"bundle {connector.board}",
+                f"{name}.{shield.number}",
+                "SHIELD",
+                "braid over the leads",
+                0.0,
+                0.0,
+            )
+            yield (
+                "array's metal",
+                f"{name}.{array.number}",
+                "ARRAY",
+                "AWG 26, under a clamp's screw",
+                0.0,
+                0.0,
+            )
+    for rail, volts in circuit.supplies:
+        bridges = sum(warm.values()) if rail == "VPOS" else 0.0
+        yield f"supply {rail}", "all boards", f"{volts:g} V", "", 0.0, OWN[rail] * len(warm) + bridges
+
+
+def _cable(connector: Component, warm: float) -> Iterator[Row]:
+    b, last = connector.board, connector.pins[-1]
+    for pin in connector.pins:
+        current = OWN.get(pin.net, 0.0) + (warm if pin.net == "VPOS" else 0.0)
+        if pin is last:
+            to = f"analogue input {b} -"
+        elif pin.net == GROUND:
+            to, current = "0 V of the supplies", warm + OWN["VPOS"]
+        elif pin.net in OWN:
+            to = f"supply {pin.net}"
+        else:
+            to = AT_CARD.get(pin.net.rstrip("0123456789"), f"digital output {pin.net}").format(b=b)
+        yield f"{connector.designator}.{pin.number}", to, pin.net, f"cable {b}", CABLE, current

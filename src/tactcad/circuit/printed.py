@@ -1,0 +1,108 @@
+"""What is printed on a board: designators beside their components, what the connectors' pins are for, its
+name.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from tactcad.design.messages import CheckFailure
+
+from .copper import VIA_DRILL, BoardCopper, Placed, Point
+from .footprints import COURTYARD
+from .letters import strokes, width
+
+INK = 0.15  # mm wide; board houses print from 0.12 to 0.15 on
+HIGH = 0.8  # mm; board houses print letters from 0.8 on
+AROUND = 0.07  # mm from pads and drills: the mask's opening is 0.05 larger
+CHANNEL_PINS = {"RED": "R", "PLUS": "W", "FOOT": "B"}
+SHORT = {"ENABLE": "EN"}
+MARKED = ("amplifier", "multiplexer", "decoder", "regulator", "diode")
+Box = tuple[float, float, float, float]
+
+
+def printed(board: BoardCopper, name: str) -> Iterator[tuple[Point, Point]]:
+    """Its lines."""
+    taken = [_around(at, *placed.size(pad)) for placed, pad, at, _ in board.pads]
+    taken += [_around(via.at, VIA_DRILL, VIA_DRILL) for via in board.vias]
+    taken += [_around((x, y), d, d) for x, y, d in board.holes]
+    for placed in board.placed:
+        if placed.component.kind in MARKED:
+            a, b = _mark(placed)
+            taken.append((min(a[0], b[0]), min(a[1], b[1]), max(a[0], b[0]), max(a[1], b[1])))
+            yield a, b
+    for text, at, upright in (*_pins(board), (name, (board.width / 4, board.height - 8.0), False)):
+        taken.append(_box(text, at, upright))
+        yield from _lines(text, at, upright)
+    for placed in board.placed:
+        text = placed.component.designator
+        free = (p for p in _beside(placed, text) if not _meets(_box(text, *p), taken))
+        if (found := next(free, None)) is None:
+            raise CheckFailure(f"circuit board: no place to print {text}")
+        at, upright = found
+        taken.append(_box(text, at, upright))
+        yield from _lines(text, at, upright)
+
+
+def _mark(placed: Placed) -> tuple[Point, Point]:
+    """Beside a circuit's first pin, along it; beyond a diode's cathode, across it."""
+    pad = placed.footprint.pads[0]
+    if placed.component.kind == "diode":
+        x = pad.x - pad.w / 2 - 0.3
+        return placed.point(x, -pad.h / 2), placed.point(x, pad.h / 2)
+    y = pad.y - pad.h / 2 - 0.3
+    return placed.point(pad.x - pad.w / 2, y), placed.point(pad.x + pad.w / 2, y)
+
+
+def _lines(text: str, at: Point, upright: bool) -> Iterator[tuple[Point, Point]]:
+    for line in strokes(text, at, HIGH, upright):
+        yield from zip(line, line[1:])
+
+
+def _around(at: Point, w: float, h: float, more: float = AROUND) -> Box:
+    w, h = w / 2 + more, h / 2 + more
+    return at[0] - w, at[1] - h, at[0] + w, at[1] + h
+
+
+def _box(text: str, at: Point, upright: bool) -> Box:
+    w, h = width(text, HIGH) + INK, HIGH + INK
+    return _around(at, h, w, 0.0) if upright else _around(at, w, h, 0.0)
+
+
+def _meets(box: Box, others: list[Box]) -> bool:
+    return any(box[0] < o[2] and o[0] < box[2] and box[1] < o[3] and o[1] < box[3] for o in others)
+
+
+def _beside(placed: Placed, text: str) -> Iterator[tuple[Point, bool]]:
+    """Places for a designator, the best first."""
+    (x, y), (a, b) = placed.at, (h - COURTYARD for h in placed.footprint.half)
+    if placed.turn % 180:
+        a, b = b, a
+    long, half = ((size + INK) / 2 + AROUND + 1e-6 for size in (width(text, HIGH), HIGH))
+    yield placed.at, False
+    yield placed.at, True
+    for further in (0.0, 0.4, 0.8, 1.2, 2.0):
+        for sx in (0.0, -0.5, 0.5, -1.0, 1.0):
+            yield (x + sx * a, y - b - half - further), False
+            yield (x + sx * a, y + b + half + further), False
+            yield (x - a - half - further, y + sx * b), True
+            yield (x + a + half + further, y + sx * b), True
+            yield (x - a - long - further, y + sx * b), False
+            yield (x + a + long + further, y + sx * b), False
+
+
+def _pins(board: BoardCopper) -> Iterator[tuple[str, Point, bool]]:
+    places = {p.component.designator: p for p in board.placed}
+    for name, side in (("J1", 1), ("J2", -1)):
+        placed = places[name]
+        for pad, pin in zip(placed.footprint.pads, placed.component.pins, strict=True):
+            x, y = placed.pad_at(pad)
+            channel, _, end = pin.net.partition("_")
+            if channel.startswith("CH"):
+                yield CHANNEL_PINS[end], (x, y - 1.65), False
+                if end == "PLUS":
+                    yield channel, (x, y - 3.0), False
+                continue
+            said = pin.role.partition(" ")[2].removesuffix("_IN")
+            text = SHORT.get(said, said)
+            yield text, (x, y + side * (1.15 + width(text, HIGH) / 2)), True

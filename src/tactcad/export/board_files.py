@@ -1,0 +1,111 @@
+"""A board's files: KiCad's board and netlist, the bill of what stands on it, places, outline, Gerber files
+and drills; read back and compared with the board before they leave."""
+
+from __future__ import annotations
+
+import csv
+import io
+import re
+from collections import Counter
+from collections.abc import Iterable
+
+from tactcad.circuit.copper import BoardCopper
+from tactcad.circuit.gerber import FUNCTIONS, gerber_files, places_csv
+from tactcad.circuit.kicad_board import board_bytes
+from tactcad.circuit.netlist import Component
+from tactcad.design.messages import CheckFailure
+from tactcad.design.tree import CommonTables
+from tactcad.parts.bought.supply import Supply
+
+from .circuit_files import Nets, check_nets, kicad_file
+
+PAD = re.compile(r'\(pad "(\w+)" .*?\(net \d+ "/(\w+)"\)')
+
+
+ENDS = (".kicad_pcb", ".net", "-bill.csv", "-places.csv")
+BARE = (*(f"gerber/{layer}.gbr" for layer in FUNCTIONS), "gerber/PTH.drl", "gerber/NPTH.drl", "outline.dxf")
+
+
+def files_of(board: BoardCopper, design: CommonTables, supplies: Iterable[Supply]) -> tuple[bytes, ...]:
+    """The files of a board as it is fitted, in the order of ENDS."""
+    d = design.design
+    kicad = board_bytes(board, printed_name(design), d.title, d.date, d.revision)
+    check_nets("KiCad's board", nets_in_board(kicad), board.netlist)
+    return kicad, kicad_file(design, board.netlist), bill_csv(board, supplies), places_csv(board)
+
+
+def bare_files(board: BoardCopper, design: CommonTables) -> list[bytes]:
+    """The files of the bare board, in the order of BARE."""
+    made = gerber_files(board, printed_name(design), design.design.date)
+    check_flashes(board, made)
+    return [*(made[path.removeprefix("gerber/")] for path in BARE[:-1]), outline_dxf(board)]
+
+
+def printed_name(design: CommonTables) -> str:
+    return f"{design.name}-board {design.design.revision}"
+
+
+def nets_in_board(data: bytes) -> Nets:
+    """Nets of a KiCad board, from its pads."""
+    nets: dict[str, set[tuple[str, str]]] = {}
+    name = ""
+    for line in data.decode().splitlines():
+        if found := re.match(r'\(fp_text reference "([^"]+)"', line):
+            name = found[1]
+        elif found := PAD.match(line):
+            nets.setdefault(found[2], set()).add((name, found[1]))
+    return {net: frozenset(pins) for net, pins in nets.items()}
+
+
+def check_flashes(board: BoardCopper, files: dict[str, bytes]) -> None:
+    """Raises CheckFailure where pads and vias of a copper layer, as read back, are not the board's."""
+    for layer in ("F_Cu", "B_Cu"):
+        data = files[f"{layer}.gbr"].decode()
+        read = Counter((int(x), int(y)) for x, y in re.findall(r"X(\d+)Y(\d+)D03", data))
+        places = [at for _, pad, at, _ in board.pads if pad.drill or layer == "F_Cu"]
+        places += [via.at for via in board.vias]
+        meant = Counter((round(x * 1e6), round((board.height - y) * 1e6)) for x, y in places)
+        if read != meant:
+            raise CheckFailure(f"{layer}.gbr reads back with other pads than the board's")
+
+
+BILL = (
+    "part_no", "designators", "qty", "fitted", "value", "footprint", "manufacturer", "mpn", "designation",
+    "source_verified",
+)  # fmt: skip
+
+
+def bill_csv(board: BoardCopper, supplies: Iterable[Supply]) -> bytes:
+    """What stands on one board: a line a part and value, and one for what is left off."""
+    lines: dict[tuple[bool, str, str, str], list[Component]] = {}
+    for c in board.netlist.components:
+        lines.setdefault((not c.fitted, c.part_no, c.value, c.footprint), []).append(c)
+    bought = {s.part_no: s for s in supplies}
+    text = io.StringIO(newline="")
+    writer = csv.writer(text)
+    writer.writerow(BILL)
+    for (off, part_no, value, package), components in sorted(lines.items()):
+        names = " ".join(c.designator for c in components)
+        line = bought.get(part_no)
+        order = (line.manufacturer, line.mpn, line.designation) if line else ("", "", "")
+        read = "true" if line and line.verified else "unread"
+        row = (part_no, names, len(components), "no" if off else "yes", value, package, *order, read)
+        writer.writerow(row)
+    return text.getvalue().encode()
+
+
+def outline_dxf(board: BoardCopper) -> bytes:
+    """Edge and holes without copper, mm, y upwards from the lower left corner (AutoCAD R12)."""
+    out = ["0", "SECTION", "2", "HEADER", "9", "$ACADVER", "1", "AC1009", "0", "ENDSEC"]
+    out += ["0", "SECTION", "2", "ENTITIES"]
+    corners = board.corners()
+    for (x1, y1), (x2, y2) in zip(corners, corners[1:] + corners[:1]):
+        ends = (x1, board.height - y1, 0.0, x2, board.height - y2, 0.0)
+        out += ["0", "LINE", "8", "OUTLINE"]
+        for code, v in zip(("10", "20", "30", "11", "21", "31"), ends):
+            out += [code, f"{v:.3f}"]
+    for x, y, d in board.holes:
+        out += ["0", "CIRCLE", "8", "HOLES"]
+        for code, v in zip(("10", "20", "30", "40"), (x, board.height - y, 0.0, d / 2)):
+            out += [code, f"{v:.3f}"]
+    return ("\n".join([*out, "0", "ENDSEC", "0", "EOF"]) + "\n").encode()

@@ -1,0 +1,163 @@
+"""Boards: opened and checked by KiCad, their pins read back, their pads against KiCad's own library."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import subprocess
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from variants import variant
+
+from tactcad.circuit.board_layout import lay_out
+from tactcad.circuit.copper import BoardCopper
+from tactcad.circuit.footprints import FOOTPRINTS, footprint
+from tactcad.circuit.gerber import gerber_files, places_csv
+from tactcad.circuit.kicad_board import board_bytes
+from tactcad.circuit.read_board import board_netlist
+from tactcad.design.messages import CheckFailure
+from tactcad.parts.array.board_outline import board_outline
+from tactcad.parts.array.layout import Layout
+
+KICADS_PYTHON = Path("/usr/bin/python3")
+LIBRARY = Path("/usr/share/kicad/footprints")
+
+
+def laid_out(changes: dict | None = None, used: int = 5, wires: int = 3) -> BoardCopper:
+    design = variant(changes or {})
+    return lay_out(board_netlist(design, used, wires), board_outline(Layout(design)))
+
+
+def needs_kicad() -> None:
+    if not LIBRARY.is_dir() or not KICADS_PYTHON.is_file():
+        if os.environ.get("TACTCAD_NEEDS_KICAD"):
+            pytest.fail("KiCad is missing: apt-get install kicad kicad-footprints")
+        pytest.skip("KiCad 6 is not there")
+
+
+def in_kicad(file: Path, *folder: Path) -> tuple[str, dict[str, str]]:
+    """What KiCad reports of its rules, and the net of every pin that it read."""
+    report = file.with_suffix(".rpt")
+    script = Path(__file__).with_name("in_kicad.py")
+    done = subprocess.run(
+        [KICADS_PYTHON, script, file, report, *folder],
+        capture_output=True,
+        text=True,
+        check=True,
+        timeout=120,
+    )
+    return report.read_text(encoding="utf-8"), json.loads(done.stdout.splitlines()[-1])
+
+
+def checked(board: BoardCopper, tmp_path: Path) -> None:
+    """KiCad finds nothing, and its netlist is ours pin by pin."""
+    file = tmp_path / "board.kicad_pcb"
+    file.write_bytes(board_bytes(board, "NAME A", "title", "2026-01-01", "A"))
+    report, pins = in_kicad(file)
+    assert "Found 0 DRC violations" in report and "Found 0 unconnected pads" in report, report
+    ours = {
+        f"{c.designator}.{p.number}": f"/{p.net}" for c in board.netlist.components for p in c.pins if p.net
+    }
+    assert {pin: net for pin, net in pins.items() if net} == ours
+    assert set(ours) <= set(pins)
+
+
+def test_kicad_finds_nothing(tmp_path):
+    needs_kicad()
+    checked(laid_out(), tmp_path)
+
+
+def test_kicad_finds_a_track_that_is_missing_and_one_that_is_too_near(tmp_path):
+    needs_kicad()
+    board = laid_out()
+    gone = next(t for t in board.tracks if t.net == "CH2_PLUS")
+    moved = replace(gone, start=(gone.start[0] + 0.5, gone.start[1]), end=(gone.end[0] + 0.5, gone.end[1]))
+    file = tmp_path / "bad.kicad_pcb"
+    bad = replace(board, tracks=(*(t for t in board.tracks if t != gone), moved))
+    file.write_bytes(board_bytes(bad, "NAME A", "title", "2026-01-01", "A"))
+    report, _ = in_kicad(file)
+    assert "/CH2_PLUS" in report and "Found 0 DRC violations" not in report
+    assert "clearance" in report and "unconnected" in report
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("wires", [2, 3])
+@pytest.mark.parametrize(
+    ("changes", "channels"),
+    [
+        ({}, 8),
+        ({"readout.multiplexer": "ADG1409", "readout.completion": "film-0.1"}, 4),
+        ({"readout.amplifier": "AD8221", "readout.gain": 20.0, "readout.completion": "film-1"}, 8),
+        ({"readout.amplifier": "AD623", "readout.multiplexer": "ADG1409"}, 4),
+        ({"readout.gain": 10.0}, 8),
+    ],
+)
+def test_kicad_finds_nothing_on_any_board(changes, channels, wires, tmp_path):
+    """Arrays of 1 to 20 elements read from 1 to all channels of a board."""
+    needs_kicad()
+    for used in range(1, channels + 1):
+        checked(laid_out(changes, used, wires), tmp_path)
+
+
+def pads_in_library(name: str) -> dict[str, tuple[float, ...]]:
+    folder, _, part = name.partition(":")
+    text = (LIBRARY / f"{folder}.pretty" / f"{part}.kicad_mod").read_text(encoding="utf-8")
+    number = r"([-\d.]+)"
+    found = re.findall(
+        rf'\(pad "([^"]+)" \w+ \w+ \(at {number} {number}(?: \d+)?\) \(size {number} {number}\)', text
+    )
+    return {pin: tuple(map(float, numbers)) for pin, *numbers in found}
+
+
+@pytest.mark.parametrize(
+    "name", [f.name for f in FOOTPRINTS.values() if f.library] + ["pin-header-11", "pin-header-26"]
+)
+def test_pads_lie_where_kicads_library_has_them(name):
+    """Middles within 0.14 mm (the diode's; others 0.03), so that either's pads carry the package."""
+    needs_kicad()
+    land = footprint(name)
+    theirs = pads_in_library(land.library)
+    assert set(theirs) == {pad.number for pad in land.pads}
+    header = name.startswith("pin")
+    for pad in land.pads:
+        x, y, w, h = theirs[pad.number]
+        if header:  # theirs run down from the first pin
+            x, y = y + land.pads[0].x, x
+        assert abs(pad.x - x) < (0.14 if name == "SOD-123" else 0.03) and abs(pad.y - y) < 0.03
+        if not header and name != "SOD-123":
+            assert min(pad.w, w) > 0.9 * max(pad.w, w) and min(pad.h, h) > 0.9 * max(pad.h, h)
+
+
+def test_every_pin_has_a_pad():
+    for component in laid_out().netlist.components:
+        pads = {pad.number for pad in footprint(component.footprint).pads}
+        assert {pin.number for pin in component.pins} <= pads
+
+
+def test_what_is_left_off_is_in_no_table_of_places():
+    """Five of eight channels: three have neither switch nor third arm, and links in the others' places."""
+    board = laid_out({"readout.completion": "film-0.1"})
+    off = {c.designator for c in board.netlist.components if not c.fitted}
+    assert off == {f"R{n}4" for n in range(1, 6)} | {f"R{n}3" for n in (6, 7, 8)} | {"Q6", "Q7", "Q8"}
+    named = {row.split(",")[0] for row in places_csv(board).decode().splitlines()[1:]}
+    assert not named & off
+    placed = {c.designator for c in board.netlist.components if c.kind != "connector"}
+    assert named == placed - off
+
+
+def test_a_board_that_is_too_small_is_refused():
+    design = variant()
+    outline = board_outline(Layout(design))
+    circuit = board_netlist(design, 5, 3)
+    with pytest.raises(CheckFailure, match="too narrow by"):
+        lay_out(circuit, replace(outline, width=60.0))
+    with pytest.raises(CheckFailure, match=r"needs a height of \d+"):
+        lay_out(circuit, replace(outline, height=80.0))
+
+
+def test_equal_designs_give_equal_bytes():
+    first, second = (gerber_files(laid_out(), "N", "2026-01-01") for _ in range(2))
+    assert first == second and len(first) == 11

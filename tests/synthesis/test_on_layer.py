@@ -1,0 +1,173 @@
+"""Targets whose object is a body: the half-width that is stated, held against labs simulated by code of the
+tests' own (lab/layer_labs) and evaluated as `tactcad stiffness --thickness` does."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import replace
+from math import inf
+
+import numpy as np
+import pytest
+from lab import layer_labs as labs
+
+from tactcad.design.load import read
+from tactcad.design.messages import InputError
+from tactcad.lab import layer_fit
+from tactcad.synthesis.candidates import stands
+from tactcad.synthesis.made_arrays import MadeSensor
+from tactcad.synthesis.on_layer import LayerGrasps, Poses, level
+from tactcad.synthesis.search import refusals, search
+from tactcad.synthesis.synthesise import goal_of
+from tactcad.synthesis.target import Target, parse_target
+
+TARGET = """
+[target]
+name = "on-layer"
+[object]
+modulus = [{low}, {high}]
+{object}
+[grasp]
+force = {force}
+overload = 13.04
+[room]
+elements = [4, {most}]
+pitch = 4
+[elements]
+arms = [4, 8]
+hinges = [0.15, 0.6]
+"""
+# Least and largest modulus (MPa), thickness and what else is said of it, largest force (N), elements.
+TEN = [
+    (0.4, 1.4, "thickness = 10\nthickness_limits = 5", 4.0, 10),
+    (0.4, 1.4, "thickness = 10", 4.0, 10),
+    (0.5, 1.0, "thickness = 6\nthickness_limits = 5", 5.0, 10),
+    (0.3, 0.9, "thickness = 6", 2.5, 8),
+    (0.2, 0.6, "thickness = 8\nthickness_limits = 2", 2.0, 10),
+    (0.8, 2.0, "thickness = 5", 6.0, 6),
+    (1.0, 2.5, "thickness = 20", 8.0, 10),
+    (0.3, 1.2, "", 2.5, 10),
+    (0.6, 0.9, "thickness = 4.5\nthickness_limits = 3", 4.0, 6),
+    (0.5, 1.5, "thickness = 12\npoisson = 0.45", 4.0, 8),
+]
+
+
+def target_of(low: float, high: float, of: str, force: float, most: int) -> Target:
+    return parse_target(TARGET.format(low=low, high=high, object=of, force=force, most=most), "t")
+
+
+def lab_errors(made: LayerGrasps, E: float, slope: tuple[float, float], count: int, seed: int) -> np.ndarray:
+    """ln of the modulus as `stiffness --thickness` finds it over the true one, and half-widths as it states
+    them, [lab, 2]: each lab has heights, thickness, calibration and noise of its own."""
+    rng = np.random.default_rng(seed)
+    o, n, grip = made.target.object, len(made.x), made.target.grasp
+    h = o.thickness or inf
+    load = np.concatenate([[0.0], grip.force * (np.arange(grip.loads) + 1) / grip.loads])
+    half = o.thickness_limits / 100 if h < inf else 0.0
+    size = made.design.element.pad_length, made.design.sheet.thickness
+    lever = -np.sign(made.x) * made.load_arm  # what lies further inside sinks more
+    off = np.array([-0.9, 0.0, 0.9]) * half if half else np.zeros(1)
+    benches = [labs.Bench(made.x, made.y, *size, lever, o.poisson, h * (1 + e)) for e in off]
+    k, v = np.sqrt(made.known.of_k), np.sqrt(made.known.of_v)
+    along = made.known.cross / (k * v)
+    runs, out = made.target.known.runs, []
+    for i in range(count):
+        height = rng.uniform(0, 2 * made.design.tolerance.pad_height, n)
+        sink = benches[i % len(benches)].sinks(E, made.stiffness, height, slope, load)
+        signal = made.signal[:, None] * sink + made.noise * rng.standard_normal(sink.shape)
+        z = rng.standard_normal((2, runs, n)) * runs**0.5
+        of_k = 1 + k * z[0]
+        of_v = 1 + v * (along * z[0] + (1 - along**2) ** 0.5 * z[1])
+        mean = [a.mean(0) for a in (of_k, of_v)]
+        se = [a.std(0, ddof=1) / runs**0.5 for a in (of_k, of_v)]
+        both = [(a - a.mean(0)) / a.std(0, ddof=1) for a in (of_k, of_v)]
+        found = replace(
+            made.calibration,
+            stiffness=made.stiffness * mean[0],
+            stiffness_se=made.stiffness * se[0],
+            signal_per_deflection=made.signal * mean[1],
+            signal_per_deflection_se=made.signal * se[1],
+            correlation=(both[0] * both[1]).sum(0) / (runs - 1),
+        )
+        f = layer_fit.fit(made.array, np.arange(1, n + 1), load, signal[None], found)
+        out.append([np.log(f.modulus[0, 0] / E), (f.modulus[0, 2] - f.modulus[0, 1]) / 2 / f.modulus[0, 0]])
+    return np.array(out)
+
+
+@pytest.fixture(scope="module")
+def better() -> MadeSensor:
+    """The better array on a layer of 10 mm."""
+    return MadeSensor(target_of(0.4, 1.4, "thickness = 10", 4.0, 10), read("better-array"))
+
+
+def test_what_is_expected_is_what_labs_say(better):
+    """Half-widths of thirty simulated labs: their median is the expected one within 15 %, and their errors
+    are as large as that says."""
+    made, slope = better.on_body, (np.tan(np.radians(1.0)), 0.0)
+    at = Poses(np.array([1.0]), np.array([slope]))
+    got = made.expected(at)
+    expected = float((got.modulus[0, 2] - got.modulus[0, 1]) / 2)
+    seen = lab_errors(made, 1.0, slope, 30, seed=5)
+    assert np.median(seen[:, 1]) == pytest.approx(expected, rel=0.15)
+    assert np.abs(seen[:, 0]).max() < 2 * expected and abs(np.median(seen[:, 0])) < 0.6 * expected
+
+
+def test_forces_are_those_of_single_patches(better):
+    """Forces on level and inclined pads under the whole load against the tests' own contact."""
+    made, E = better.on_body, 0.7
+    lever = -np.sign(made.x) * made.load_arm
+    bench = labs.Bench(made.x, made.y, 2.0, 3.0, lever, made.target.object.poisson, 10.0)
+    for slope in ((0.0, 0.0), (0.03, -0.04)):
+        got = made.expected(Poses(np.array([E]), np.array([slope])))
+        sink = bench.sinks(E, made.stiffness, np.zeros(10), slope, [made.target.grasp.force])[:, 0]
+        assert got.sink[0] == pytest.approx(sink, abs=0.01 * sink.max())
+        assert got.force[0].sum() == pytest.approx(made.target.grasp.force, rel=1e-3)
+
+
+def test_a_known_thickness_helps_and_an_inclination_costs(better):
+    """Where the thickness is only known within 5 %, K_obj is less sure, the modulus yet less."""
+    target = better.target.with_("object.thickness_limits", 5.0)
+    vague = MadeSensor(target, better.design).on_body
+    at = level(np.array([0.7]))
+    sure, unsure = (made.expected(at) for made in (better.on_body, vague))
+    widths = [float(v[0, 2] - v[0, 1]) for v in (sure.object_, unsure.object_)]
+    of_E = [float(v[0, 2] - v[0, 1]) / 0.7 for v in (sure.modulus, unsure.modulus)]
+    assert widths[1] > widths[0] and of_E[1] > of_E[0]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("modulus = [0.4, 1.4]", "stiffness = [2, 10]\nangle = [0, 3]", "object.angle: needs a body"),
+        ("thickness = 10", "thickness = 0.4", "object.thickness: too thin"),
+        ("thickness = 10", "thickness = 10\nangle = [5, 3]", "object.angle: its first value is above"),
+        ("thickness = 10", "thickness = 10\nangle = [0, 31]", "object.angle"),
+        ("thickness = 10", "thickness = 10\npoisson = 0.6", "object.poisson"),
+        ("thickness = 10", 'thickness = 10\nreference = "R"', "object.reference"),
+    ],
+)
+def test_bodies_that_are_refused(old, new, message):
+    text = TARGET.format(low=0.4, high=1.4, object="thickness = 10", force=4, most=10).replace(old, new)
+    if "stiffness" in new:
+        text = text.replace("thickness = 10\n", "")
+    with pytest.raises(InputError) as caught:
+        parse_target(text, "t")
+    assert message in str(caught.value)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("case", TEN)
+def test_the_stated_half_width_covers_the_layer(case):
+    """The best array of each target, at both ends of its range: errors of simulated labs lie within what is
+    stated as often as 95 % allow, and their median, the bias of the layer's model, well within."""
+    target = target_of(*case)
+    (stand,) = stands(target)
+    found = search(stand, goal_of(target), rules=refusals, until=time.perf_counter() + 8.0)
+    assert found.accepted
+    made = MadeSensor(target, found.design)
+    stated = made.worst()[0]
+    assert stated < 0.12
+    for end, E in enumerate(target.moduli(found.design)):
+        seen = lab_errors(made.on_body, E, (0.0, 0.0), 60, seed=end)
+        assert abs(np.median(seen[:, 0])) < 0.5 * stated
+        assert (np.abs(seen[:, 0]) < stated).mean() > 0.86  # 52 of 60: one in a thousand where 95 % hold
