@@ -44,6 +44,7 @@ FOOT_INSET = (
     0.03  # mm that a foot plate stays inside the island's edge all round; chosen: the etching's tolerance
 )
 WEB = 0.8  # mm of base left over the chips' pocket, at least: checks/data/shop.toml's floor of a pocket
+FRAME_CORNER = 0.5  # mm; chosen: a cutter of 1 mm, and room for the outer chips
 CHIP_ROOM = 0.2  # mm over and beside a chip; chosen: soldered boards' usual tolerance
 SPRING_STEEL, GLASS_EPOXY = Material("1.4310", 7900, "+C1300", "EN 10151"), Material("FR4", 1850)
 NEODYMIUM = Material("NdFeB, nickel plated", 7500)
@@ -287,7 +288,7 @@ def frame(layout: PlanarLayout) -> Part:
     """Keeps the board off the base by the chips' height."""
     t = chip_room(layout)
     x, y = layout.field_half
-    room = rounded_polygon([Corner((sx * x, sy * y), 1.5) for sx, sy in ((-1, -1), (1, -1), (1, 1), (-1, 1))])
+    room = rounded_polygon([Corner((sx * x, sy * y), FRAME_CORNER) for sx, sy in ((-1, -1), (1, -1), (1, 1), (-1, 1))])
     plate = _milled(layout, "frame", "Board frame", t, [h for h in _through(layout, t) if h.name == "screw"])
     return replace(plate, body=Extrusion(_outline(layout), t, (room,)))
 
