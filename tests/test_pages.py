@@ -34,6 +34,7 @@ LEFT = {
     "duckdb": "not installed",
     "tactcad view": "serves until it is stopped; tests/review/test_live.py",
 }
+NEW = "tactcad new my-sensor.toml --from soft-tissue"
 MAY_FAIL = ("--strict",)  # exit status 1 where a rig does not fit, which is what it is for
 
 
@@ -74,8 +75,9 @@ def test_every_command_of_a_page_is_one_that_the_program_takes(page):
 
 
 @pytest.fixture(scope="module")
-def folder(tmp_path_factory) -> Path:
-    """A checkout's designs under git with a sensor of one's own, a study, a shop and a table of designs."""
+def folder(tmp_path_factory) -> tuple[Path, set[str]]:
+    """A folder, and what was typed in it: a checkout's designs under git, a sensor of one's own, a study, a
+    shop, a table of designs."""
     place = tmp_path_factory.mktemp("pages")
     shutil.copytree(ROOT / "hardware", place / "hardware")
     shutil.copytree(ROOT / "exports" / "golden", place / "exports" / "golden")
@@ -83,13 +85,13 @@ def folder(tmp_path_factory) -> Path:
     small = re.sub(r"^count = \d+", "count = 16", study, flags=re.MULTILINE)
     (place / "hardware" / "studies" / "hinges.toml").write_text(small, "utf-8")
     (place / "mine.toml").write_text(small, "utf-8")
-    (place / "my-shop.toml").write_text('name = "my shop"\n\n[limits]\nwire_diameter = 0.2\n', "utf-8")
+    shutil.copy(ROOT / "src" / "tactcad" / "checks" / "data" / "shop.toml", place / "my-shop.toml")
     (place / "designs.csv").write_text(
         "hinge_thickness,hinge_length,fillet_radius,load_arm,arm_height,body_height,body_length,poisson,"
         "youngs_modulus,width\n0.25,0.88,0.3,5,2.6,3,4,0.33,69000,3\n",
         "utf-8",
     )
-    typed(place, "tactcad new my-sensor.toml --from soft-tissue")
+    typed(place, NEW)
     shutil.copy(place / "my-sensor.toml", place / "hardware")
     who = "git -c user.name=a -c user.email=a@b.example"
     typed(place, "git init -q . && git add hardware && " + f"{who} commit -qm 0")
@@ -102,7 +104,7 @@ def folder(tmp_path_factory) -> Path:
         typed(place, f"tactcad export {name} --scene array")
     shutil.copy(place / "exports" / "my-sensor" / "inspection.csv", place)
     fill_in(place / "inspection.csv")
-    return place
+    return place, {NEW}
 
 
 def typed(folder: Path, command: str) -> subprocess.CompletedProcess:
@@ -132,15 +134,14 @@ def fill_in(sheet: Path) -> None:
 @pytest.mark.slow
 @pytest.mark.cad
 @pytest.mark.parametrize("page", TYPED, ids=lambda page: page.stem)
-def test_every_command_of_a_page_runs_in_order(page, folder, done=set()):  # noqa: B006
+def test_every_command_of_a_page_runs_in_order(page, folder):
     """A command that another page has too is typed once."""
+    place, done = folder
     for command in commands(page):
         if left(command) or command in done:
             continue
-        words = shlex.split(command)
-        if words[:2] == ["tactcad", "new"]:  # from an empty folder
-            (folder / words[2]).unlink(missing_ok=True)
-        typed(folder, command)
-        if words[0] == "cp" and words[1].endswith("inspection.csv"):
-            fill_in(folder / words[2])
+        typed(place, command)
         done.add(command)
+        words = shlex.split(command)
+        if words[0] == "cp" and words[1].endswith("inspection.csv"):
+            fill_in(place / words[2])

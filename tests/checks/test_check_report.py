@@ -117,10 +117,17 @@ def test_every_check_runs_on_every_part_and_scene_that_it_is_for(macro, monkeypa
     posed = [make_scene(macro, name, pose) for name in names for pose in poses(macro, name)]
     parts = {p.part_no: p for s in scenes for p in s.parts}
     assert len(scenes) == 6 and len(posed) > 10
-    expected = {
-        (name, macro.name)
-        for name in ("strength", "fatigue", "clearance", "rigidity", "assembly", "circuit", "signals")
-    }
+    of_design = (
+        "strength",
+        "fatigue",
+        "clearance",
+        "rigidity",
+        "assembly",
+        "circuit",
+        "signals",
+        "gauge limits",
+    )
+    expected = {(name, macro.name) for name in of_design}
     for number, part in parts.items():
         expected |= {("brep", number), ("step", number), ("mesh", number)}
         expected |= {("wire-cut", number)} if part.process == "wire-cut" else set()

@@ -14,7 +14,7 @@ from tactcad.mechanics import ladder
 from tactcad.paper import published
 from tactcad.parts.array.hinge_section import hinge_section
 from tactcad.parts.array.layout import Layout
-from tactcad.parts.array.stop_gap import overloads, seat, stop_gap
+from tactcad.parts.array.stop_gap import land_room, overloads, seat, stop_gap
 from tactcad.parts.designs import load
 from tactcad.parts.rules import broken_rules
 
@@ -43,9 +43,13 @@ def test_a_gap_that_was_derived_holds_with_friction_and_without_whatever_frictio
 @pytest.mark.parametrize("name", names())
 def test_a_stop_one_step_wider_passes_the_rated_deflection(name):
     """Gaps are no narrower than they must be, and the check and the rule see the next wider one, at every
-    arm."""
+    arm but those whose gap ends where no land would be left."""
     layout = Layout(load(name))
-    for state in overloads(layout):
+    states = [
+        s for s in overloads(layout) if stop_gap(layout, s.place) + 0.005 <= land_room(layout, s.place.hinge)
+    ]
+    assert states
+    for state in states:
         arm, gap = f"{state.place.arm:g}", state.gap - layout.design.stop.tolerance - seat(layout)
         wider = variant({"stop.gaps": {arm: round(gap + 0.005, 6)}}, name)
         failed = {f.part for f in check_strength(wider) if f.severity == "fail"}

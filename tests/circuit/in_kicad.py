@@ -22,6 +22,7 @@ if len(sys.argv) > 3:
     options = plots.GetPlotOptions()
     options.SetOutputDirectory(sys.argv[3])
     options.SetUseGerberX2format(True)
+    options.SetDrillMarksType(0)  # none
     for layer in (pcbnew.F_Cu, pcbnew.In1_Cu, pcbnew.In2_Cu, pcbnew.B_Cu):
         plots.SetLayer(layer)
         plots.OpenPlotfile(board.GetLayerName(layer).replace(".", "_"), pcbnew.PLOT_FORMAT_GERBER, "")

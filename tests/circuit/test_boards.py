@@ -9,14 +9,18 @@ import subprocess
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 from variants import variant
 
+from tactcad.circuit import boards
 from tactcad.circuit.board_layout import lay_out
+from tactcad.circuit.bridges import netlist
 from tactcad.circuit.copper import BoardCopper
 from tactcad.circuit.footprints import FOOTPRINTS, footprint
 from tactcad.circuit.gerber import gerber_files, places_csv
 from tactcad.circuit.kicad_board import board_bytes
+from tactcad.circuit.netlist_files import kicad_bytes
 from tactcad.circuit.read_board import board_netlist
 from tactcad.design.messages import CheckFailure
 from tactcad.parts.array.board_outline import board_outline
@@ -161,3 +165,66 @@ def test_a_board_that_is_too_small_is_refused():
 def test_equal_designs_give_equal_bytes():
     first, second = (gerber_files(laid_out(), "N", "2026-01-01") for _ in range(2))
     assert first == second and len(first) == 11
+
+
+def rendered(file: Path) -> np.ndarray:
+    """Copper of a Gerber file by pygerber, 25 dots a mm, as true and false, cut to its extent."""
+    from PIL import Image
+    from pygerber.gerberx3.api.v2 import GerberFile
+
+    picture = file.with_suffix(".png")
+    GerberFile.from_file(file).parse().render_raster(picture, dpmm=25)
+    copper = np.asarray(Image.open(picture).convert("L")) > 50
+    rows, columns = np.flatnonzero(copper.any(1)), np.flatnonzero(copper.any(0))
+    return copper[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1]
+
+
+@pytest.mark.slow
+def test_the_gerber_files_show_the_copper_that_kicad_plots(tmp_path):
+    """KiCad plots the board file by its own, pygerber draws both: they differ at edges alone, by a dot."""
+    from scipy.ndimage import binary_dilation, binary_erosion
+
+    needs_kicad()
+    board = laid_out()
+    file = tmp_path / "board.kicad_pcb"
+    file.write_bytes(board_bytes(board, "NAME A", "title", "2026-01-01", "A"))
+    in_kicad(file, tmp_path)
+    ours = gerber_files(board, "NAME A", "2026-01-01")
+    for layer in ("F_Cu", "In1_Cu", "In2_Cu", "B_Cu"):
+        (plotted,) = (p for p in tmp_path.iterdir() if f"-{layer}." in p.name)
+        mine = tmp_path / f"{layer}.gbr"
+        mine.write_bytes(ours[mine.name])
+        theirs = tmp_path / f"theirs-{layer}.gbr"
+        theirs.write_bytes(plotted.read_bytes())
+        a, b = rendered(mine), rendered(theirs)
+        assert np.ptp([a.shape, b.shape], axis=0).max() <= 1 and 0.01 < a.mean() < 0.99
+        a, b = (copper[: min(len(a), len(b)), : min(a.shape[1], b.shape[1])] for copper in (a, b))
+        assert not (a & ~binary_dilation(b, iterations=2)).any()
+        assert not (binary_erosion(b, iterations=2) & ~a).any()
+
+
+def test_kinparse_reads_a_boards_netlist():
+    from kinparse import parse_netlist
+
+    for used in (1, 5):  # a second each; those between differ by what is fitted
+        circuit = board_netlist(variant({}), used, 3)
+        read = parse_netlist(kicad_bytes(circuit, "title", None, "2026-01-01", "A").decode())
+        pins = {net.name.removeprefix("/"): {(p.ref, p.num) for p in net.pins} for net in read.nets}
+        assert pins == {n: {(c.designator, p.number) for c, p in nodes} for n, nodes in circuit.nets.items()}
+        assert {part.footprint for part in read.parts} <= {
+            f"tactcad:{c.footprint}" for c in circuit.components
+        }
+
+
+@pytest.mark.parametrize("count", [1, 2, 7, 8, 9, 15, 16, 17, 20])
+def test_arrays_of_1_to_20_elements_have_their_boards(count):
+    """A row or two; every element is read by one fitted channel, and what is not read is left off."""
+    rows = [[4.0] * count] if count < 9 else [[4.0] * (count - count // 2), [4.0] * (count // 2)]
+    layout = Layout(variant({"array.row_arms": rows}))
+    fitted = {
+        b.netlist.name: sum(c.kind == "switch" and c.fitted for c in b.netlist.components)
+        for b in boards.laid_out(layout)
+    }
+    assert {f"macro-array-board-{n}" for n in fitted.values()} >= set(fitted)
+    circuit = netlist(layout)
+    assert sorted(c.element for c in circuit.of_kind("switch")) == list(range(1, count + 1))

@@ -225,7 +225,8 @@ def test_the_bill_counts_the_netlist(changes):
     bill = {s.part_no: s for s in make_scene(design, "array").supplies}
     boards = counted["HEADER-CARD"]
     counted |= {name: boards for name in ("CIRCUIT-BOARD", "STANDOFFS", "CABLE-CARD")}
-    billed = {n: s.qty for n, s in bill.items() if n not in ("ADHESIVE", "COATING") and "LEAD-WIRE" not in n}
+    used_up = ("ADHESIVE", "COATING", "ASSEMBLY-OIL", "THREAD-LACQUER")
+    billed = {n: s.qty for n, s in bill.items() if n not in used_up and "LEAD-WIRE" not in n}
     assert counted == billed
     metres: Counter[str] = Counter()
     for lead in wiring(layout, circuit):

@@ -150,7 +150,7 @@ def test_layer_and_clamp_only_soften_the_bands(array):
 
 def test_the_budget_s_sum_is_a_monte_carlo_of_the_same_inputs(array):
     """K_obj = (K_r - R K_m)/(R - 1) at the pair's R, with both elements drawn anew."""
-    small = replace(array, tolerance=a_tenth(TOLERANCE))
+    small = replace(array, tolerance=a_tenth(array.tolerance))
     small = replace(small, tolerance=replace(small.tolerance, recast_layer=1e-4, clamp_compliance=1e-6))
     data = published.load()
     b = budget.budget(data, small, reference_stiffness.study(data))

@@ -43,7 +43,7 @@ from .netlist import Component, Netlist
 from .read_board import OUTSIDE
 
 PITCH, ROW = 0.75, 0.9  # mm: vias of neighbours are 1.17 apart, their openings in the planes 1 wide
-APART = 1.1  # mm between intervals of one row
+APART = 1.15  # mm between vias in one row, of one net or two
 CELL = 3 * PIN  # mm
 PLUS, GATE, MINUS = 3.81, 4.56, 5.31  # mm from a cell's left edge: its columns
 ARMS, LEG = 1.27, 5.6  # mm: the two columns of arms
@@ -155,23 +155,24 @@ class Strip:
     """Circuits side by side that face a bus above them; `closed` are places of the bus's other columns."""
 
     board: dict[str, Component]
-    closed: list[float]
+    closed: list[tuple[float, str]]  # x and net
     x: float
     y: float  # of the circuits' middles
     sheet: Routing = field(default_factory=Routing)
 
     def column(self, net: str, x: float, y: float, step: float = 0.0) -> float:
         """At x, or by steps from there the first place that is open; raises ValueError where x is closed."""
-        while not self.is_open(x):
+        while not self.is_open(net, x):
             if not step:
                 raise ValueError
             x = round(x + step, 3)
-        self.closed.append(x)
+        self.closed.append((x, net))
         self.sheet.columns.append(BusColumn(net, x, y))
         return x
 
-    def is_open(self, x: float) -> bool:
-        return all(abs(x - other) >= PITCH - 1e-6 for other in self.closed)
+    def is_open(self, net: str, x: float) -> bool:
+        """Vias of one net lie in one row, and so further apart."""
+        return all(abs(x - other) >= (APART if net == own else PITCH) - 1e-6 for other, own in self.closed)
 
     def through(self, nets: Iterable[str]) -> None:
         """Columns for nets of both buses."""
@@ -224,7 +225,7 @@ class Strip:
             self.sheet.via(net[slug.number], at[slug.number], (x, self.y + 2.6))
         for side in (-1, 1):
             row = sorted((p for p in pads if p.x * side > 0), key=lambda p: p.y)
-            last, before = at[row[0].number], ""
+            last, before, capped = at[row[0].number], "", None
             edge = x + side * (max(abs(p.x) + p.w / 2 for p in row) + 1.35)
             for pad in row:
                 own, here = net.get(pad.number, ""), at[pad.number]
@@ -237,9 +238,9 @@ class Strip:
                     self.sheet.via(own, here, (here[0] + side * (pad.w / 2 + 0.5), here[1]), width=TRACK)
                 elif own:
                     cap = next((c for c in caps if self.board[c].net("1") == own), None)
-                    edge = self.column(
-                        own, round(edge + side * (0.15 if cap else 0.0), 3), here[1], side * 0.05
-                    )
+                    apart = (0.3 if capped else 0.15) if cap else 0.0  # pads wider than a column, courtyards
+                    edge = self.column(own, round(edge + side * apart, 3), here[1], side * 0.05)
+                    capped = cap
                     self.sheet.path(own, here, (edge, here[1]))
                     if cap:
                         caps.remove(cap)
@@ -387,13 +388,13 @@ def _strips(
 ) -> tuple[Routing, Routing, list[BusColumn]]:
     """Multiplexer and decoder; amplifier and the bridges' supply; columns through both buses. All by their
     middles, the second yet to be turned."""
-    through = Strip(board, [c.x for c in (*cells, *card)], LEFT, 0.0)
+    through = Strip(board, [(c.x, c.net) for c in (*cells, *card)], LEFT, 0.0)
     through.through(_nets_of_both(board))
     passing = through.sheet.columns
-    selecting = Strip(board, [c.x for c in (*cells, *passing)], through.x, 0.0)
+    selecting = Strip(board, [(c.x, c.net) for c in (*cells, *passing)], through.x, 0.0)
     selecting.fan("U2", ("C3", "C4"))
     selecting.fan("U3", ("C5",))
-    reading = Strip(board, [width - c.x for c in (*card, *passing)], LEFT, 0.0)
+    reading = Strip(board, [(width - c.x, c.net) for c in (*card, *passing)], LEFT, 0.0)
     for name in ("R4", "C9", "R3"):
         reading.two(name)
     reading.fan("U1", ("C1", "C2"))

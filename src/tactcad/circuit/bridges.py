@@ -45,7 +45,7 @@ def netlist(layout: Layout) -> Netlist:
 
 def _of_board(board: ReadBoard, c: Component) -> Component:
     """A component of a board, with its name and nets in the array's circuit."""
-    pins = tuple(replace(p, net=_net(board, p.net)) for p in c.pins)
+    pins = tuple(replace(p, net=array_net(board, p.net)) for p in c.pins)
     channel = _channel(c)
     element = board.places[channel - 1].number if 0 < channel <= len(board.places) else 0
     return replace(
@@ -61,7 +61,7 @@ def _channel(c: Component) -> int:
     return number // 10 if c.kind == "resistor" and 10 < number < 90 else 0
 
 
-def _net(board: ReadBoard, net: str) -> str:
+def array_net(board: ReadBoard, net: str) -> str:
     """A board's net in the array's circuit."""
     if not net or net in COMMON:
         return net

@@ -108,7 +108,8 @@ def _text(expression: Expression, depth: int) -> str:
 OPEN = 1e12  # ohm of an open switch; chosen: a millionth of a microvolt at a bridge
 POLE_OHM = 1e3  # of the amplifier's pole; chosen: its own noise is nothing behind a gain
 FOUR_K_T = 4 * 1.380649e-23 * 300.15  # J, at SPICE's 27 C
-WITHOUT_LINES = ("terminal", "decoder", "connector")
+WITHOUT_LINES = ("terminal", "connector")
+OUTPUT_OHM = 50.0  # of the decoder's outputs, held low; about 4 mA over 0.2 V: its sheet
 DIODE = ".model schottky D(IS=2e-7 RS=0.1 N=1.05)"  # about 0.3 V at 20 mA, as a 1N5819 has
 
 
@@ -122,7 +123,7 @@ def deck(netlist: Netlist, commands: Sequence[str]) -> str:
     lines = [f"* {netlist.name}: run with ngspice -b", DIODE]
     lines += [f"V{rail} {rail} 0 {volts!r}" for rail, volts in netlist.supplies]
     for component in netlist.components:
-        lines += _lines(component)
+        lines += lines_of(component)
     return "\n".join([*lines, ".control", "set numdgt=13", *commands, "quit 0", ".endc", ".end", ""])
 
 
@@ -153,7 +154,9 @@ def closed(netlist: Netlist, element: int, ohm: float | None = None) -> Iterator
 def channel_of(multiplexer: Component, element: int) -> int:
     """The channel, from 1, that an element's bridge is on."""
     return next(
-        int(p.role[1:-1]) for p in multiplexer.pins if p.net == f"E{element}_PLUS" and p.role.startswith("S")
+        int(p.role[1:-1])
+        for p in multiplexer.pins
+        if p.net.partition("__")[0] == f"E{element}_PLUS" and p.role.startswith("S")
     )
 
 
@@ -166,7 +169,7 @@ def _name(c: Component) -> str:
     return c.designator.replace("-", "_")
 
 
-def _lines(c: Component) -> list[str]:
+def lines_of(c: Component) -> list[str]:
     """The component's lines of the deck; the bridges' supply is an ideal source."""
     if c.kind in WITHOUT_LINES or not c.fitted:
         return []
@@ -175,6 +178,9 @@ def _lines(c: Component) -> list[str]:
         return [f"V{net} {_node(net)} 0 {c.figure('volts')!r} AC 1"]
     if c.kind == "diode":
         return [f"D{_name(c)} {_node(c.net('2'))} {_node(c.net('1'))} schottky"]
+    if c.kind == "decoder":
+        outputs = [p for p in c.pins if p.role[0] == "Y" and p.net]
+        return [f"R{_name(c)}{p.role} {_node(p.net)} 0 {OUTPUT_OHM!r}" for p in outputs]
     if c.kind == "switch":
         return [f"RQ{c.element} {_node(c.net('drain'))} {_node(c.net('source'))} {OPEN!r}"]
     if c.kind == "capacitor":

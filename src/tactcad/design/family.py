@@ -80,6 +80,7 @@ class FamilyReadout:
 
     netlist  (layout) to the circuit
     boards   (layout) to every different board, laid out
+    tracks   (layout, circuit) to the circuit with the resistance of its boards' tracks
     supplies (layout) to the lines of the bill of what the read-out takes
     wiring   (layout, circuit) to the bytes of the table of leads to cut
     sheets   orders of the circuit's drawing to what is written
@@ -88,6 +89,7 @@ class FamilyReadout:
 
     netlist: Late
     boards: Late
+    tracks: Late
     supplies: Late
     wiring: Late
     sheets: Late

@@ -34,8 +34,9 @@ def table_file(design: CommonTables, circuit: Netlist) -> bytes:
 
 
 def deck_file(design: CommonTables, circuit: Netlist) -> bytes:
-    """The SPICE deck."""
-    return deck_bytes(circuit)
+    """The SPICE deck, with the boards' tracks."""
+    family = family_of(design)
+    return deck_bytes(family.must("readout", "export").tracks(family.layout(design), circuit))
 
 
 def wiring_file(design: CommonTables, circuit: Netlist) -> bytes:

@@ -78,7 +78,7 @@ def canonical(text: str, header: Header, schema: str = AP214) -> str:
 
 def _leads_to(root: int, references: dict[int, list[int]], numbers: dict[int, int]) -> list[int]:
     """Numbers of the entities that have one already and that this one comes to first."""
-    found, stack = [], [root]
+    found, stack = list[int](), [root]
     while stack:
         for n in references[stack.pop()]:
             (found if n in numbers else stack).append(numbers.get(n, n))

@@ -47,6 +47,7 @@ FAMILY = Family(
     readout=FamilyReadout(
         netlist=Late("tactcad.circuit.bridges:netlist"),
         boards=Late("tactcad.circuit.boards:laid_out"),
+        tracks=Late("tactcad.circuit.tracks:with_tracks"),
         supplies=Late("tactcad.parts.array.supplies:electronic_supplies"),
         wiring=Late("tactcad.circuit.netlist_files:wiring"),
         sheets=Late("tactcad.drawing.circuit_sheets:circuit_written"),
