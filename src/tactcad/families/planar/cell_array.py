@@ -34,14 +34,25 @@ def scene(design: PlanarDesign, _pose: object = None) -> Scene:
     """Base down; posts and magnets are bonded to the foil before the foil goes in."""
     b, layout = Builder(), PlanarLayout(design)
     t = design.planar.thickness
+    board = b.place("PCB", parts.board(layout), (0, 0, layout.board_z - design.hall.board))
+    b.step("Board", (0, 0, -45), "Lay the board down, its pads for the chips up.")
+    chip = parts.chip(layout)
+    for e in layout.elements:
+        b.meet(b.place("U", chip, (e.x, e.y, layout.board_z)), board)
+    b.step("Chips", (0, 0, -35), "Solder the chips: the board comes with them from who makes it.")
+    frame = b.place("FR", parts.frame(layout), (0, 0, layout.board_z))
+    b.meet(frame, board)
+    b.step("Frame", (0, 0, -25), "Lay the frame on the board, around the chips.")
     floor = round(layout.board_z + parts.chip_room(layout), 9)
     base = b.place("B", parts.base(layout), (0, 0, floor))
+    b.meet(base, frame)
     pins = [
         b.place("DP", dowel(parts.DOWEL, parts.dowel_length(layout) or 0.0), (x, y, floor))
         for x, y in parts.dowel_places(layout)
     ]
     for pin in pins:
         b.meet(pin, base, "press")
+        b.meet(pin, frame)
     first = "Press the two dowels into the base, flush with its lower face."
     if not layout.screwed:
         first = "Lay the base into the bonding jig. Bond every layer on the one below, flush at its edges."
@@ -67,33 +78,26 @@ def scene(design: PlanarDesign, _pose: object = None) -> Scene:
     b.step(
         "Foil with posts and magnets",
         (0, 0, 8),
-        "On the bonding jig: lay the foil down, bond a foot plate and a post on every island (one drop "
-        "of adhesive each, "
-        "cured under the jig's weight), turn it over, bond the magnets, north poles up, marked before. "
-        "Then lay the foil over "
-        "the dowels.",
+        "On the bonding jig: lay the foil down, bond a foot plate and a post on every island (one drop of "
+        "adhesive each, cured under the jig's weight), turn it over, and bond the magnets, north poles marked "
+        "before and up.",
+        bench=True,
         elements=True,
     )
     upper = b.place("SP", parts.upper_spacer(layout), (0, 0, t))
     b.meet(upper, foil)
-    b.step("Upper spacer", (0, 0, 14), "Lay the upper spacer over the dowels.")
+    b.step(
+        "Foil and upper spacer",
+        (0, 0, 14),
+        "Lay the foil over the dowels, magnets down into their wells, and the upper spacer on it.",
+    )
     cover = b.place("C", parts.cover(layout), (0, 0, layout.cover_z))
     b.meet(cover, upper)
     b.step("Cover", (0, 0, 26), "Lower the cover over dowels and posts.")
-    frame = b.place("FR", parts.frame(layout), (0, 0, layout.board_z))
-    b.meet(frame, base)
-    for pin in pins:
-        b.meet(pin, frame)
-    plate = b.place("PCB", parts.board(layout), (0, 0, layout.board_z - design.hall.board))
-    b.meet(plate, frame)
-    chip = parts.chip(layout)
-    for e in layout.elements:
-        b.meet(b.place("U", chip, (e.x, e.y, layout.board_z)), plate)
-    b.step("Board", (0, 0, -30), "Hold frame and board, chips up, against the base from below.", bench=True)
     if layout.screwed:
         length = parts.screw_length(layout) or 0.0
         for x, y in parts.screw_places(layout):
-            b.screw(parts.SCREW, length, (x, y, layout.board_z - design.hall.board), (0, 0, 1), plate, cover)
+            b.screw(parts.SCREW, length, (x, y, layout.board_z - design.hall.board), (0, 0, 1), board, cover)
         b.step(
             "Screws",
             (0, 0, -45),

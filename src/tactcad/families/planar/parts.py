@@ -288,7 +288,9 @@ def frame(layout: PlanarLayout) -> Part:
     """Keeps the board off the base by the chips' height."""
     t = chip_room(layout)
     x, y = layout.field_half
-    room = rounded_polygon([Corner((sx * x, sy * y), FRAME_CORNER) for sx, sy in ((-1, -1), (1, -1), (1, 1), (-1, 1))])
+    room = rounded_polygon(
+        [Corner((sx * x, sy * y), FRAME_CORNER) for sx, sy in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
+    )
     plate = _milled(layout, "frame", "Board frame", t, [h for h in _through(layout, t) if h.name == "screw"])
     return replace(plate, body=Extrusion(_outline(layout), t, (room,)))
 
