@@ -37,8 +37,8 @@ def test_kinds_alternate_like_a_chessboard(layout):
 
 
 def test_the_foil_s_area_by_hand(layout):
-    """Border and webs, islands with ears, beams, (1 - pi/4) r^2 of every root's corner. Of the corners with the
-    process' radius as many are inside as outside."""
+    """Border and webs, islands with ears, beams, (1 - pi/4) r^2 of every root's corner. Of the corners with
+    the process' radius as many are inside as outside."""
     d, foil = layout.design, parts.foil(layout)
     x, y = layout.half
     area = 4 * x * y
@@ -108,7 +108,8 @@ def test_estimate_tells_ratio_resolution_and_stops(layout):
 
 
 def test_three_components_come_back_from_the_field(layout):
-    """Forces through compliance, magnet and the inverse matrix: small ones exactly, to the square of the motion."""
+    """Forces through compliance, magnet and the inverse matrix: small ones exactly, to the square of the
+    motion."""
     from tactcad.families.planar.cell import wrench
     from tactcad.families.planar.field import felt
     from tactcad.families.planar.sensor import magnet_lever

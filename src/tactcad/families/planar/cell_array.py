@@ -79,10 +79,10 @@ def scene(design: PlanarDesign, _pose: object = None) -> Scene:
         "Foil with posts and magnets",
         (0, 0, 8),
         "On the bonding jig: lay the foil down, bond a foot plate and a post on every island (one drop of "
-        "adhesive each, cured under the jig's weight), turn it over, and bond the magnets, north poles marked "
+        "adhesive each, cured under the jig's weight), turn it over, and bond the magnets, north poles "
+        "marked "
         "before and up.",
         bench=True,
-        elements=True,
     )
     upper = b.place("SP", parts.upper_spacer(layout), (0, 0, t))
     b.meet(upper, foil)
@@ -116,6 +116,10 @@ class Stacked:
     layout: PlanarLayout
     made: Deviations
 
+    def with_new(self, variable: DimensionLimits, deviations: np.ndarray) -> Stacked:
+        """The same arrays with one variable drawn anew."""
+        return Stacked(self.layout, {**self.made, variable.name: deviations})
+
 
 def figures(arrays: Stacked) -> dict[str, np.ndarray]:
     """Stiffness of every cell as built, N/mm: K goes with t^3, the foil's thickness being one cause for
@@ -147,13 +151,7 @@ def limits(
             variable("upper spacer: thickness", -0.03, 0.03, stated=((f"{name}-upper-spacer", "thickness"),)),
             variable("cover: thickness", -0.02, 0.02, stated=((f"{name}-cover", "thickness"),)),
             variable("base: thickness", -0.02, 0.02, stated=((f"{name}-base", "thickness"),)),
-            variable(
-                "post: length over the shoulder",
-                -0.01,
-                0.01,
-                n,
-                ((f"{name}-post", "length over the shoulder"),),
-            ),
+            variable("post: length over the shoulder", -0.01, 0.01, n),
             variable("magnet: along x", -tol.magnet_place, tol.magnet_place, n),
             variable("magnet: along y", -tol.magnet_place, tol.magnet_place, n),
         )

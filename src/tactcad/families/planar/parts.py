@@ -31,7 +31,7 @@ from tactcad.parts.language.description import (
     Purchase,
     Revolution,
 )
-from tactcad.parts.language.limits import FACES, Characteristic, within
+from tactcad.parts.language.limits import FACES, within
 from tactcad.parts.language.metric import METRIC, tapped_through
 from tactcad.parts.language.plate import BREAK_EDGES
 
@@ -181,10 +181,7 @@ def post(layout: PlanarLayout) -> Part:
         material=STAINLESS_BAR,
         body=Revolution(_polygon(points, names)),
         colour="#d8d3c4",
-        notes=(BREAK_EDGES.replace("0.2", "0.05"), "pad's edge 0.1 round"),
-        characteristics=(
-            Characteristic("length over the shoulder", up, up + 0.01, up - 0.01, True, ("shoulder", "pad")),
-        ),
+        notes=(BREAK_EDGES.replace("0.2", "0.05"), "pad's edge 0.1 round", f"shoulder to pad {up:g} +-0.01"),
     )
 
 
