@@ -142,6 +142,8 @@ def told(text: str) -> float:
     """The number that a dimension's text states, the middle of its limits (of 3 mm, H7 is +0.010/0 and D10
     +0.060/+0.020, ISO 286).
     A pressed pin's hole is modelled as the pin, m6 of 3 mm (+0.008/+0.002) or of 5 mm (+0.012/+0.004)."""
+    text, envelope = text.removesuffix(" Ⓔ"), text.endswith(" Ⓔ")
+    assert not envelope or "⌀" in text
     match = re.fullmatch(
         r"(?:\d+× )?[⌀R↧]?(-?[\d.]+)°?(?: ±[\d.]+)?(?: ([+-][\d.]+)/([+-][\d.]+|0))?( H7| D10)?", text
     )

@@ -91,10 +91,10 @@ def test_every_sheet_of_the_array_is_clean_and_complete(orders, finished, macro)
             macro.design.date,
             macro.design.title,
             orders[number].part.name,
-            str(orders[number].part.material),
+            *str(orders[number].part.material).split(", "),
             "tolerancing ISO 8015",
-            "ISO 2768-1:1989-m,",
-            "ISO 2768-2:1989-K for the rest",
+            "ISO 22081; sizes to 6 ±0.1, to 30 ±0.2,",
+            "surfaces: profile 0.4, to datums if any",
         ):
             assert text in runs, (number, text)
         assert "f" * 64 in " ".join(runs) and "some_B.dxf" in " ".join(runs)

@@ -3,6 +3,7 @@ draw it; a sheet that lacks one is refused (`gate.geometric_faults`)."""
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from dataclasses import replace
 from itertools import pairwise
@@ -21,6 +22,7 @@ from tactcad.drawing.parts.part_sheet import MadeFrom, Order, drawing_faults, pa
 from tactcad.drawing.parts.prism import prism_plan
 from tactcad.families.facing_rows import FAMILY
 from tactcad.parts.language.description import Extrusion, Hole, Material, Part
+from tactcad.parts.language.fits import general
 from tactcad.parts.language.limits import DatumFeature, Geometric
 from tactcad.scenes import make_scene
 
@@ -186,7 +188,8 @@ def test_datum_letters_stand_on_what_the_part_names(sheets, parts):
         chords = [c for line in lines for c in line.chords()]
         for d in part.datums:
             if d.feature == "dowel_hole":
-                said = next(t for t in sheet.texts if t.text.startswith("⌀3.012"))
+                size = "⌀3.1" if name == "spacer" else "⌀3.012"
+                said = next(t for t in sheet.texts if t.text.startswith(size))
                 assert 0 < said.at[1] - found[d.letter][1] < 3 and found[d.letter][0] > said.at[0]
                 continue
             x, y = found[d.letter]
@@ -257,7 +260,11 @@ def test_title_block_names_the_principle_and_the_general_tolerances(sheets):
         (runs,) = pdf_runs(pdf_bytes([sheet], "title", "author", "2026-11-21"))
         text = " ".join(runs)
         assert "ISO 8015" in text
-        assert "ISO 2768-1:1989-m, ISO 2768-2:1989-K for the rest" in text
+        assert "2768-2" not in text  # withdrawn
+        rest = re.search(
+            r"ISO 22081; sizes to 6 ±([\d.]+), to 30 ±([\d.]+), to 120 ±([\d.]+), to 400 ±", text
+        )
+        assert [float(v) for v in rest.groups()] == [general(v) for v in (6, 30, 120)]
 
 
 @pytest.mark.cad

@@ -168,7 +168,7 @@ def test_the_export_is_what_the_contract_says(shipped):
     assert {f["part_no"] for f in record["files"] if f["kind"] == "dxf"} == cut
     assert {
         p["part_no"] for p in record["parts"] if p["process"] == "wire-cut"
-    } < cut  # and plates, test_plate_files.py
+    } < cut  # and plates, test_blanks.py
     solids = {
         p.name: sum(r["qty"] for r in json.loads(p.read_text())["rows"] if r["has_solid"])
         for p in folder.glob("bom*.json")

@@ -59,7 +59,7 @@ def test_rows_that_every_workshop_knows():
     assert [METRIC[t].set_point for t in ("M2", "M2.5", "M3", "M4", "M5")] == [1.0, 1.5, 2.0, 2.5, 3.5]
     assert SET_SCREW_LENGTHS["M3"] == (3, 4, 5, 6, 8, 10, 12, 16)
     assert CAP_SCREW_LENGTHS["M3"] == (5, 6, 8, 10, 12, 16, 20, 25, 30)
-    assert standard_parts.dowel_lengths("3") == (6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30)
+    assert standard_parts.dowel_lengths("3") == (8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30)
 
 
 def hexagon_area(across_flats: float) -> float:

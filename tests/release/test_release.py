@@ -147,7 +147,7 @@ def test_the_readme_answers_a_shops_questions(files):
     for said in (
         "hinge thickness: 0.25 mm, 0.245 to 0.255",
         "do not tumble",
-        "ISO 2768-1:1989-m",
+        "ISO 22081",
         "7075-T6",
         "sha256sum -c",
     ):

@@ -41,7 +41,7 @@ MISFITS = {
         {"clamp.mount_pitch_y": 84.0, "element.rear_length": 50.0, "array.row_arms": [[6.0] * 3] * 2},
     ),
     "carrier_screws_fit": ("calibration", {"clamp.carrier_thickness": 8.95, "clamp.mount_thread": "M5"}),
-    "roller_clears_neighbours": ("calibration", {"array.pitch": 3.5, "array.spacer": 0.5}),
+    "roller_clears_neighbours": ("calibration", {"array.pitch": 3.3, "array.spacer": 0.3}),
     "mount_holes_apart": (
         "calibration",
         {"clamp.mount_pitch_y": 56.0, "element.rear_length": 34.0, "clamp.carrier_screw_offset": 27.0},

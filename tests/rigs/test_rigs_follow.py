@@ -104,7 +104,7 @@ def test_the_sizes_that_follow(count, sheet):
 def test_the_published_set_up_is_what_follows_the_published_array():
     d = variant()
     assert (d.sample.side, d.grasping.moving_weight) == (32.0, 3.235)
-    assert (d.cart.length, d.cart.width, d.cart.wheel_base) == (70.0, 50.0, 50.0)
+    assert (d.cart.length, d.cart.width, d.cart.wheel_base) == (70.0, 54.0, 50.0)
     assert (d.holder.vacuum_diameter, d.holder.rings, d.holder.lid_thickness) == (26.0, 3, 6.0)
     assert calibration_stage(Layout(d)) == STAGES[0] and guide_layout(d).raised == 0.0
 

@@ -163,6 +163,7 @@ def _write(folder: Path, files: dict[str, bytes]) -> None:
 
 
 def _print(report: Report) -> None:
+    from tactcad.parts.language.finding import grouped
     from tactcad.scenes import stated_size
 
     from .streams import coloured
@@ -173,6 +174,6 @@ def _print(report: Report) -> None:
     for check, runs in report.runs.items():
         print(f"  {check:14} {runs:5} runs {seconds[check]:8.2f} s")
     flags = [f for f in report.findings if f.severity == "flag"]
-    for finding in flags:
-        print(coloured(f"  {finding}", "flag", sys.stdout))
+    for said in grouped(flags):
+        print(coloured(f"  flag: {said}", "flag", sys.stdout))
     print(f"  {len(report.failures)} failed, {len(flags)} flagged")

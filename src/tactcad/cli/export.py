@@ -26,6 +26,8 @@ EXAMPLES = """\
   tactcad export --guide                      with the assembly guides, to open in a browser
   tactcad export --drawings                   with a dimensioned sheet of every part made, as PDF and SVG
   tactcad export --robot                      with robot/: URDF, MJCF and a table of taxels (docs/robot.md)
+  tactcad export --measured inspections/macro-array-L.csv --drawings
+                                              issued again: spacers as the measured sheet wants them
   tactcad export --within 0.1%                with an STL of every part made, its volume within 0.1 %
   tactcad export --in 60                      the same, as fine as 60 s allow where nothing is in the cache
 
@@ -69,6 +71,12 @@ def configure(parser: argparse.ArgumentParser) -> None:
         help="with robot/: the array as URDF and MJCF, and its taxels as CSV and JSON; with --detail "
         "envelope without meshes to look at",
     )
+    parser.add_argument(
+        "--measured",
+        metavar="FILE",
+        help="an inspection.csv filled in: spacers and the places of equal elements follow from it; the "
+        "revision is followed by M, and sheets name the file",
+    )
     add_strict(parser)
     parser.add_argument("-o", "--out", metavar="DIR", help="folder to write (default exports/<design>)")
     add_others(parser)
@@ -107,10 +115,25 @@ def _exported(source: str, args: argparse.Namespace, say: Progress) -> tuple[dic
     from tactcad.scenes.poses import pose_of
 
     asked = allowance(args)
-    design = read(source)
+    design, again = read(source), None
+    if args.measured:
+        from tactcad.design.family import family_of
+        from tactcad.design.tree import Design
+        from tactcad.lab.measured_parts import reissued
+        from tactcad.parts.rules import refuse_broken
+
+        if not isinstance(design, Design):
+            family = family_of(design).name
+            raise InputError("--measured", "does not take designs of this family", value=family)
+        refuse_broken(design)
+        again = reissued(design, args.measured)
+        design = again.design
+        refuse_broken(design)
+        for line in again.lines:
+            say.line(line)
     scenes = chosen_scenes(design, args.scene)
     out = args.out or f"exports/{design.name}" + ("" if args.detail == "full" else f"-{args.detail}")
-    refuse_overwriting(out, find(source))
+    refuse_overwriting(out, find(source), *([args.measured] if args.measured else []))
     options = ExportOptions(tuple(scenes), pose_of(args.pose, design), args.guide, args.detail, args.drawings)
     options = replace(options, robot=args.robot)
     picked = None
@@ -128,4 +151,5 @@ def _exported(source: str, args: argparse.Namespace, say: Progress) -> tuple[dic
     if picked and not args.json:
         say.line(picked.text())
     record = {**asdict(done), "folder": str(done.folder), "left_out": missing}
+    record |= {"measured": again.record} if again else {}
     return record | ({"budget": picked.record()} if picked else {}), missing

@@ -14,8 +14,11 @@ from .tree import Array, Element, Sheet, SheetMaterial
 
 # The published set-up, mm and N; the cart is chosen around its sample.
 SIDE, LENGTH, WIDTH, WHEEL_BASE, VACUUM, RINGS = 32.0, 70.0, 50.0, 50.0, 26.0, 3
+BESIDE_THREADS = 54.0  # mm, width of a cart whose wheels roll beside the stages' threads
 MOVING, STACK = 3.235, 21.0  # paper: what moves with the array, N; its stack of sheets and spacers
 PER_STACK = 0.05  # N for a mm of stack more; chosen: twice what aluminium weighs, trimmed by the ballast
+# mm2 of sheet in both rows' bodies and spacers, as published; kg/m3, 7075; m/s2
+SECTION, ALUMINIUM, GRAVITY = 290.0, 2810.0, 9.80665
 RUBBER = 6.0  # of the sample beyond the pads; chosen: what the published array has beyond the ends of a row
 # Lid, and the widest circle of holes over which it bends by less than 2 um (plate theory, rigs/stiffness.py).
 LID, STIFF = 6.0, 44.0
@@ -35,7 +38,11 @@ def followed(values: dict[str, Any]) -> dict[str, Any]:
         sample = done["sample"] = _filled(sample, side=_side(array, sheet, element))
         more = max(sample.side - SIDE, 0.0)
         vacuum = min(VACUUM + more, LARGEST_VACUUM)
-        wheels = {"length": LENGTH + more, "width": WIDTH + more, "wheel_base": WHEEL_BASE + more}
+        wheels = {
+            "length": LENGTH + more,
+            "width": max(WIDTH + more, BESIDE_THREADS),
+            "wheel_base": WHEEL_BASE + more,
+        }
         # as stiff under its own pressure as one of LID over a plenum of STIFF: diameter^4 over thickness^3
         lid = max(LID, float(ceil(LID * (vacuum / STIFF) ** (4 / 3))))
         holes = {"vacuum_diameter": vacuum, "rings": round(RINGS * vacuum / VACUUM), "lid_thickness": lid}
@@ -43,7 +50,7 @@ def followed(values: dict[str, Any]) -> dict[str, Any]:
             if values.get(name) is not None:
                 done[name] = _filled(values[name], **sizes)
     if grasping is not None:
-        done["grasping"] = _filled(grasping, moving_weight=_moving(array, sheet))
+        done["grasping"] = _filled(grasping, moving_weight=_moving(array, sheet, done["material"].density))
     return done
 
 
@@ -74,10 +81,12 @@ def _side(array: Array, sheet: Sheet, element: Element) -> float:
     return min(max(SIDE, 2.0 * ceil(max(along, across) + RUBBER)), LARGEST_SIDE)
 
 
-def _moving(array: Array, sheet: Sheet) -> float:
-    """What moves with the array, N: the published weight, more for a longer stack, in whole 0.1 N."""
+def _moving(array: Array, sheet: Sheet, density: float) -> float:
+    """What moves with the array, N: the published weight, more for a longer stack or a denser sheet (kg/m3),
+    in whole 0.1 N."""
     spacer = array.spacer if array.spacer is not None else array.pitch - sheet.thickness
     count = max(map(len, array.row_arms))
     stack = count * sheet.thickness + (count + 1) * spacer
-    more = ceil(10 * (MOVING + PER_STACK * (stack - STACK)) - 1e-9) / 10
-    return more if stack > STACK + 1e-9 else MOVING
+    denser = SECTION * stack * max(density - ALUMINIUM, 0.0) * 1e-9 * GRAVITY
+    more = PER_STACK * max(stack - STACK, 0.0) + denser
+    return ceil(10 * (MOVING + more) - 1e-9) / 10 if more > 1e-9 else MOVING

@@ -190,9 +190,10 @@ def completed(name: str, given: Mapping[str, Any]) -> dict[str, Any]:
         if re.search(_spelled(known), name, re.IGNORECASE):
             what = f"holds {known}, a name of the table: a label of its own must not"
             raise InputError("material.alloy", what, value=name, legal=labels)
-    missing = next((key for key in PROPERTIES if given[key] is None), None)
+    missing = [key for key in PROPERTIES if given[key] is None]
     if missing:
-        what = f"not in the table of materials, and {missing} is not given"
+        verb = "is" if len(missing) == 1 else "are"
+        what = f"not in the table of materials, and {', '.join(missing)} {verb} not given"
         raise InputError("material.alloy", what, value=name, legal=labels + in_brackets(meant(name)))
     return dict(given)
 
@@ -215,7 +216,7 @@ def differences(name: str, given: Mapping[str, Any], origin: Mapping[str, str]) 
         raise InputError(
             "material.magnetic", f"not {name}'s", value=given["magnetic"], legal=f"{row.magnetic!r}"
         )
-    differing = []
+    differing, other = [], []
     for key, spread in row.spread.items():
         value, table = given[key], getattr(row, key)
         if isclose(value, table, rel_tol=1e-9):
@@ -224,13 +225,8 @@ def differences(name: str, given: Mapping[str, Any], origin: Mapping[str, str]) 
         difference = Difference(name, key, value, table, origin.get(path, ""))
         off = abs(difference.relative) * (1 - 1e-9)
         if off > MOST_DIFFERENCE:
-            raise InputError(
-                path,
-                f"not {name}: {difference}",
-                value=value,
-                legal=f"within {MOST_DIFFERENCE:.0%} of it, or a label of its own in material.alloy",
-            )
-        if off > spread and not difference.origin:
+            other.append(difference)
+        elif off > spread and not difference.origin:
             raise InputError(
                 path,
                 f"{difference}, more than its spread of {spread:.1%}",
@@ -238,6 +234,14 @@ def differences(name: str, given: Mapping[str, Any], origin: Mapping[str, str]) 
                 legal=f'within it, or with the value\'s source in [origin] as "{path}" = "..."',
             )
         differing.append(difference)
+    if other:
+        legal = f"within {MOST_DIFFERENCE:.0%} of {'it' if len(other) == 1 else 'each'}"
+        raise InputError(
+            f"material.{other[0].name}",
+            f"not {name}: {'; '.join(map(str, other))}",
+            value=other[0].value,
+            legal=f"{legal}, left out ({name}'s are taken), or a label of its own in material.alloy",
+        )
     return tuple(differing)
 
 

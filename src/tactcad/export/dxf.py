@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import io
 import logging
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations
 from math import degrees, dist, isclose
@@ -17,7 +18,8 @@ from typing import TYPE_CHECKING, Any
 
 from tactcad.contour import Arc, Contour, Line, Point, Segment
 from tactcad.design.messages import CheckFailure
-from tactcad.parts.language.description import Extrusion, Part, cut_section
+from tactcad.parts.language.description import Extrusion, Part
+from tactcad.parts.language.stock import cut_section
 
 if TYPE_CHECKING:
     from ezdxf.document import Drawing
@@ -71,13 +73,21 @@ def dxf_bytes(part: Part) -> bytes:
     Parameters
     ----------
     part
-        A part that has a cut file (`tactcad.parts.language.description`).
+        A part that has a cut file (`tactcad.parts.language.stock`).
 
     Raises
     ------
     ValueError
         Where the part has none.
     """
+    cut = _section(part)
+    return layered_dxf({LAYER: (*cut.openings, cut.outer)}, cut.outer.box)
+
+
+def layered_dxf(
+    layers: Mapping[str, Sequence[Contour | Line]], box: tuple[float, float, float, float]
+) -> bytes:
+    """Contours and lines on named layers within a box (mm), in their order, as DXF R2000 in millimetres."""
     import ezdxf
 
     earlier = ezdxf.options.write_fixed_meta_data_for_testing
@@ -86,11 +96,10 @@ def dxf_bytes(part: Part) -> bytes:
         drawing = ezdxf.new("R2000")
         drawing.header["$INSUNITS"] = MILLIMETRES
         drawing.header["$MEASUREMENT"] = METRIC
-        drawing.layers.add(LAYER, color=7)
-        cut = _section(part)
-        for contour in (*cut.openings, cut.outer):
-            _add(drawing, contour)
-        box = cut.outer.box
+        for colour, (layer, drawn) in enumerate(layers.items(), start=8 - len(layers)):
+            drawing.layers.add(layer, color=colour)
+            for contour in drawn:
+                _add(drawing, contour, layer)
         lower, upper = (box[0], box[1], 0.0), (box[2], box[3], 0.0)
         drawing.modelspace().reset_extents(lower, upper)
         drawing.header["$EXTMIN"], drawing.header["$EXTMAX"] = lower, upper
@@ -110,14 +119,14 @@ def checked_dxf(part: Part) -> bytes:
     return data
 
 
-def _add(drawing: Drawing, contour: Contour) -> None:
+def _add(drawing: Drawing, contour: Contour | Line, layer: str) -> None:
     """Append a contour's entities to the model space, head to tail."""
-    space, on_layer = drawing.modelspace(), {"layer": LAYER}
-    if round_one := contour.as_circle():
+    space, on_layer = drawing.modelspace(), {"layer": layer}
+    if isinstance(contour, Contour) and (round_one := contour.as_circle()):
         centre, radius = round_one
         space.add_circle(_clean(centre), radius, dxfattribs=on_layer)
         return
-    for s in contour:
+    for s in contour if isinstance(contour, Contour) else (contour,):
         if isinstance(s, Line):
             space.add_line(_clean(s.start), _clean(s.end), dxfattribs=on_layer)
         else:

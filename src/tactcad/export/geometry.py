@@ -14,7 +14,8 @@ from tactcad.contour import Arc, Contour, Line, Segment
 from tactcad.design.family import family_of
 from tactcad.design.tree import CommonTables
 from tactcad.drawing.engine.extent import part_box
-from tactcad.parts.language.description import Extrusion, Hole, ModelFile, Part, cut_section, section
+from tactcad.parts.language.description import Extrusion, Hole, ModelFile, Part, section
+from tactcad.parts.language.stock import cut_section
 from tactcad.parts.language.surface import surface_area
 from tactcad.scenes import make_scene, scene_names
 from tactcad.scenes.bom import bom_rows

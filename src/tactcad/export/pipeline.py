@@ -293,7 +293,7 @@ def _write_element_tables(folder: Path, design: CommonTables) -> list[FileRecord
 
 
 def _part_record(part: Part, plan: Plan) -> PartRecord:
-    from tactcad.parts.language.description import cut_section
+    from tactcad.parts.language.stock import cut_section
 
     from .products import part_facts
 

@@ -21,7 +21,7 @@ from tactcad.export.publication import REFUSE
 from tactcad.scenes import make_scene, scene_names
 
 from .archive import Foreign, archive_bytes, looked_at, replaced_content, replacing
-from .packages import PACKAGES, packed
+from .packages import PACKAGES, nest_files, packed
 from .readme import package_readme, readme_bytes
 from .release_contents import ReleaseContents, Sets
 from .verify import README, check_archive, check_packages, read_back
@@ -137,8 +137,10 @@ def release(
         chosen = {_path_in_zip(file): file for file in read_manifest(folder / "export").files}
         digests = {path: file.sha256 for path, file in chosen.items() if path}
         files = {path: (folder / "export" / chosen[path].path).read_bytes() for path in sorted(digests)}
+    date, shop = design.design.date, load_shop(shop_file)
+    files |= nest_files(contents, shop)
     files = {README: readme_bytes(contents, list(files)), **files}
-    data, date, shop = archive_bytes(files, design.design.date), design.design.date, load_shop(shop_file)
+    data = archive_bytes(files, date)
     target = places[0]
     whole = f"{target.name} (SHA-256 {sha256_of(data)})"
     packages = packed(contents, files, shop)

@@ -7,6 +7,7 @@ import csv
 import io
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from math import ceil, floor
 
 from tactcad.checks.shop import Feed, Shop
 from tactcad.design.tree import CommonTables
@@ -16,12 +17,14 @@ from tactcad.export.contents import sha256_of
 from tactcad.parts.array.element import least_passes
 from tactcad.parts.bought.electronic_parts import BOARD
 from tactcad.parts.bought.supply import BARE_BOARD, ELECTRONIC, MECHANICAL
-from tactcad.parts.language.description import Part, cut_section
-from tactcad.parts.language.limits import FACES
+from tactcad.parts.language.description import Part
+from tactcad.parts.language.stock import cut_section, own_thickness, stock_of
 
+from .nest import Nest, nest_dxf, nest_svg, nests
 from .release_contents import OrderLine, ReleaseContents
 
 ORDER = "order.csv"
+CERTIFICATE = "EN 10204 3.1"
 BOARDS = "circuit/boards/"
 PART_INSPECTION = "inspection-parts.csv"
 Row = dict[str, object]
@@ -48,20 +51,56 @@ class Packed:
     files: Mapping[str, bytes]
 
 
+def order_nests(contents: ReleaseContents, shop: Shop) -> dict[str, Nest]:
+    """What is ordered of sheet and plate, each material and thickness on one sheet, by its files' path
+    without ending."""
+    made = [
+        (line.part, round(line.order), _at_once(line, shop))
+        for line in contents.lines
+        if line.part is not None and not line.part.bought
+    ]
+    name, revision = contents.design.name, contents.design.design.revision
+    return {f"nest/{name}-{n.name}_{revision}": n for wire in (True, False) for n in nests(made, wire)}
+
+
+def nest_files(contents: ReleaseContents, shop: Shop) -> dict[str, bytes]:
+    """The nests as DXF and pictures."""
+    identity, found = contents.design.design, order_nests(contents, shop)
+    pictures = {f"{s}.svg": nest_svg(n, identity.name, identity.revision) for s, n in found.items()}
+    return {f"{stem}.dxf": nest_dxf(n) for stem, n in found.items()} | pictures
+
+
+def _at_once(line: OrderLine, shop: Shop) -> int:
+    part = _made(line)
+    return wire_time(part, shop.feed, round(line.order)).at_once if part.process == "wire-cut" else 1
+
+
 def packed(contents: ReleaseContents, files: Mapping[str, bytes], shop: Shop) -> list[Packed]:
     """Every package that has a line; `files`: the whole zip's."""
-    made = (_packed(package, contents, files, shop) for package in PACKAGES)
+    found = order_nests(contents, shop)
+    made = (_packed(package, contents, files, shop, found) for package in PACKAGES)
     return [one for one in made if one.lines]
 
 
-def _packed(package: Package, contents: ReleaseContents, files: Mapping[str, bytes], shop: Shop) -> Packed:
+def _packed(
+    package: Package,
+    contents: ReleaseContents,
+    files: Mapping[str, bytes],
+    shop: Shop,
+    found: Mapping[str, Nest],
+) -> Packed:
     lines = tuple(line for line in contents.lines if _belongs(package, line))
     own: dict[str, bytes] = {}
     rows = []
     for line in lines:
         taken = _files_of(package, line, contents.design, files)
+        row = _common(line) | package.row(line, taken, shop)
+        on = (s for s, n in found.items() if any(p.part_no == line.row.part_no for p in n.pieces))
+        if package in (WIRE, SHEET) and (stem := next(on, None)):
+            taken |= {"nest": f"{stem}.dxf", "nest_picture": f"{stem}.svg"}
+            row["nest_sheet_mm"] = f"{found[stem].width:g} x {found[stem].height:g}"
         own |= {path: files[path] for path in taken.values()}
-        rows.append(_common(line) | package.row(line, taken, shop) | _digests(taken, files))
+        rows.append(row | _digests(taken, files))
     if package is WIRE:
         own[inspection.NAME] = files[inspection.NAME]
     if package in (WIRE, MACHINING) and (limits := _of_parts(files.get(PART_INSPECTION, b""), lines)):
@@ -71,7 +110,11 @@ def _packed(package: Package, contents: ReleaseContents, files: Mapping[str, byt
 
 def _belongs(package: Package, line: OrderLine) -> bool:
     if package is SHEET:
-        return line.part is not None and not line.part.bought and cut_section(line.part) is not None
+        return (
+            line.part is not None
+            and not line.part.bought
+            and None not in (cut_section(line.part), stock_of(line.part))
+        )
     return line.row.process in package.processes
 
 
@@ -127,6 +170,12 @@ def _material(part: Part) -> dict[str, object]:
     }
 
 
+def _after(part: Part) -> str:
+    """What is measured before it is ordered: a thickness that is not the drawn one says so."""
+    own = own_thickness(part)
+    return f"measured: thickness is {own.remark}" if own and own.remark else ""
+
+
 def _made(line: OrderLine) -> Part:
     assert line.part is not None  # what is made has a solid
     return line.part
@@ -134,14 +183,17 @@ def _made(line: OrderLine) -> Part:
 
 def _wire_row(line: OrderLine, taken: Mapping[str, str], shop: Shop) -> Row:
     part = _made(line)
-    time = wire_time(part, shop.feed)
+    time = wire_time(part, shop.feed, round(line.order))
     return _material(part) | {
+        "after": _after(part),
+        "at_once": time.at_once,
         "height_mm": f"{time.height:g}",
         "cut_length_mm": f"{time.length:.3f}",
         "contours": time.contours,
         "passes": time.passes,
         "minutes_each": f"{time.minutes:.1f}",
         "minutes": f"{time.minutes * line.order:.0f}",
+        "certificate": CERTIFICATE,
         "finish": part.finish,
     }
 
@@ -159,16 +211,21 @@ def _machined_row(line: OrderLine, taken: Mapping[str, str], shop: Shop) -> Row:
 
 def _sheet_row(line: OrderLine, taken: Mapping[str, str], shop: Shop) -> Row:
     part = _made(line)
-    low, high = part_box(part)
-    thickness = part.extrusion.thickness
-    limits = [c for c in part.characteristics if {*c.between} == {*FACES}]
+    stock, section = stock_of(part), cut_section(part)
+    assert stock is not None and section is not None  # _belongs
+    x0, y0, x1, y1 = section.outer.box
     return _material(part) | {
         "for": part.process,
-        "thickness_mm": f"{thickness:g}",
-        "least_mm": f"{round(limits[0].lower, 6):g}" if limits else "",
-        "most_mm": f"{round(limits[0].upper, 6):g}" if limits else "",
-        "length_mm": f"{round(high[0] - low[0], 3):g}",
-        "width_mm": f"{round(high[1] - low[1], 3):g}",
+        "thickness_mm": f"{stock.thickness:g}",
+        "least_mm": f"{round(stock.lower, 6):g}",
+        "most_mm": f"{round(stock.upper, 6):g}",
+        "thickness_standard": stock.standard,
+        "length_mm": f"{round(x1 - x0, 3):g}",
+        "width_mm": f"{round(y1 - y0, 3):g}",
+        "over_each_edge_mm": f"{stock.edge:g}",
+        "over_each_face_mm": f"{stock.face:g}",
+        "after": _after(part),
+        "certificate": CERTIFICATE,
     }
 
 
@@ -226,26 +283,37 @@ PASSES = {"one pass": 1, "three passes": 3, "four passes": 4}
 
 @dataclass(frozen=True)
 class WireTime:
-    """Of one piece: length of all contours mm, height mm, contours, passes, minutes."""
+    """Of one piece: length of all contours mm, height mm of what is cut at once, and pieces in it, contours,
+    passes, minutes."""
 
     length: float
     height: float
+    at_once: int
     contours: int
     passes: int
     minutes: float
 
 
-def wire_time(part: Part, feed: Feed) -> WireTime:
-    """The time of one piece, cut by itself.
+# mm; chosen: what a low machine's clamps and flushing take.
+PACK = 40.0
 
-    Every contour is cut in as many passes as the part's closest limit asks for; the main cut advances by
+
+def wire_time(part: Part, feed: Feed, pieces: int = 1) -> WireTime:
+    """The time of one of the pieces.
+
+    Every contour is cut in as many passes as the closest limit on it asks for; the main cut advances by
     feed.area over the height, at most feed.most, further passes by feed.skim; every contour is threaded once.
+    What one pass holds is cut as packs, as many pieces in each as are no higher than PACK; all else alone.
     """
     section = cut_section(part)
     if section is None:
         raise TypeError(f"{part.part_no} is not wire-cut")
-    passes = PASSES[least_passes(min((c.upper - c.lower for c in part.characteristics), default=2.0) / 2)]
-    length, height, contours = section.cut_length, section.thickness, 1 + len(section.openings)
+    limits = [c.upper - c.lower for c in part.characteristics if c != own_thickness(part)]
+    passes = PASSES[least_passes(min(limits, default=2.0) / 2)]
+    most = max(1, floor(PACK / section.thickness)) if passes == 1 else 1
+    packs = ceil(pieces / min(most, pieces))
+    at_once = ceil(pieces / packs)
+    length, height, contours = section.cut_length, section.thickness * at_once, 1 + len(section.openings)
     main = length / min(feed.area / height, feed.most)
     minutes = main + (passes - 1) * length / feed.skim + contours * feed.threading
-    return WireTime(length, height, contours, passes, minutes)
+    return WireTime(length, height, at_once, contours, passes, minutes * packs / pieces)

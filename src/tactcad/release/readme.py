@@ -5,6 +5,7 @@ Plain ASCII apart from the design's own texts, 96 columns.
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Mapping, Sequence
 from textwrap import wrap
 
@@ -13,6 +14,7 @@ from tactcad.checks.shop import Shop
 from tactcad.design.family import family_of
 from tactcad.design.materials import ELECTROLYSIS, family
 from tactcad.drawing.engine.extent import part_box
+from tactcad.drawing.engine.paper import GENERAL_TOLERANCES
 from tactcad.export import inspection
 from tactcad.export import strength_table as strength
 from tactcad.export.formats import part_formats
@@ -20,6 +22,7 @@ from tactcad.parts.array.hinge_section import thickness_elasticity
 from tactcad.parts.array.layout import Layout
 from tactcad.parts.bought.electronic_parts import BOARD
 from tactcad.parts.language.description import Characteristic, Part
+from tactcad.parts.language.finding import grouped
 from tactcad.scenes.rig import ARRAY
 
 from .archive import MANIFEST
@@ -31,6 +34,9 @@ DRAFT = f"{MARK}: for discussion only. Do not make anything from these files."
 SAMPLE = "SAMPLE, NOT FOR ORDER: nobody has asked for these parts, and nobody answers for them."
 FOLDERS = {
     **{f.folder: f.released for f in sorted(part_formats(), key=lambda f: -f.ordered) if f.released},
+    "nest/": "what is cut from one sheet, side by side, with start holes and tabs: DXF and picture for "
+    "each material and "
+    "thickness",
     "circuit/": "the circuit that reads the array as a table and as a SPICE deck, the list of leads to cut, "
     "the harness; in boards/ the boards: KiCad, Gerber, drills, bill, places",
     "pdf/": "a drawing sheet for every part made, and an assembly sheet with parts list for every scene",
@@ -166,8 +172,7 @@ def keys(contents: ReleaseContents, parts: Sequence[Part]) -> list[str]:
     return lines and [*lines, ""] + paragraph(
         f"Part numbers here and below without {contents.design.name}-. Measure these on every element and "
         f"record them in {inspection.NAME}, by the element's number (E1, E2, ...: mark the "
-        "bags, not the parts). Every other dimension without its own tolerance: ISO 2768-1:1989-m, ISO "
-        "2768-2:1989-K."
+        f"boxes, not the parts). Every other dimension: {' '.join(GENERAL_TOLERANCES).replace('±', '+-')}."
     )
 
 
@@ -202,6 +207,19 @@ AGREE = (
     "that they do not, the drawing holds and we want to know."
 )
 QUOTE = ("Price and delivery for the quantities above, and for twice the elements.",)
+# Filled in by who orders: the design's date is its drawings'.
+DATES = "Order no. ____________  of ____________ (date)   delivery wanted by ____________"
+PAPERS = (
+    "With the delivery: a certificate of the material, EN 10204 3.1, with its heat number, for every "
+    "line whose "
+    f"`certificate` in {ORDER} says so."
+)
+PACKING = (
+    "Packing: elements bend at hinges that are tenths of a millimetre thin. Each lies by its clamped end "
+    "in its own "
+    "compartment of a box or in foam, its arm free of everything, the box marked with its number; none lies "
+    "loose in a bag, and none is tumbled or picked up by its arm. All other parts dry, wrapped one by one."
+)
 
 
 def wire_questions(contents: ReleaseContents) -> list[str]:
@@ -223,12 +241,15 @@ def wire_questions(contents: ReleaseContents) -> list[str]:
 def _flags(contents: ReleaseContents) -> list[str]:
     if not contents.flags:
         return ["Nothing.", ""]
-    return numbered(list(dict.fromkeys(f.said for f in contents.flags)))
+    return numbered(grouped(contents.flags))
 
 
 PACKAGE_FOLDERS = {
     ORDER: "what is ordered, a line each, with the files that it is made from and their SHA-256",
     "dxf/": "cut files, exact nominal contours, millimetres, one part a file; tool compensation is yours",
+    "nest/": "a sheet's parts side by side: DXF (layers CUT, START: start holes, TAB: cut last, SHEET) "
+    "and picture, as a "
+    "proposal; nest as your machine likes",
     "pdf/": "drawing sheets",
     "circuit/": "the boards: gerber/ for the bare board; KiCad's board and netlist, bill and places of each "
     "as it is fitted",
@@ -299,12 +320,14 @@ def _sections(contents: ReleaseContents, one: Packed, shop: Shop) -> Sequence[tu
     if one.package is WIRE:
         return (
             ("TIME ON THE MACHINE", _wire_time(one, shop)),
+            ("DELIVERY", [DATES, "", *paragraph(PAPERS), *paragraph(PACKING)]),
             ("KEY CHARACTERISTICS", keys(contents, parts)),
             ("HOW TO MAKE IT", how(contents, parts)),
             ("WITH YOUR QUOTATION PLEASE TELL US", numbered([*wire_questions(contents), *QUOTE])),
         )
     if one.package is MACHINING:
         return (
+            ("DELIVERY", [DATES, ""]),
             ("KEY CHARACTERISTICS", keys(contents, parts)),
             ("HOW TO MAKE IT", how(contents, parts)),
             (
@@ -312,7 +335,9 @@ def _sections(contents: ReleaseContents, one: Packed, shop: Shop) -> Sequence[tu
                 numbered(["Price and delivery for the quantities above."]),
             ),
         )
-    return ()
+    if one.package is SHEET:
+        return (("DELIVERY", [DATES, "", *paragraph(PAPERS)]),)
+    return (("DELIVERY", [DATES, ""]),)
 
 
 def _wire_time(one: Packed, shop: Shop) -> list[str]:
@@ -323,7 +348,8 @@ def _wire_time(one: Packed, shop: Shop) -> list[str]:
     feed, source = shop.feed, shop.feed_source
     return paragraph(
         f"About {minutes / 60:.1f} h for {length / 1000:.2f} m of contour, heights "
-        f"{', '.join(f'{h:g}' for h in heights)} mm, one piece at a time; {ORDER} has it by part. Estimated "
+        f"{', '.join(f'{h:g}' for h in heights)} mm; what one pass holds as packs, all else one piece at a "
+        f"time; {ORDER} has it by part. Estimated "
         f"with a main cut of {feed.area:g} mm2/min ({source['area']}), at most {feed.most:g} mm/min "
         f"({source['most']}), every further pass {feed.skim:g} mm/min ({source['skim']}), and "
         f"{feed.threading:g} min for each contour's start ({source['threading']}). Limits of {shop.name}; "
@@ -335,27 +361,37 @@ def _sheet_table(one: Packed) -> list[str]:
     """Blanks by material and thickness, and how much sheet they are in all."""
     groups: dict[str, list[tuple[str, ...]]] = {}
     area: dict[str, float] = {}
+    sheets: defaultdict[str, str] = defaultdict(str)
     for row in table_rows(one.files[ORDER]):
         material = f"{row['material']}, {row['standard']}" if row["standard"] else row["material"]
         title = f"{row['thickness_mm']} mm {material}"
+        if size := row.get("nest_sheet_mm"):
+            sheets[title] = f", nested on {size} mm"
         blank = float(row["length_mm"]) * float(row["width_mm"])
         area[title] = area.get(title, 0.0) + blank * float(row["order"])
         cells = (row["part_no"], row["order"], f"{row['length_mm']} x {row['width_mm']}", _blank_for(row))
         groups.setdefault(title, []).append(cells)
-    titled = [(f"{title} ({area[title] / 100:.0f} cm2 net)", rows) for title, rows in groups.items()]
+    titled = [
+        (f"{title} ({area[title] / 100:.0f} cm2 net{sheets[title]})", rows) for title, rows in groups.items()
+    ]
     lines = table(("for part", "pieces", "at least, mm", "how"), titled)
     return lines + paragraph(
-        "Sizes are the parts' own: what the cut and the clamping take comes on top, as who cuts them says. "
-        "Thickness with limits: picked from rolled sheet that measures so. Plate that is milled: at least "
-        "that thickness, more where the drawing asks for both faces machined. Round and block "
-        "stock is its shop's."
+        "Thickness is that of the stock as sold, with its limits; closer ones: picked from rolled sheet that "
+        "measures so. Sizes of blanks hold what is machined off each edge. Sheet for the wire cutter is as "
+        "large as its nest (nest/), or as its machine takes. Round and block stock is its shop's."
     )
 
 
 def _blank_for(row: Mapping[str, str]) -> str:
     limits = f"{row['least_mm']} to {row['most_mm']} mm thick; " if row["least_mm"] else ""
     if row["for"] not in ("wire-cut", "etched"):
-        return f"blank by its DXF (laser, water jet or saw), to be {row['for']}"
+        edge, face = row["over_each_edge_mm"], row["over_each_face_mm"]
+        return (
+            f"blank by its DXF (laser, water jet or saw), {edge} mm over on each edge, {face} or more on "
+            f"each face, no holes; to be {row['for']}"
+        )
+    if float(row["over_each_face_mm"]):
+        return f"{limits}as plate, both faces ground to the drawing, then to be {row['for']}"
     return f"{limits}as sheet, to be {row['for']}"
 
 

@@ -20,7 +20,8 @@ from tactcad.export import strength_table as strength
 from tactcad.export.contents import sha256_of
 from tactcad.export.dxf import check_dxf
 from tactcad.export.formats import has_limits, part_formats
-from tactcad.parts.language.description import NOT_ORDERED, Part, cut_section
+from tactcad.parts.language.description import NOT_ORDERED, Part
+from tactcad.parts.language.stock import cut_section
 from tactcad.scenes import bom
 from tactcad.scenes.scene import Scene
 

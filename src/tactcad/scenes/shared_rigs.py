@@ -11,9 +11,8 @@ from tactcad.parts.array.supplies import supplies
 from tactcad.parts.bought import screws, standard_parts
 from tactcad.parts.bought.standard_parts import STAGES, bearing
 from tactcad.parts.language.description import Vector, vector
-from tactcad.parts.language.metric import METRIC
 from tactcad.parts.rigs.cart import LOOSE_WHEEL, CartLayout
-from tactcad.parts.rigs.force_gauge import GAUGE_SCREW_X, GAUGE_SCREW_Z, GAUGE_THREADS
+from tactcad.parts.rigs.force_gauge import GAUGE_SCREW_X, GAUGE_SCREW_Z, GAUGE_THREADS, roller_length
 from tactcad.parts.rigs.frame import (
     BASE,
     GAUGE_SHAFT,
@@ -25,7 +24,7 @@ from tactcad.parts.rigs.frame import (
     STAGE_PLATE,
     TIP,
 )
-from tactcad.parts.rigs.stand import BASE_SCREW, POST_SCREWS, StandLayout
+from tactcad.parts.rigs.stand import BASE_SCREW, BASE_UNDER_HEAD, POST_SCREWS, StandLayout
 
 from .builder import Builder
 from .moves import APPROACH
@@ -50,9 +49,8 @@ def place_stand(b: Builder, rig: StandLayout, stages: bool) -> str:
     base = b.place("BP", rigs.base_plate(rig), (0, 0, -BASE[1]))
     post = b.place("PO", rigs.post(rig), (0, POST_Y, 0), ALONG_Y)
     b.meet(base, post)
-    head = METRIC["M5"].head_height
     for x, y in POST_SCREWS:
-        at = (x, POST_Y + POST[1] / 2 + y, -BASE[1] + head)
+        at = (x, POST_Y + POST[1] / 2 + y, -BASE_UNDER_HEAD)
         b.screw("M5", BASE_SCREW, at, (0, 0, 1), base, post)
     b.step(
         "Stand",
@@ -276,7 +274,7 @@ def place_force_axis(
     if roller:
         r = standard_parts.dowel_diameter(present(rig.design.calibration).roller) / 2
         tip = b.place("TI", rigs.roller_tip(rig), (0, 5.0, tip_z), AGAINST_Y)
-        length = roller_length(rig)
+        length = roller_length(rig.array)
         contact = b.place(
             "RO",
             standard_parts.dowel(present(rig.design.calibration).roller, length),
@@ -325,10 +323,3 @@ def driven(
         moves += [(name,) for on, name in fixings if on == side]
         here = there
     return [*moves, Move((moving,), here, (STILL,), by)]
-
-
-def roller_length(rig: StandLayout) -> float:
-    """Shortest standard pin that covers the pad; rule roller_clears_neighbours keeps it off the others."""
-    wide = rig.design.sheet.thickness
-    lengths = standard_parts.dowel_lengths(present(rig.design.calibration).roller)
-    return next((n for n in lengths if n >= wide), lengths[-1])

@@ -124,11 +124,16 @@ def largest_fitting(width: float, height: float, room: tuple[float, float]) -> S
     )
 
 
-WIDTH, HEIGHT = 180.0, 59.0  # ISO 7200: 180 wide, so that it fits A4
+WIDTH, HEIGHT = 180.0, 62.0  # ISO 7200: 180 wide, so that it fits A4
 LABEL = 1.8  # height of the cells' headings, ISO 3098 series
 TOLERANCING = "tolerancing ISO 8015"  # each limit by itself
-# Of what states no limit of its own.
-GENERAL_TOLERANCES = ("ISO 2768-1:1989-m,", "ISO 2768-2:1989-K for the rest")
+# Of what states no limit of its own: sizes as ISO 2768-1:1989-m has them, surfaces in a zone about what its
+# two middle ranges leave them; chosen: what is milled and wire-cut without care holds it.
+GENERAL_TOLERANCES = (
+    "ISO 22081; sizes to 6 ±0.1, to 30 ±0.2,",
+    "to 120 ±0.3, to 400 ±0.5, above ±0.8;",
+    "surfaces: profile 0.4, to datums if any",
+)
 SAMPLE = "sample, not for order"  # document status of what has no owner
 EDGE = LineType("edge", 0.35)  # visible edges of an assembly: the thinner line group of ISO 128-2
 MARGIN = 5.0  # distance of anything from the frame
@@ -182,9 +187,9 @@ def title_block(paper: Paper, t: TitleBlock) -> list[Item]:
         (GENERAL_TOLERANCES, ("mm, angles in degrees", TOLERANCING)) if t.dimensioned else ("", "mm")
     )
     material = (
-        (58, "Material and temper", t.material),
+        (54, "Material and temper", tuple(t.material.split(", "))),
         (24, "Mass", mass),
-        (60, "General tolerances", limits),
+        (64, "General tolerances", limits),
     )
     finish = ((96, "Surface finish", t.finish), (54, "Dimensions", units))
     signed = ((46, "Created by", t.creator), (46, "Approved by", ""))  # by hand
@@ -192,7 +197,7 @@ def title_block(paper: Paper, t: TitleBlock) -> list[Item]:
     titles = (92, "Title, supplementary title", (t.title, t.supplementary))
     issue = ((92, "Legal owner", t.legal_owner), (18, "Revision", t.revision), (40, "Date of issue", t.date))
     rows = (  # height, cells of width, heading, value
-        (12, (*material, (18, "Scale", t.scale), (20, "Projection", ""))),
+        (15, (*material, (18, "Scale", t.scale), (20, "Projection", ""))),
         (12, (*finish, (15, "Paper", paper.name), (15, "Language", "en"))),
         (10, (*signed, *kind)),
         (15, (titles, (88, "Identification number", t.number))),

@@ -8,10 +8,22 @@ from math import cos, hypot, radians, sin
 import numpy as np
 
 from ..engine.boxes import Box, Chord, Point, Quad, bounds, chord_meets, corners, grown, overlap, quads_meet
-from ..engine.ink import LETTERS, THIN, Fill, Item, Text, arrow, bounds_of_items, polar, segment, width
+from ..engine.ink import (
+    LETTERS,
+    THIN,
+    DrawnArc,
+    Fill,
+    Item,
+    Text,
+    arrow,
+    bounds_of_items,
+    polar,
+    segment,
+    width,
+)
 from ..engine.layout_check import BESIDE_LINE
 from .dimension_lines import ARROW, PAD
-from .sheet_plan import Callout, Datum
+from .sheet_plan import ENVELOPE, Callout, Datum
 from .tolerances import FRAME, block, datum, frame_width
 
 STEP = 1.7 * LETTERS  # between lines of a callout
@@ -37,6 +49,7 @@ AT_END = 12.0  # cost of a leader at the very end of an arc
 NEAR, PARALLEL = 0.7, 0.03  # mm between such lines, and the sine of the angle between them
 FORBIDDEN = 80.0  # of the costs above: lines that a datum's stem never crosses
 AROUND_LETTER = 3.2  # mm kept free from the middle of a datum's letter, each way
+RING, RINGED, RING_GAP = 1.75, 1.8, 0.9  # radius around a letter, its height, and white beside the ring, mm
 AROUND = 0.9  # white kept around a callout's texts beyond what the check asks, mm
 
 
@@ -228,12 +241,36 @@ def _block(c: Callout, start: Point, towards: float) -> tuple[list[Text], list[I
     """Texts beside the shelf's end, the first line level with it; below them tolerance frames and a datum's
     symbol, level with it where there is no text."""
     x, y = start
-    wide = max([FRAME, *(width(line, LETTERS) for line in c.lines), *map(frame_width, c.frames)])
+    wide = max([FRAME, *map(_line_width, c.lines), *map(frame_width, c.frames)])
     aside = 1.0 if c.lines else 0.0
     left = x + aside if towards > 0 else x - aside - wide
     base = y - LETTERS / 2
-    texts = [Text((left, base - STEP * i), line, LETTERS) for i, line in enumerate(c.lines)]
+    texts: list[Text] = []
+    circles: list[Item] = []
+    for i, line in enumerate(c.lines):
+        some, around = _line((left, base - STEP * i), line)
+        texts += some
+        circles += around
     if not c.frames and not c.datum:
-        return texts, []
+        return texts, circles
     top = texts[-1].at[1] - BELOW_LINE if texts else y + (FRAME / 2 if c.frames else 0.0)
-    return texts, block(c.frames, c.datum, (left, top), wide)
+    return texts, [*circles, *block(c.frames, c.datum, (left, top), wide)]
+
+
+def _line_width(line: str) -> float:
+    before, mark, after = line.partition(ENVELOPE)
+    return width(before, LETTERS) + bool(mark) * 2 * (RING + RING_GAP) + width(after, LETTERS)
+
+
+def _line(at: Point, line: str) -> tuple[list[Text], list[Item]]:
+    """The texts of a line, and the ring around the E of an envelope requirement, for which no font has a
+    letter."""
+    before, mark, after = line.partition(ENVELOPE)
+    texts = [Text(at, before, LETTERS)]
+    if not mark:
+        return texts, []
+    x, y = at[0] + width(before, LETTERS) + RING_GAP + RING, at[1] + LETTERS / 2
+    texts.append(Text((x, y - RINGED / 2), "E", RINGED, "middle"))
+    if after.strip():
+        texts.append(Text((x + RING + RING_GAP, at[1]), after.strip(), LETTERS))
+    return texts, [DrawnArc((x, y), RING, line=THIN, role="leader")]

@@ -225,7 +225,7 @@ def pocket_callouts(sketch: Sketch, view: View, part: Part) -> list[Callout]:
 
         def say(d: Dimension, used: list = used) -> str:
             used.append(sketch.must(d))
-            return d.text(sketch.values)
+            return used[-1].text(sketch.values)
 
         pocket = Owner("pocket", k)
         for owner, c in ((pocket, f.contour), *((Owner("island", k, i), c) for i, c in enumerate(f.island))):

@@ -15,6 +15,7 @@ from tactcad.design.materials import ELECTROLYSIS, family
 from tactcad.design.messages import CheckFailure
 from tactcad.design.tree import CommonTables
 from tactcad.parts.language.description import Characteristic, Extrusion, Part, Vector
+from tactcad.parts.language.stock import stock_of
 
 from ..engine.ink import Curve, DrawnSheet, preliminary
 from ..engine.layout_check import layout_faults
@@ -150,11 +151,22 @@ def notes_of(part: Part, files: Sequence[MadeFrom]) -> tuple[str, ...]:
     lines = [note[:1].upper() + note[1:] for note in part.notes]
     if keys:
         lines.append(f"Key characteristics, framed, to be recorded on every piece: {', '.join(keys)}")
-    cut = "Blank and plain through holes, cut from"
+    stock = stock_of(part)
+    cut = "Blank by"
+    if stock and stock.edge:
+        lines.append(
+            f"Blank from {stock.thickness:g} plate, {stock.edge:g} larger on each edge, no holes; at least "
+            f"{stock.face:g} off each face; all edges finished"
+        )
     if part.process == "wire-cut":
-        cut = "Cut from"
-        nominal = "The DXF file holds the nominal contour, limits at their middle"
-        lines.append(f"{nominal}; wire compensation at the machine")
+        cut = "Cut by"
+        if stock and stock.face:
+            lines.append(f"From {stock.thickness:g} plate: both faces ground before it is cut")
+        lines.append(
+            "Wire path: the DXF's contour as it is, which lies in the middle of all limits, offset by "
+            "your wire's "
+            "radius and spark gap"
+        )
         if part.extrusion.openings:
             lines.append("Holes wire-cut before the outline, each from a start hole inside it; slugs removed")
         if harm := ELECTROLYSIS.get(family(part.material.density)):

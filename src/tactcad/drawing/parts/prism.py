@@ -14,7 +14,7 @@ from tactcad.contour import Contour, Line
 from tactcad.design.messages import CheckFailure
 from tactcad.parts.language.description import Part, Pocket, Vector
 
-from ..engine.boxes import Point
+from ..engine.boxes import Point, bounds
 from .broken import breaks_of
 from .callouts import (
     Group,
@@ -90,7 +90,7 @@ def prism_plan(
             return None
         notes = (*notes, "Views are broken; dimensions are those of the whole part")
     front = _front_view(sketch, view_of(part, "front", eye, up), part, called, rows)
-    views = [front]
+    views = [*_with_detail(front, sketch)]
     if below:
         views.append(_sunk_view(sketch, part, front, below, called))
     section = section_of(part, holes, front, below) if cut else None
@@ -147,6 +147,46 @@ def _front_view(
         centres=tuple(centres),
         threads=_threads(view, along_z),
     )
+
+
+SMALL, DETAIL_ROOM = 1.0, (60.0, 50.0)  # mm: what is less has a detail; of paper that the detail may take
+AROUND_SMALL = 0.8  # of their extent that a detail shows around them
+
+
+def _with_detail(front: View, sketch: Sketch) -> list[View]:
+    """The front view, and a detail of what is limited there and hardly to be seen: small distances and radii
+    that state a characteristic, and the radii among them."""
+
+    def limited(d: Dimension) -> bool:
+        return d.characteristic is not None and abs(d.value(sketch.values)) <= SMALL
+
+    linears = [s for s in front.linears if limited(s.dimension)]
+    callouts = [c for c in front.callouts if c.spans and any(map(limited, c.dimensions))]
+    spots = [p for s in linears for p in (s.p, s.q)] + [
+        (at[0] + way * r, at[1] + way * r) for c in callouts for at, r in c.targets for way in (-1, 1)
+    ]
+    if not spots:
+        return [front]
+    (u0, v0, u1, v1) = bounds(spots)
+    away = AROUND_SMALL * max(u1 - u0, v1 - v0, SMALL)
+    window = (u0 - away, v0 - away, u1 + away, v1 + away)
+    detail = View(
+        "detail",
+        front.eye,
+        front.up,
+        front.box,
+        label="X",
+        window=window,
+        room=DETAIL_ROOM,
+        linears=tuple(linears),
+        callouts=tuple(callouts),
+    )
+    rest = replace(
+        front,
+        linears=tuple(s for s in front.linears if s not in linears),
+        callouts=tuple(c for c in front.callouts if c not in callouts),
+    )
+    return [rest, detail]
 
 
 def _spaces(sketch: Sketch, view: View, rows: Sequence[Sequence[Round]], k: int) -> list[Linear]:

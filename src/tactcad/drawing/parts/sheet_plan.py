@@ -62,12 +62,16 @@ class Dimension:
 
     @property
     def tolerance(self) -> str:
+        envelope = ENVELOPE if self.sign == "⌀" else ""
         if self.limits is None:
-            return f" {self.fit}" if self.fit else ""
+            return f" {self.fit}{envelope}" if self.fit else ""
         upper, lower = (round(v, 9) for v in self.limits)
         if upper == -lower:
-            return f" ±{number(upper, True)}"
-        return f" {_signed(upper)}/{_signed(lower)}"
+            return f" ±{number(upper, True)}{envelope}"
+        return f" {_signed(upper)}/{_signed(lower)}{envelope}"
+
+
+ENVELOPE = " Ⓔ"  # ISO 14405-1: a diameter with limits holds over its length, as a pin in it needs
 
 
 def number(value: float, exact: bool = False) -> str:

@@ -20,7 +20,7 @@ from .measures import OUTER, Spot, Variable, rounds
 from .sheet_plan import Callout, Datum, Frame, View, seen
 
 # Where along an edge a frame's leader may end; so near to its ends broken views show it, too.
-SHARES = (0.5, 0.25, 0.75, 0.1, 0.9, 0.008, 0.992)
+SHARES = (0.5, 0.25, 0.75, 0.1, 0.9, 0.05, 0.95)
 ASIDE = 60.0  # degrees from the normal that its leader may lie
 FRAME = 2 * LETTERS  # height of a frame, and least width of its cells
 PAD = 1.0  # beside the text of a cell

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from tactcad.parts.language.description import Part, cut_section
+from tactcad.parts.language.description import Part
+from tactcad.parts.language.stock import cut_section
 from tactcad.scenes.scene import Placement
 
 from ..formats import PartFormat, always, has_limits
@@ -68,7 +69,8 @@ DXF = PartFormat(
     asked=always,
     make=_dxf,
     released="cut files, exact nominal contours, millimetres, one part a file: the wire-cut parts whole, of "
-    "milled and ground plates the blank with its plain through holes. Compensation for wire and spark gap is "
+    "milled and ground plates the blank, larger on every edge and without holes. Compensation for wire "
+    "and spark gap is "
     "yours.",
     ordered=2,  # a shop cuts from it, and makes the rest from the STEP file
 )

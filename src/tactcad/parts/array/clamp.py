@@ -18,6 +18,7 @@ from ..language.fits import deviations, general
 from ..language.limits import FACES, Characteristic, DatumFeature, Geometric, within
 from ..language.metric import (
     METRIC,
+    SUNK,
     TAP_REACH,
     counterbore_diameter,
     engagement,
@@ -25,7 +26,7 @@ from ..language.metric import (
     tapped_through,
 )
 from ..language.part_materials import MAGNETIC_STAINLESS, held_for_grinding
-from ..language.plate import BREAK_EDGES, FRAME, PLACE, plate
+from ..language.plate import ANODISED, BREAK_EDGES, FRAME, PLACE, plate
 from .layout import Layout
 
 # Least plate under a screw's head, and least grip of a dowel in each end plate, in mm: chosen, one
@@ -33,9 +34,6 @@ from .layout import Layout
 LEAST_UNDER_HEAD = 2.5
 LEAST_GRIP = 3.0
 LEAST_UNDER_CARRIER_HEAD = 2.0
-# mm that heads stay below the carrier's face, on which foot and array mount lie: chosen, twice what
-# ISO 2768-m leaves a counterbore 3 to 6 mm deep.
-SUNK = 0.2
 
 
 # mm, plus and minus: spacers are as thick as the pitch leaves beside the measured sheet, so that the stack is
@@ -74,8 +72,8 @@ def clamping(layout: Layout) -> Clamping:
         # its thread
         engaged = max(engagement(d.screw), min(round(2 / 3 * plate, 1), TAP_REACH * METRIC[d.screw].d))
         web = round(length - stack - engaged, 9)
-        if plate > web > plate - METRIC[d.screw].head_height:  # a counterbore sinks the whole head
-            web = round(plate - METRIC[d.screw].head_height, 9)
+        if plate > web > plate - METRIC[d.screw].head_height - SUNK:  # a counterbore sinks the whole head
+            web = round(plate - METRIC[d.screw].head_height - SUNK, 9)
             engaged = round(length - stack - web, 9)
         # at its longest, in the shortest stack, it still ends inside the plate
         free = deviations("js15", length)[1] + STACK
@@ -188,14 +186,14 @@ def end_plate(layout: Layout, head: bool) -> Part:
         Extrusion(outer, depth),
         features,
         colour=PLATE_COLOUR,
-        finish="Ra 1.6, clear anodised after machining; dowel holes masked",
+        finish=f"{ANODISED}; dowel holes masked",
         notes=(
             BREAK_EDGES,
             *(() if head else (_dowels_stand(layout, c),)),
             "both edges and the dowel holes of both end plates machined in one clamping; mark the pair",
         ),
         characteristics=(bore,),
-        geometric=(*_places(layout), *(() if head else (SQUARENESS,))),
+        geometric=(*_places(layout), CLAMP_FACE, *(() if head else (SQUARENESS,))),
         datums=(
             DatumFeature("A", INNER),
             DatumFeature("B", "upper edge"),
@@ -258,6 +256,9 @@ def _places(layout: Layout) -> tuple[Geometric, ...]:
     )
 
 
+# mm; chosen: finely milled or lapped. The pins' squareness refers to this face, and the stack is clamped on
+# it.
+CLAMP_FACE = Geometric("flatness", "flatness", 0.005, (INNER,))
 SQUARENESS = Geometric("dowel holes' squareness", "perpendicularity", SQUARE, ("dowel_hole",), ("A",), True)
 
 

@@ -52,6 +52,8 @@ def element(layout: Layout, place: ElementPlace, gap: float | None = None) -> Pa
     passes = least_passes(design.tolerance.hinge_thickness)
     outer = outline(layout, place.arm, place.hinge, gap)
     number = element_number(design, place)
+    edges = {s.name for s in outer}
+    pad, ledge = (_standing(f, edges) for f in ("pad_face", "ledge"))
     return Part(
         part_no=number,
         name=f"Sensing element, arm {shortest(place.arm)}",
@@ -67,8 +69,11 @@ def element(layout: Layout, place: ElementPlace, gap: float | None = None) -> Pa
             *material_notes(design),
             *unrated,
         ),
-        characteristics=_limits(layout, place, gap, {s.name for s in outer}),
-        geometric=(screw_places("A", "B"),),
+        characteristics=_limits(layout, place, gap, edges),
+        geometric=(
+            screw_places("B", "A"),
+            Geometric("pad's and ledge's lean", "parallelism", LEAN, (pad, ledge), ("A",)),
+        ),
         datums=(DatumFeature("A", "flat_face"), DatumFeature("B", "dowel_hole")),
         spares=spare_elements(sum(element_number(design, p) == number for p in layout.elements)),
         kind="element",
@@ -80,6 +85,7 @@ def screw_places(*datums: str) -> Geometric:
     return Geometric("screw holes", "position", PLACE, ("screw_hole",), datums, True)
 
 
+LEAN = 0.005  # mm, of pad and ledge against the flat face; chosen: one contour, four passes of the wire
 # The load arm is the arm less half the pad: its tolerance is shared so that the two give just that.
 ARM_SHARE, PAD_SHARE = 0.8, 0.4
 PAD_HEIGHT = "pad height over the dowel hole's centre"
@@ -225,14 +231,15 @@ def rear_corners(layout: Layout, face: float) -> list[Corner]:
     ]
 
 
-def mounting_holes(layout: Layout) -> tuple[Contour, ...]:
-    """Screw and dowel holes through elements, blanks and spacers, wire-cut; dowel holes at mid-tolerance."""
+def mounting_holes(layout: Layout, dowel: float | None = None) -> tuple[Contour, ...]:
+    """Screw and dowel holes through elements, blanks and spacers, wire-cut; dowel holes (mm) at mid-tolerance
+    of the slide fit where nothing else is given."""
     from ..language.metric import METRIC
 
     design = layout.design
     z = design.holes.height
-    # Slide-fit dowel hole as cut and modelled, mm: the middle of its limits.
-    dowel = round(design.holes.dowel_hole + design.holes.dowel_hole_upper / 2, 6)
+    if dowel is None:
+        dowel = round(design.holes.dowel_hole + design.holes.dowel_hole_upper / 2, 6)
     screws = [circle((x, z), METRIC[design.clamp.screw].clearance, "screw_hole") for x in layout.screw_x]
     dowels = [circle((x, z), dowel, "dowel_hole") for x in layout.dowel_x]
     return tuple(sorted(screws + dowels, key=lambda c: c.box[0]))
@@ -433,6 +440,11 @@ def least_passes(tolerance: float) -> str:
     return next((words for words, key in _ENOUGH if tolerance >= WIRE_TOLERANCE[key]), "four passes")
 
 
+MEASURED = "measured:"  # begins the origin of a value that follows from an inspection sheet
+# Spacer's dowel hole over the dowel, mm; chosen: nothing stands by it, and one pass of the wire holds it.
+LOOSE = 0.1
+
+
 def thickness_by_sheet(design: Design) -> str:
     """What every spacer measures, in words."""
     return f"{design.array.pitch:g} less what the elements' sheet measures, +-{SPACER_TOLERANCE:g}"
@@ -448,26 +460,39 @@ def spacer(layout: Layout) -> Part:
     d = layout.design
     z0, z1 = layout.spacer_z
     material = sheet_material(d)
+    known = d.origin.get("array.spacer", "")
+    measured = known if known.startswith(MEASURED) else ""
+    if measured:
+        by_sheet: tuple[str, ...] = (f"thickness {measured}",)
+    else:
+        by_sheet = (
+            "ordered once the elements' sheet is measured",
+            f"thickness as drawn where the elements' sheet measures {d.sheet.thickness:g}; else "
+            f"{thickness_by_sheet(d)}",
+        )
     return Part(
         part_no=f"{d.name}-spacer",
         name="Spacer",
         process="wire-cut",
         material=material,
         body=Extrusion(
-            rectangle(layout.clamp_edge, z0, layout.rear_end, z1), layout.spacer, mounting_holes(layout)
+            rectangle(layout.clamp_edge, z0, layout.rear_end, z1),
+            layout.spacer,
+            mounting_holes(layout, float(d.clamp.dowel) + LOOSE),
         ),
         colour="#9aa4ae",
         notes=(
+            *by_sheet,
+            "all from one sheet",
             f"burr-free; picked from rolled sheet that measures so, or ground {held_for_grinding(material)}",
-            f"thickness as drawn where the elements' sheet measures {d.sheet.thickness:g}; else "
-            f"{thickness_by_sheet(d)}; the whole stack {layout.stack:g} +-{STACK:g}",
+            "wire-cut as packs: one pass holds outline and holes",
+            f"the whole stack {layout.stack:g} +-{STACK:g}",
         ),
         characteristics=(
             replace(
                 within("thickness", layout.spacer, SPACER_TOLERANCE, between=FACES),
-                remark=thickness_by_sheet(d),
+                remark="" if measured else thickness_by_sheet(d),
             ),
-            dowel_hole_limits(d),
         ),
         geometric=(screw_places("A"),),
         datums=(DatumFeature("A", "dowel_hole"),),

@@ -24,7 +24,8 @@ _ROWS = {row["size"]: row for row in rows(__file__, "dowels")}
 
 def dowel_lengths(size: str) -> tuple[float, ...]:
     """Preferred lengths, mm, of the pin of that diameter."""
-    return tuple(float(n) for n in _SERIES if 2 * float(size) <= n <= number(_ROWS[size]["longest"]))
+    shortest, longest = (number(_ROWS[size][end]) for end in ("shortest", "longest"))
+    return tuple(float(n) for n in _SERIES if shortest <= n <= longest)
 
 
 def dowel_diameter(size: str) -> float:
@@ -44,7 +45,7 @@ def dowel(size: str, length: float) -> Part:
     designation = (
         f"ISO 8734 {size} m6 x {length:g} - A - St"
         if standard
-        else f"ground rod {size} m6, cut to {length:g} mm"
+        else f"ground rod {size} m6, cut to {length:g} mm, ends square, edges broken 0.1"
     )
     return Part(
         part_no=f"ISO8734-{size}x{length:g}-pin" if standard else f"GROUND-{size}m6x{length:g}-rod",
@@ -112,6 +113,7 @@ SECTION = 1.78
 INSIDE = {row["code"]: number(row["inside"]) for row in rows(__file__, "orings")}
 # Groove of a static face seal for 1.78: depth 1.27 to 1.40, width 2.41 (makers' tables, as in bd_warehouse
 # 0.4.0).
+GROOVE_DEPTHS = (1.27, 1.40)
 GROOVE_DEPTH = 1.32
 GROOVE_WIDTH = 2.4
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import Any, Literal
 
@@ -60,6 +60,19 @@ class Finding:
         record = {**vars(self), "part": self.about}
         del record["part_no"]
         return record
+
+
+def grouped(findings: Iterable[Finding]) -> list[str]:
+    """What is said of each, those that say the same of several parts together."""
+    alike: dict[tuple[str, str], list[Finding]] = {}
+    for finding in findings:
+        alike.setdefault((finding.check, finding.message), []).append(finding)
+    lines = []
+    for first, *others in alike.values():
+        about = list(dict.fromkeys(f.about for f in others if f.about != first.about))
+        more = f" (and of {', '.join(about[:3])}{f' and {len(about) - 3} more' if len(about) > 3 else ''})"
+        lines.append(first.said + (more if about else ""))
+    return lines
 
 
 def at_least(

@@ -70,6 +70,11 @@ def counterbore_diameter(thread: str) -> float:
 DEEPEST_THREAD = 2.5
 
 
+# mm that a head stays below the face that it is sunk under: chosen, twice what general tolerances leave a
+# counterbore 3 to 6 mm deep.
+SUNK = 0.2
+
+
 def corners(x: float, y: float) -> tuple[tuple[float, float], ...]:
     """The corners of a rectangle 2 x by 2 y around the middle, as screws stand in a plate."""
     return tuple((sx * x, sy * y) for sx in (-1, 1) for sy in (-1, 1))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from tactcad.design.materials import ALLOYS
 from tactcad.design.tree import CommonTables
 
@@ -13,15 +15,27 @@ BRASS = Material("brass, nickel plated", 8500)
 CARBON_STEEL = Material("steel", 7850)
 PLAIN_STEEL = Material("S235JR steel", 7850, standard="EN 10025-2", magnetic="yes")
 RUBBER = Material("rubber", 1200)
-STAINLESS = Material("X5CrNi18-10 (1.4301)", 7900, standard="EN 10088-3", magnetic="weakly")
+STAINLESS = Material("X5CrNi18-10 (1.4301)", 7900, standard="EN 10088-3", magnetic="weakly")  # bar
+STAINLESS_PLATE = replace(STAINLESS, standard="EN 10088-2")
 # Martensitic: a magnetic chuck holds it for grinding. Density after EN 10088-1.
-MAGNETIC_STAINLESS = Material("X46Cr13 (1.4034)", 7700, standard="EN 10088-3", magnetic="yes")
+MAGNETIC_STAINLESS = Material("X46Cr13 (1.4034)", 7700, "annealed (+A)", "EN 10088-2", magnetic="yes")
+# Plate is stretched after quenching, so that it stays flat when one side is milled off (EN 515).
+STRETCHED = {"-T6": "-T651", "-T3": "-T351"}
 
 
 def plate_material(design: CommonTables) -> Material:
     """End plates, carrier and the rigs' plates: the design's `plate_alloy`."""
+    alloy = bar_material(design)
+    stem, temper = alloy.name[:-3], alloy.name[-3:]
+    standard = ALLOYS[design.plate_alloy].standard
+    return replace(alloy, name=stem + STRETCHED.get(temper, temper), standard=standard)
+
+
+def bar_material(design: CommonTables) -> Material:
+    """What is turned of the plates' alloy: extruded bar."""
     alloy = ALLOYS[design.plate_alloy]
-    return Material(alloy.name, alloy.density, standard=alloy.standard, magnetic=alloy.magnetic or "")
+    standard = alloy.standard.replace("EN 485-2", "EN 755-2")
+    return Material(alloy.name, alloy.density, standard=standard, magnetic=alloy.magnetic or "")
 
 
 def held_for_grinding(material: Material) -> str:

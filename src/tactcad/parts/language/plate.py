@@ -22,7 +22,7 @@ FRAME = ("A", "B", "C")  # the datums that a plate's holes stand from
 FRAME_DATUMS = (DatumFeature("A", FACES[0]), DatumFeature("B", "left edge"), DatumFeature("C", "lower edge"))
 RIG_COLOUR = "#8d99a6"
 BREAK_EDGES = "break edges 0.2"
-ANODISED = "Ra 1.6, clear anodised after machining"
+ANODISED = "Ra 1.6, clear anodised 10 um after machining"
 
 
 def plate(

@@ -35,13 +35,14 @@ from ..bought.standard_parts import LEAST_PLAY, dowel_diameter, dowel_lengths, d
 from ..language.description import Extrusion, Hole, Material, Part, Purchase
 from ..language.fits import general
 from ..language.limits import FACES, DatumFeature, Geometric, within
-from ..language.part_materials import RUBBER, STAINLESS, plate_material
+from ..language.part_materials import RUBBER, STAINLESS_PLATE, plate_material
 from ..language.plate import BREAK_EDGES, PLACE, RIG_COLOUR, THICKNESS
 from .frame import STANDARD_GRAVITY
 
 # The tongue's width and the height of its tip over the rest, plus and minus mm; chosen: three passes of the
 # wire hold 0.01, four 0.005.
 TONGUE, TIP = 0.005, 0.02
+TONGUE_PLACE = 0.05  # mm, from the pins' datum, plus and minus; chosen: pins only keep elements upright
 # Element over the nest's floor in front, mm; chosen: crumbs of adhesive do not lift it.
 FLOOR_GAP = 0.5
 # Rear body over its rest where the leaf lies on the tongue, beside what general tolerances take; chosen: so
@@ -269,7 +270,7 @@ class BondingLayout:
     @cached_property
     def bar_material(self) -> Material:
         """Steel, or the plates' alloy where a bar of steel would be too thin to run on its pins."""
-        return STAINLESS if self._height_of(STAINLESS) >= GUIDED else plate_material(self.design)
+        return STAINLESS_PLATE if self._height_of(STAINLESS_PLATE) >= GUIDED else plate_material(self.design)
 
     @property
     def bar_height(self) -> float:
@@ -350,6 +351,9 @@ def bonding_nest(rig: BondingLayout) -> Part:
         within(TONGUE_WIDTH, width, TONGUE, True, ("tongue_front", "tongue_back")),
         within(TIP_OVER_REST, round(rig.rest - rig.floor, 9), TIP, between=("rest", tip)),
         pressed(rig.pin_d),
+        within(
+            "tongue_back", round(rig.nest_x[1] - width / 2, 9), TONGUE_PLACE, between=("back", "tongue_back")
+        ),
     ]
     if tip == "tongue_tip":  # a full round's width defines it
         r = rig.tongue_radius
@@ -359,7 +363,7 @@ def bonding_nest(rig: BondingLayout) -> Part:
         part_no=f"{rig.design.name}-bonding-nest{kind_suffix(rig)}",
         name="Bonding fixture, nest",
         process="wire-cut",
-        material=STAINLESS,
+        material=STAINLESS_PLATE,
         body=Extrusion(outer, rig.width),
         features=tuple(
             Hole(

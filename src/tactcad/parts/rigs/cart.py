@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from math import cos, hypot, pi, sin, sqrt
+from math import ceil, cos, floor, hypot, pi, sin, sqrt
 
 from tactcad.contour import Contour, Corner, chain, circle, rectangle, rounded_polygon
 from tactcad.design.fields import present
@@ -19,8 +19,8 @@ from ..bought import standard_parts
 from ..bought.screws import CAP_SCREW_LENGTHS
 from ..bought.standard_parts import BEARINGS, Bearing
 from ..language.description import Extrusion, Feature, Hole, Part, Pocket, Purchase, Revolution
-from ..language.limits import FACES, Geometric, within
-from ..language.metric import METRIC, TAP_REACH, corners, engagement, sunk, tapped
+from ..language.limits import FACES, Characteristic, DatumFeature, Geometric, within
+from ..language.metric import METRIC, SUNK, TAP_REACH, corners, engagement, sunk, tapped
 from ..language.part_materials import BRASS, RUBBER, STAINLESS
 from ..language.plate import plate
 
@@ -101,7 +101,8 @@ class CartLayout:
 
     @property
     def holder_side(self) -> float:
-        return round(self.sample.side + 2 * self.holder.margin, 9)
+        """Whole millimetres: what the shop cuts."""
+        return float(ceil(self.sample.side + 2 * self.holder.margin - 1e-9))
 
     @property
     def holder_body(self) -> float:
@@ -117,12 +118,12 @@ class CartLayout:
     def holder_fixing(self) -> tuple[float, float] | None:
         """M3 screw through lid and body into the cart: length, and the lid under its sunk head; None if none
         fits."""
-        most = self.holder.lid_thickness - METRIC["M3"].head_height
+        most = round(self.holder.lid_thickness - METRIC["M3"].head_height - SUNK, 9)
         for length in CAP_SCREW_LENGTHS["M3"]:
-            engaged = round(length - self.holder_body - most, 9)
+            under = round(min(most, length - self.holder_body - engagement("M3")), 9)
             deepest = min(self.cart.thickness, TAP_REACH * METRIC["M3"].d)
-            if engagement("M3") <= engaged <= deepest and most >= 2.0:
-                return length, round(most, 9)
+            if under >= 2.0 and length - self.holder_body - under <= deepest + 1e-9:
+                return length, under
         return None
 
     @property
@@ -150,12 +151,16 @@ class CartLayout:
     def suction_holes(self) -> tuple[tuple[float, float], ...]:
         """Middles of the holes: hexagonal rings that fill the vacuum's circle, 1 + 3 n (n + 1) of them."""
         rings = self.holder.rings
-        pitch = (self.holder.vacuum_diameter - 2 * self.holder.hole_diameter) / 2 / rings
+        # to steps of a tenth along both, so that the sheet's sizes are the holes'
+        pitch = (
+            floor((self.holder.vacuum_diameter - 2 * self.holder.hole_diameter) / 2 / rings * 5 + 1e-6) / 5
+        )
+        row = round(pitch * sqrt(3) / 2, 1)
         spots = []
         for i in range(-rings, rings + 1):
             for j in range(-rings, rings + 1):
                 if abs(i + j) <= rings:
-                    spots.append((round(pitch * (i + j / 2), 6), round(pitch * j * sqrt(3) / 2, 6)))
+                    spots.append((round(pitch * (i + j / 2), 6), round(row * j, 6)))
         return tuple(spots)
 
     @property
@@ -246,8 +251,10 @@ def axle_shim(rig: CartLayout) -> Part:
         material=STAINLESS,
         body=Extrusion(circle((0, 0), outside), t, (circle((0, 0), bore),)),
         colour="#5c6066",
-        finish="faces parallel within 0.01, burr-free",
+        finish="burr-free",
         characteristics=(within("thickness", t, SHIM_TOLERANCE, between=FACES),),
+        geometric=(Geometric("parallelism", "parallelism", 0.01, (FACES[1],), ("A",)),),
+        datums=(DatumFeature("A", FACES[0]),),
         spares=2,
     )
 
@@ -267,7 +274,8 @@ def holder_body(rig: CartLayout) -> Part:
     t, s, h = rig.holder_body, rig.holder_side / 2, rig.holder_screw
     inner, outer = standard_parts.groove(present(rig.o_ring))
     flat = rig.holder.vacuum_diameter / 2
-    m5 = METRIC["M5"]
+    m5, depth = METRIC["M5"], standard_parts.GROOVE_DEPTH
+    least, most = standard_parts.GROOVE_DEPTHS
     features: list[Feature] = [
         Pocket("plenum", (0, 0, t), (0, 0, -1), (1, 0, 0), plenum(rig), rig.holder.plenum_depth),
         Pocket(
@@ -301,7 +309,11 @@ def holder_body(rig: CartLayout) -> Part:
         features,
         finish="Ra 1.6; groove floor and face around it Ra 0.8, not anodised",
         notes=("break edges 0.2, the groove's 0.1",),
+        characteristics=(Characteristic(SEAL_DEPTH, depth, most, least, between=(FACES[1], "seal")),),
     )
+
+
+SEAL_DEPTH = "seal depth"
 
 
 def plenum(rig: CartLayout) -> Contour:

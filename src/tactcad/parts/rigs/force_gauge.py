@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import ceil, hypot
+from math import ceil, floor, hypot
 
 from tactcad.contour import Corner, circle, rectangle, rounded_polygon
 from tactcad.design.fields import present
 
-from ..bought.standard_parts import dowel_diameter, dowel_limits
+from ..array.layout import Layout
+from ..bought.standard_parts import dowel_diameter, dowel_lengths, dowel_limits
 from ..language.description import Extrusion, Feature, Hole, Part, Pocket, Purchase
 from ..language.limits import within
 from ..language.metric import METRIC, corners, sunk, tapped
-from ..language.part_materials import ALUMINIUM, STAINLESS
+from ..language.part_materials import ALUMINIUM, STAINLESS, STAINLESS_PLATE
 from ..language.plate import plate
 from .frame import GAUGE_SHAFT, GAUGE_SIZE, PLATE, PLATE_SCREW, STAGE_HOLE, TIP, TIP_LAND
 from .stand import StandLayout
@@ -176,16 +177,16 @@ def roller_tip(rig: StandLayout) -> Part:
     r, seat = seat_radius(present(rig.design.calibration).roller), "seat"
     top = dowel_diameter(present(rig.design.calibration).roller)
     low = top - r  # of the nose: the seat is half round
-    nose, half = r + 1.0, 6.0
+    nose, half = ceil(10 * (r + 1.0)) / 10, 6.0
     corners = [
-        Corner((-nose, low)),
+        Corner((-nose, low), edge=NOSE),
         Corner((-r, low)),
         Corner((-r, top), r, fillet=seat),
         Corner((r, top), r, fillet=seat),
         Corner((r, low)),
         Corner((nose, low)),
         Corner((half, low + half - nose)),
-        Corner((half, TIP)),
+        Corner((half, TIP), edge="shaft_face"),
         Corner((-half, TIP)),
         Corner((-half, low + half - nose)),
     ]
@@ -193,16 +194,39 @@ def roller_tip(rig: StandLayout) -> Part:
         part_no=f"{rig.design.name}-tip-roller",
         name="Tip, roller holder",
         process="wire-cut",
-        material=STAINLESS,
+        material=STAINLESS_PLATE,
         body=Extrusion(rounded_polygon(corners), 10.0),
         features=(shaft_thread((0.0, TIP, 5.0), (0, -1, 0)),),
         colour="#565d66",
         notes=("roller bonded in its seat; it may not turn while an element is loaded",),
-        characteristics=(within(SEAT_RADIUS, r, SEAT, between=(seat,)),),
+        characteristics=(
+            within(SEAT_RADIUS, r, SEAT, between=(seat,)),
+            within(NOSE, round(TIP - low, 6), NOSE_HEIGHT, between=(NOSE, "shaft_face")),
+        ),
     )
 
 
-SEAT_RADIUS = "seat radius"
+# mm of roller beyond a pad in all: chamfers of a pin (0.35 each), and its place; of a rod with broken edges;
+# between roller and neighbouring pads.
+OVER_PAD, LEAST_OVER_PAD, BESIDE_ROLLER = 1.0, 0.5, 0.1
+
+
+def longest_roller(layout: Layout) -> float:
+    """That clears the pads beside the one that it stands on, mm."""
+    d = layout.design
+    return round(2 * (d.array.pitch - d.sheet.thickness / 2 - BESIDE_ROLLER), 9)
+
+
+def roller_length(layout: Layout) -> float:
+    """Of the roller, mm: the shortest standard pin that lies straight on the whole pad, else ground rod."""
+    d, most = layout.design, longest_roller(layout)
+    least = d.sheet.thickness + OVER_PAD
+    fitting = [n for n in dowel_lengths(present(d.calibration).roller) if least <= n <= most]
+    return fitting[0] if fitting else floor(10 * min(least, most) + 1e-6) / 10
+
+
+SEAT_RADIUS, NOSE = "seat radius", "nose"
+NOSE_HEIGHT = 0.05  # mm, plus and minus; chosen: the roller stands out of it
 SEAT = 0.005  # mm, plus and minus; chosen: two to three passes of the wire
 # Radial, mm: what a pin's feel tells from none; more would let the roller lie beside the seat's middle.
 LEAST_AROUND_ROLLER = 0.001

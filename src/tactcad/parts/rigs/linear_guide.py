@@ -19,7 +19,7 @@ from ..language.fits import deviations
 from ..language.limits import FACES, Geometric
 from ..language.metric import corners, sunk, tapped_blind
 from ..language.part_materials import CARBON_STEEL
-from ..language.plate import plate
+from ..language.plate import FRAME, PLACE, plate
 from .cart import CartLayout, cart_layout
 from .frame import (
     BAR,
@@ -209,6 +209,7 @@ def carriage() -> Part:
     )
 
 
+RAIL_FLAT = 0.01  # mm, of the face under the rail; chosen: makers of width 9 ask 0.01 to 0.02 of 100
 RISER_SCREW, RISER_UNDER_HEAD = 16.0, 9.0  # M4 into the post: 7 mm engaged, head deep in the riser
 
 # Pin below the rail's end that the carriage comes down on: it stands 8 mm out, where the carriage is solid
@@ -304,5 +305,9 @@ def riser(rig: GuideLayout) -> Part:
         Extrusion(rectangle(-POST[0] / 2, -low, POST[0] / 2, half), depth),
         features,
         finish="rail face Ra 0.8",
-        geometric=(Geometric("parallelism", "parallelism", 0.01, (FACES[1],), ("A",)),),
+        geometric=(
+            Geometric("flatness", "flatness", RAIL_FLAT, (FACES[0],)),
+            *(Geometric(f"{n} hole", "position", PLACE, (n,), FRAME, True) for n in ("end_stop", "latch")),
+            Geometric("parallelism", "parallelism", 0.01, (FACES[1],), ("A",)),
+        ),
     )

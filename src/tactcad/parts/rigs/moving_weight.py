@@ -9,9 +9,10 @@ from math import ceil
 from tactcad.contour import Contour, circle, rectangle
 
 from ..language.description import Extrusion, Feature, Hole, Part, Purchase
+from ..language.limits import FACES, DatumFeature, Geometric
 from ..language.metric import METRIC, corners, sunk, tapped_blind, tapped_depth
-from ..language.part_materials import CARBON_STEEL, PLAIN_STEEL, plate_material
-from ..language.plate import plate
+from ..language.part_materials import CARBON_STEEL, PLAIN_STEEL, bar_material
+from ..language.plate import FRAME, FRAME_DATUMS, PLACE, plate
 from .frame import BAR_FRONT, BAR_WIDTH, BEHIND_BAR, FOOT, PIN, PLATFORM, carrier_pattern, under_carrier_screw
 from .linear_guide import LATCH, LATCH_AIR, STOP_PIN, GuideLayout, latch_on_bar
 
@@ -46,7 +47,13 @@ def bar(rig: GuideLayout) -> Part:
         Extrusion(rectangle(-BAR_WIDTH / 2, 0, BAR_WIDTH / 2, top), t),
         features,
         colour="#7c8794",
-        finish="Ra 1.6, back face and ends square within 0.02",
+        finish="Ra 1.6",
+        geometric=(
+            Geometric("ends' squareness", "perpendicularity", 0.02, ("lower edge", "upper edge"), ("A",)),
+            Geometric("flatness", "flatness", 0.02, (FACES[1],)),
+            Geometric("latch hole", "position", PLACE, ("latch",), FRAME, True),
+        ),
+        datums=(DatumFeature("A", FACES[1]), *FRAME_DATUMS[1:]),
     )
 
 
@@ -136,11 +143,12 @@ def pin(rig: GuideLayout, under: float = 0.0) -> Part:
         part_no=f"{rig.design.name}-weight-pin",
         name="Weight pin",
         process="turned",
-        material=plate_material(rig.design),
+        material=bar_material(rig.design),
         body=Extrusion(circle((0, 0), PIN), height),
         features=(tapped_blind("foot", "M4", (0, 0, 0), (0, 0, 1)),),
         colour="#9aa4ae",
-        finish="Ra 1.6, top edge chamfered 0.5 by hand",
+        finish="Ra 1.6",
+        notes=("top edge chamfered 0.5 by hand",),
     )
 
 

@@ -16,7 +16,7 @@ from ..array.layout import Layout
 from ..bought.standard_parts import STAGES, Stage
 from ..language.description import Extrusion, Feature, Part, Purchase, Revolution
 from ..language.limits import FACES, Geometric
-from ..language.metric import METRIC, corners, counterbore_diameter, sunk, tapped, tapped_blind
+from ..language.metric import METRIC, SUNK, corners, counterbore_diameter, sunk, tapped, tapped_blind
 from ..language.part_materials import ALUMINIUM, CARBON_STEEL
 from ..language.plate import BREAK_EDGES, plate
 from .cart import LOOSE_WHEEL, CartLayout, cart_layout
@@ -171,7 +171,7 @@ def most_elements(layout: Layout) -> int:
 
 def base_plate(rig: StandLayout) -> Part:
     """Base plate under the post, one for all set-ups: with the threads of the horizontal stages where the
-    design has a calibration. The cart's wheels roll beside them or keep most of their width on the plate.
+    design has a calibration. The cart's wheels roll beside them.
 
     +---------------------------+
     |          O O              |   the post's four screws, from below
@@ -183,9 +183,8 @@ def base_plate(rig: StandLayout) -> Part:
     """
     t, x = BASE[1], rig.base_length / 2
     middle = POST_Y + POST[1] / 2
-    m5 = METRIC["M5"]
     features: list[Feature] = [
-        sunk("post", "M5", (px, middle + py, 0.0), (0, 0, 1), t, t - m5.head_height) for px, py in POST_SCREWS
+        sunk("post", "M5", (px, middle + py, 0.0), (0, 0, 1), t, BASE_UNDER_HEAD) for px, py in POST_SCREWS
     ]
     if rig.design.calibration is not None:
         features += [
@@ -205,9 +204,11 @@ def base_plate(rig: StandLayout) -> Part:
     )
 
 
+UPRIGHT = 0.03  # mm, post's front over its height against its foot; chosen: 0.02 of 100
 POST_SCREWS = corners(20.0, 5.0)  # from the post's middle
 BASE_SCREW = 16.0  # M5 through the base plate into the post, head sunk
-BASE_THREAD = BASE_SCREW - (BASE[1] - METRIC["M5"].head_height) + 1.0  # its end free at any limits
+BASE_UNDER_HEAD = BASE[1] - METRIC["M5"].head_height - SUNK
+BASE_THREAD = BASE_SCREW - BASE_UNDER_HEAD + 1.0  # its end free at any limits
 
 
 def post(rig: StandLayout) -> Part:
@@ -224,7 +225,7 @@ def post(rig: StandLayout) -> Part:
     features: list[Feature] = [
         tapped("row", "M4", (sx * STAGE_HOLE, z, 0.0), (0, 0, 1), t) for z in rig.post_rows for sx in (-1, 1)
     ]
-    # the base plate's screws reach 9 mm in, more than the usual blind thread has
+    # the base plate's screws reach 9.2 mm in, more than the usual blind thread has
     features += [
         tapped_blind("base", "M5", (px, 0.0, t / 2 + py), (0, 1, 0), BASE_THREAD) for px, py in POST_SCREWS
     ]
@@ -235,7 +236,8 @@ def post(rig: StandLayout) -> Part:
         Extrusion(rectangle(-w / 2, 0, w / 2, rig.post_height), t),
         features,
         colour="#6f7a86",
-        finish="Ra 1.6, front face square to the foot within 0.02/100",
+        finish="Ra 1.6",
+        geometric=(Geometric("front face's squareness", "perpendicularity", UPRIGHT, (FACES[0],), ("C",)),),
         notes=("break edges 0.5",),
     )
 

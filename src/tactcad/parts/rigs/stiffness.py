@@ -18,7 +18,6 @@ from ..array.seating import FLAT, carrier_beam
 from ..array.stiffness_table import TENTH, Deflection, pads_plane
 from ..array.stop_give import STEEL_MODULUS, STEEL_POISSON
 from ..bought.standard_parts import dowel_diameter
-from ..language.part_materials import plate_material
 from .bonding_fixture import bonding_rigs, kind_suffix
 from .cart import CartLayout
 from .force_gauge import GAUGE_SCREW_X, GAUGE_THREADS
@@ -207,7 +206,7 @@ def _lid(cart: CartLayout) -> tuple[float, float]:
     Its suction holes leave of every line through them, and so of the plate's stiffness, at least (pitch -
     d)/pitch.
     """
-    h, alloy = cart.holder, ALLOYS[plate_material(cart.design).name]
+    h, alloy = cart.holder, ALLOYS[cart.design.clamp.plate_alloy]
     pitch = (h.vacuum_diameter - 2 * h.hole_diameter) / 2 / h.rings
     E = alloy.youngs_modulus * (1 - h.hole_diameter / pitch)
     return round_plate(cart.plenum_reach, h.lid_thickness, E, alloy.poisson)

@@ -9,9 +9,10 @@ from tactcad.design.fields import present
 
 from ..array.element import deflection_at_pad_edge
 from ..array.layout import HOLE_WEB, Layout
-from ..bought.standard_parts import STAGES, dowel_diameter, dowel_lengths
+from ..bought.standard_parts import STAGES, dowel_diameter
 from ..language.finding import SAME, Finding
 from ..language.metric import METRIC, counterbore_diameter
+from ..rigs.force_gauge import LEAST_OVER_PAD, longest_roller
 from ..rigs.frame import FOOT, LEAST_UNDER_HEAD, STAGE, STAGE_HOLE, carrier_screw_length, under_carrier_screw
 from ..rigs.stand import (
     AIR,
@@ -163,14 +164,13 @@ def carrier_threads_clear(layout: Layout, x: float, y: float, what: str) -> Iter
 @fits
 def roller_clears_neighbours(layout: Layout) -> Iterator[Finding]:
     d, size = layout.design, present(layout.design.calibration).roller
-    length = next((n for n in dowel_lengths(size) if n >= d.sheet.thickness), None)
-    most = 2 * (d.array.pitch - d.sheet.thickness / 2 - 0.1)
-    if length is None or length > most + SAME:
+    least, most = d.sheet.thickness + LEAST_OVER_PAD, longest_roller(layout)
+    if most < least - SAME:
         yield wrong(
-            "calibration.roller",
-            f"no standard pin covers a pad and clears its neighbours: shortest {length} mm",
-            size,
-            f"a pin from {d.sheet.thickness:g} to {most:g} mm long",
+            "array.pitch",
+            f"no roller covers a pad and clears its neighbours: {least:g} mm long at least, {most:g} at most",
+            d.array.pitch,
+            f"at least {d.array.pitch + (least - most) / 2:g} mm",
         )
     out = dowel_diameter(size) / 2
     yield from at_most(

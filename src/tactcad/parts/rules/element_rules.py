@@ -37,12 +37,14 @@ def override_names_element(layout: Layout) -> Iterator[Finding]:
 @rule(after="override_names_element")
 def pitch_is_sheet_and_spacer(layout: Layout) -> Iterator[Finding]:
     d = layout.design
-    if layout.spacer < 0.05 - SAME:
+    if d.array.pitch - d.sheet.thickness < 0.05 - SAME or layout.spacer < 0.05 - SAME:
+        least = d.sheet.thickness + max(layout.spacer, 0.05)
+        and_spacer = "array.spacer" if layout.spacer >= 0.05 else "0.05"
         yield wrong(
             "array.pitch",
             "leaves no room for a spacer beside the sheet",
             d.array.pitch,
-            f"at least sheet.thickness + 0.05 = {d.sheet.thickness + 0.05:g} mm",
+            f"at least sheet.thickness + {and_spacer} = {least:g} mm",
         )
     elif abs(d.sheet.thickness + layout.spacer - d.array.pitch) > SAME:
         yield wrong(

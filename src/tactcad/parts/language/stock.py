@@ -1,0 +1,91 @@
+"""What a part is cut from: flat stock as it is sold, what the blank has over the finished part on each face
+and edge, and the section that its cut file holds. Lengths in mm.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from tactcad.contour import rectangle
+from tactcad.design.materials import family
+
+from .description import Extrusion, Part, Pocket, section
+from .fits import general
+from .limits import FACES, Characteristic
+from .tables import number, rows
+
+# Over the finished edge, mm, by the thickness that is cut, up to `to`: after ISO 9013:2017, machining
+# allowances of thermal cuts, not read again here; a saw takes less.
+EDGE = ((20.0, 2.0), (50.0, 3.0))
+# Over each finished face, mm; chosen: milled off, the skin and bow of a rolled plate of 200 mm; ground off
+# (and so before it is wire-cut), the skin alone.
+FACE = {"ground": 0.2, "milled": 0.5, "wire-cut": 0.2}
+_SOLD = rows(__file__, "stock")
+
+
+@dataclass(frozen=True)
+class FlatStock:
+    """Flat stock of a part.
+
+    thickness, lower, upper  as ordered, and the limits of what is delivered
+    standard                 by which these hold; "" where no table here has them
+    face, edge               over the finished part, at least, on each face and on each edge; 0: not finished
+    """
+
+    thickness: float
+    lower: float
+    upper: float
+    standard: str
+    face: float
+    edge: float
+
+
+def own_thickness(part: Part) -> Characteristic | None:
+    """The limits that a part states between its two faces."""
+    return next((c for c in part.characteristics if {*c.between} == {*FACES}), None)
+
+
+def stock_of(part: Part) -> FlatStock | None:
+    """The thinnest stock sold that leaves enough on both faces. Wire-cut sheet of a thickness that is
+    sold is left as rolled, picked where the part's limits are closer than the standard's. None for what is
+    no extrusion, or is turned, and where nothing sold is thick enough."""
+    if not isinstance(part.body, Extrusion) or part.process not in FACE:
+        return None
+    t, own, metal = part.body.thickness, own_thickness(part), family(part.material.density)
+    sold = [
+        (number(r["thickness"]), float(r["tolerance"]), r["standard"]) for r in _SOLD if r["metal"] == metal
+    ]
+    standard = next((name for size, _, name in sold if size == t), None if sold else "")
+    if part.process == "wire-cut" and own and standard is not None:
+        return FlatStock(t, own.lower, own.upper, standard, 0.0, 0.0)
+    face, high = FACE[part.process], own.upper if own else t + general(t)
+    for size, off, standard in sold:
+        if size - off >= high + 2 * face - 1e-9:
+            edge = 0.0 if part.process == "wire-cut" else next(e for to, e in EDGE if size <= to)
+            return FlatStock(size, size - off, size + off, standard, face, edge)
+    return None
+
+
+def cut_section(part: Part) -> Extrusion | None:
+    """The section that a part's cut file describes, extruded; None where the part has no cut file.
+
+    Wire-cut and etched parts are cut with all their holes. What is milled or ground from plate has a cut file of its
+    blank: a rectangle that leaves material on every edge, as thick as its stock, without any hole. What has a
+    pocket, or is thicker than it is wide, is milled from a block and has no cut file.
+    """
+    if part.by_contour:
+        outer, openings = section(part)
+        return Extrusion(outer, part.extrusion.thickness, openings)
+    stock = stock_of(part) if _is_plate(part) else None
+    if stock is None:
+        return None
+    x0, y0, x1, y1 = part.extrusion.outer.box
+    e = stock.edge
+    return Extrusion(rectangle(x0 - e, y0 - e, x1 + e, y1 + e), stock.thickness)
+
+
+def _is_plate(part: Part) -> bool:
+    if not isinstance(part.body, Extrusion) or any(isinstance(f, Pocket) for f in part.features):
+        return False
+    x0, y0, x1, y1 = part.body.outer.box
+    return part.body.thickness < min(x1 - x0, y1 - y0)
