@@ -37,11 +37,9 @@ def _default(f: dataclasses.Field) -> str:
 
 def _one(table: str) -> tuple[type, bool]:
     """Class of a table of any family, and whether it may be left out. Raises InputError."""
-    known = {
-        n: (kind, n in optional_tables(f.spec))
-        for f in all_families().values()
-        for n, kind in f.tables.items()
-    }
+    known: dict[str, tuple[type, bool]] = {}
+    for f in all_families().values():  # of tables of one name the first family's
+        known |= {n: (kind, n in optional_tables(f.spec)) for n, kind in f.tables.items() if n not in known}
     known["element.override"] = (Hinge, True)
     if table not in known:
         raise InputError("TABLE", "unknown", value=table, legal=one_of(table, (*known, "target", "study")))

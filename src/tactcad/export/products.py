@@ -311,8 +311,9 @@ def part_sheets(plan: Plan) -> Iterator[Batch]:
     for part in plan.parts:
         if part.process in NOT_MADE:
             continue
-        # wire-cut parts are made from the DXF alone, others from the model, and their blank from the DXF
-        kinds = ("dxf",) if part.process == "wire-cut" else ("step-part", "dxf")
+        # parts cut by their contour are made from the DXF alone, others from the model, and their blank
+        # from the DXF
+        kinds = ("dxf",) if part.by_contour else ("step-part", "dxf")
         files = [known[part.part_no, kind] for kind in kinds if (part.part_no, kind) in known]
         made_from = [job.files[0].key for job in files]
         common = (identity, _tables(design, "tolerance", "holes"), options.draft, options.sample)

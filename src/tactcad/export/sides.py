@@ -212,7 +212,7 @@ def _as_exported(record: Record) -> Record:
     """Only what an export's files hold; contours stand in them for wire-cut parts."""
     parts = {}
     for number, part in record["parts"].items():
-        known = IN_EXPORTS if part["process"] == "wire-cut" else IN_EXPORTS[:-1]
+        known = IN_EXPORTS if part["process"] in ("wire-cut", "etched") else IN_EXPORTS[:-1]
         parts[number] = {name: part[name] for name in known if name in part}
     return {
         "parts": parts,

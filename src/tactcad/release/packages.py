@@ -133,7 +133,7 @@ def _files_of(
         "step": f"step/{stem}.step",
         "step_limits": f"step/{stem}-ap242.step",
     }
-    if package is SHEET and line.row.process == "wire-cut":
+    if package is SHEET and line.part is not None and line.part.by_contour:
         return {}  # cut from the sheet by another
     needed = {kind: path for kind, path in paths.items() if path in files and kind in package.folders}
     if package is WIRE and line.part is not None and line.part.features:  # what no contour shows
@@ -237,6 +237,7 @@ def _bought_row(line: OrderLine, taken: Mapping[str, str], shop: Shop) -> Row:
 
 
 WIRE = Package("wire-cutting", "wire cutting", ("wire-cut",), ("dxf", "pdf"), _wire_row)
+ETCHING = Package("etching", "photo-etching", ("etched",), ("dxf", "pdf"), _sheet_row)
 MACHINING = Package(
     "milling-and-turning",
     "milling, turning and grinding",
@@ -247,6 +248,7 @@ MACHINING = Package(
 SHEET = Package("sheet", "sheet and plate", (), ("dxf",), _sheet_row)
 PACKAGES = (
     WIRE,
+    ETCHING,
     MACHINING,
     SHEET,
     Package("purchase-mechanical", "purchase, mechanical", (MECHANICAL,), (), _bought_row),

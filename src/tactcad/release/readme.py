@@ -384,16 +384,15 @@ def _sheet_table(one: Packed) -> list[str]:
 
 def _blank_for(row: Mapping[str, str]) -> str:
     limits = f"{row['least_mm']} to {row['most_mm']} mm thick; " if row["least_mm"] else ""
-    if row["for"] != "wire-cut":
+    if row["for"] not in ("wire-cut", "etched"):
         edge, face = row["over_each_edge_mm"], row["over_each_face_mm"]
         return (
             f"blank by its DXF (laser, water jet or saw), {edge} mm over on each edge, {face} or more on "
-            f"each "
-            f"face, no holes; to be {row['for']}"
+            f"each face, no holes; to be {row['for']}"
         )
     if float(row["over_each_face_mm"]):
-        return f"{limits}as plate, both faces ground to the drawing, then to the wire cutter"
-    return f"{limits}as sheet, to the wire cutter"
+        return f"{limits}as plate, both faces ground to the drawing, then to be {row['for']}"
+    return f"{limits}as sheet, to be {row['for']}"
 
 
 WIDTH = 96

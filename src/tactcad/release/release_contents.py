@@ -15,7 +15,13 @@ from tactcad.parts.language.finding import Finding
 from tactcad.scenes.bom import BomRow, bom_rows
 from tactcad.scenes.scene import Scene
 
-PROCESSES = {"wire-cut": "Wire-cut from sheet", "milled": "Milled", "turned": "Turned", "ground": "Ground"}
+PROCESSES = {
+    "wire-cut": "Wire-cut from sheet",
+    "etched": "Photo-etched from foil",
+    "milled": "Milled",
+    "turned": "Turned",
+    "ground": "Ground",
+}
 
 
 @dataclass(frozen=True)

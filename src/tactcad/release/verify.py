@@ -185,7 +185,7 @@ def _sheet_faults(files: Mapping[str, bytes], contents: ReleaseContents) -> Iter
         )
         source = (
             f"dxf/{part.part_no}_{revision}.dxf"
-            if part.process == "wire-cut"
+            if part.by_contour
             else f"step/{part.part_no}_{revision}.step"
         )
         if _checksums(files).get(source, "no file") not in "".join(pages[0]).replace(" ", ""):

@@ -116,7 +116,8 @@ def _behind_contacts(
     """
     if not wanted:
         return
-    layout, count, assembled = built.layout, min(len(built.pads), CORNERS), type(built)
+    layout, assembled = built.layout, type(built)
+    count = min(len(next(iter(built.made.values()))), CORNERS)
     middle = assembled(layout, made(variables, 1, "normal", rng, only=()))
     corners = assembled(layout, made(variables, count, "corners", rng, alike=False))
     anew = made(variables, count, "corners", rng, alike=False)

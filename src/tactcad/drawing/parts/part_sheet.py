@@ -173,6 +173,12 @@ def notes_of(part: Part, files: Sequence[MadeFrom]) -> tuple[str, ...]:
             lines.append("Holes wire-cut before the outline, each from a start hole inside it; slugs removed")
         if harm := ELECTROLYSIS.get(family(part.material.density)):
             lines.append(f"Anti-electrolysis supply: without it {part.material.name} {harm}")
+    elif part.by_contour:
+        cut = "Etched by"
+        lines.append(
+            "The DXF file holds the nominal contour, limits at their middle; the photo tool allows for "
+            "undercut"
+        )
     for file in files:
         use = cut if file.path.endswith(".dxf") else "Model"
         lines.append(f"{use} {file.path.rsplit('/', 1)[-1]}, SHA-256 {file.sha256}")

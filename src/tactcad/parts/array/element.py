@@ -12,7 +12,7 @@ from tactcad.contour import Contour, Corner, Line, Point, Segment, circle, recta
 from tactcad.contour.segment import turned
 from tactcad.design.materials import ALLOYS, family
 from tactcad.design.messages import InputError
-from tactcad.design.tree import Design
+from tactcad.design.tree import CommonTables, Design
 
 from ..bought.supply import spare_elements
 from ..language.description import Extrusion, Material, Part
@@ -245,7 +245,7 @@ def mounting_holes(layout: Layout, dowel: float | None = None) -> tuple[Contour,
     return tuple(sorted(screws + dowels, key=lambda c: c.box[0]))
 
 
-def sheet_material(design: Design) -> Material:
+def sheet_material(design: CommonTables) -> Material:
     known = ALLOYS.get(design.material.alloy)
     return Material(
         design.material.alloy,

@@ -18,7 +18,7 @@ from tactcad.design.messages import CheckFailure
 from .limits import FACES, Characteristic, DatumFeature, Geometric, contradictions
 
 Vector = tuple[float, float, float]
-Process = Literal["wire-cut", "milled", "turned", "ground", "reference", "bought", "included"]
+Process = Literal["wire-cut", "etched", "milled", "turned", "ground", "reference", "bought", "included"]
 Kind = Literal["", "element", "cap screw", "set screw", "nut"]
 NOT_MADE = ("bought", "included", "reference")
 NOT_ORDERED = ("included", "reference")
@@ -335,6 +335,11 @@ class Part:
         if self.mass_override is not None:
             return self.mass_override
         return self.volume * self.material.density * 1e-6
+
+    @property
+    def by_contour(self) -> bool:
+        """Cut from sheet by its contour alone, all its openings and holes included."""
+        return self.process in ("wire-cut", "etched")
 
     @property
     def bought(self) -> bool:

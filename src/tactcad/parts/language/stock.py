@@ -69,11 +69,11 @@ def stock_of(part: Part) -> FlatStock | None:
 def cut_section(part: Part) -> Extrusion | None:
     """The section that a part's cut file describes, extruded; None where the part has no cut file.
 
-    Wire-cut parts are cut with all their holes. What is milled or ground from plate has a cut file of its
-    blank: a rectangle that leaves material on every edge, as thick as its stock, without any hole. What has a
-    pocket, or is thicker than it is wide, is milled from a block and has no cut file.
+    Wire-cut and etched parts are cut with all their holes. What is milled or ground from plate has a cut file
+    of its blank: a rectangle that leaves material on every edge, as thick as its stock, without holes. What
+    has a pocket, or is thicker than it is wide, is milled from a block and has no cut file.
     """
-    if part.process == "wire-cut":
+    if part.by_contour:
         outer, openings = section(part)
         return Extrusion(outer, part.extrusion.thickness, openings)
     stock = stock_of(part) if _is_plate(part) else None

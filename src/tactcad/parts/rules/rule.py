@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
+from typing import Any
 
 from ..array.layout import Layout
 from ..language.finding import SAME, Finding
 
-Find = Callable[[Layout], Iterable[Finding]]
+Find = Callable[[Any], Iterable[Finding]]  # of a family's layout
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,38 @@
+"""Cells in a plane: islands on four foil beams, of two stiffnesses in turn, each with a magnet over a
+three-axis Hall chip (the paper's Figure 1(b))."""
+
+from __future__ import annotations
+
+from tactcad.design.family import Family, FamilyEstimate, FamilyStack, Late
+
+from .cell_tables import PlanarDesign
+
+HERE = "tactcad.families.planar"
+FAMILY = Family(
+    name="planar",
+    spec=PlanarDesign,
+    layout=Late(f"{HERE}.cell_layout:PlanarLayout"),
+    about=Late(f"{HERE}.parts:about"),
+    parts=Late(f"{HERE}.cell_measurements:measured"),
+    scenes=f"{HERE}.cell_array",
+    rules=Late(f"{HERE}.rules:design_rules"),
+    estimate=FamilyEstimate(
+        rows=Late(f"{HERE}.sensor:rows"),
+        run=Late(f"{HERE}.sensor:run"),
+        golden=Late(f"{HERE}.sensor:golden"),
+        strength=Late(f"{HERE}.sensor:strength"),
+        strain=None,
+    ),
+    plans={},
+    stack=FamilyStack(
+        limits=Late(f"{HERE}.cell_array:limits"),
+        built=Late(f"{HERE}.cell_array:Stacked"),
+        figures=Late(f"{HERE}.cell_array:figures"),
+        elements=Late("tactcad.scenes.rig:none"),
+    ),
+    pads=None,
+    readout=None,
+    readings=None,
+    variables=None,
+    checks=f"{HERE}.checks",
+)

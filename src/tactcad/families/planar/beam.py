@@ -1,0 +1,160 @@
+"""A foil beam between a rigid island and a clamped frame: six stiffnesses, in closed form.
+
+The beam is symmetric, so the relative motions of its ends do not mix: stretch, twist, and bending out of the
+foil's plane and in it, each with even moments (bend) and with a guided end (shear)::
+
+         frame |\\_________________________/| island      s between the edges, w wide, t thick,
+               | _________________________  |             fillets r at all four corners
+               |/                         \\|
+"""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from functools import cache
+from math import pi
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+MODES = ("axial", "twist", "bend_out", "shear_out", "bend_in", "shear_in")
+DATA = Path(__file__).parent / "data" / "beam.json"
+KAPPA = 5.0 / 6.0  # Reissner's shear factor of a rectangle
+
+
+@dataclass(frozen=True)
+class FoilBeam:
+    """Length s, width w, thickness t and fillet radius r, mm; E, MPa, and Poisson's ratio."""
+
+    length: float
+    width: float
+    thickness: float
+    fillet: float
+    youngs_modulus: float
+    poisson: float
+
+    @property
+    def shear_modulus(self) -> float:
+        """G = E/(2 (1 + nu)), MPa"""
+        return self.youngs_modulus / (2.0 * (1.0 + self.poisson))
+
+
+def sections(beam: FoilBeam, points: int = 24) -> tuple[Array, Array, Array]:
+    """Gauss points of the half 0 <= x <= s/2, their weights, and the width there, mm: w + 2 r (1 - cos phi)
+    in the fillet, x = s/2 - r + r sin phi."""
+    at, weight = np.polynomial.legendre.leggauss(points)
+    at, weight = (at + 1.0) / 2.0, weight / 2.0
+    straight, r = beam.length / 2.0 - beam.fillet, beam.fillet
+    phi = pi / 2.0 * at
+    x = np.concatenate([straight * at, straight + r * np.sin(phi)])
+    dx = np.concatenate([straight * weight, r * np.cos(phi) * pi / 2.0 * weight])
+    width = np.concatenate([np.full(points, beam.width), beam.width + 2.0 * r * (1.0 - np.cos(phi))])
+    return x, dx, width
+
+
+def torsion_constant(width: Array, thickness: float) -> Array:
+    """J = w t^3/3 (1 - 0.630 t/w (1 - t^4/(12 w^4))), mm4: Roark's Formulas for Stress and Strain, within
+    0.3 % of Saint-Venant's series for w >= t."""
+    q = thickness / width
+    return width * thickness**3 / 3.0 * (1.0 - 0.630 * q * (1.0 - q**4 / 12.0))
+
+
+def base(beam: FoilBeam) -> dict[str, float]:
+    """Beam theory's stiffness of every mode (units as `stiffness`): compliances of the sections, fillets
+    included, added along the beam; Timoshenko's shear."""
+    x, dx, w = sections(beam)
+    E, G, t = beam.youngs_modulus, beam.shear_modulus, beam.thickness
+    out, within = w * t**3 / 12.0, t * w**3 / 12.0
+    shear = np.sum(dx / (KAPPA * G * w * t))
+    return {
+        "axial": E * t / (2.0 * np.sum(dx / w)),
+        "twist": G / (2.0 * np.sum(dx / torsion_constant(w, t))),
+        "bend_out": E / (2.0 * np.sum(dx / out)),
+        "shear_out": 1.0 / (2.0 * (np.sum(x**2 * dx / (E * out)) + shear)),
+        "bend_in": E / (2.0 * np.sum(dx / within)),
+        "shear_in": 1.0 / (2.0 * (np.sum(x**2 * dx / (E * within)) + shear)),
+    }
+
+
+def nominal_stress(beam: FoilBeam) -> dict[str, float]:
+    """Beam theory's stress at the root's face per relative motion 1 of the ends (MPa/mm; MPa/rad): sections
+    of the straight width."""
+    k, w, t, s = base(beam), beam.width, beam.thickness, beam.length
+    out, within = 6.0 / (w * t**2), 6.0 / (t * w**2)
+    return {
+        "axial": k["axial"] / (w * t),
+        "twist": 3.0 * k["twist"] / (w * t**2),
+        "bend_out": out * k["bend_out"],
+        "shear_out": out * k["shear_out"] * s / 2.0,
+        "bend_in": within * k["bend_in"],
+        "shear_in": within * k["shear_in"] * s / 2.0,
+    }
+
+
+def groups(beam: FoilBeam) -> tuple[float, float, float, float]:
+    """What the factors depend on, each from about -1 to 1: w/s, r/w, nu, and ln(t/w)."""
+    return (
+        (beam.width / beam.length - 0.3) / 0.2,
+        (beam.fillet / beam.width - 0.55) / 0.45,
+        (beam.poisson - 0.3) / 0.1,
+        (float(np.log(beam.thickness / beam.width)) + 2.05) / 1.65,
+    )
+
+
+DEGREE = 4
+_POWERS = [
+    p for p in np.ndindex(*(DEGREE + 1,) * 4) if sum(p) <= DEGREE and p[2] <= 2
+]  # Poisson's ratio enters by its square at most
+
+
+def terms(*x: Any) -> Array:
+    """Every product of powers up to DEGREE in all, (designs, terms)."""
+    values = np.array(x, dtype=float).reshape(len(x), -1)
+    return np.stack([np.prod([v**n for v, n in zip(values, p)], axis=0) for p in _POWERS], axis=-1)
+
+
+@cache
+def fit() -> dict[str, Any]:
+    """Constants, range and errors, as benchmarks/planar_beams.py wrote them."""
+    return json.loads(DATA.read_text("utf-8"))
+
+
+def out_of_range(beam: FoilBeam) -> str:
+    """What of the beam lies outside the fit's range, with what is legal; empty where nothing does."""
+    r = fit()["range"]
+    for name, value in (
+        ("w/s", beam.width / beam.length),
+        ("s/t", beam.length / beam.thickness),
+        ("r/w", beam.fillet / beam.width),
+        ("nu", beam.poisson),
+    ):
+        low, high = r[name]
+        if not low * (1 - 1e-9) <= value <= high * (1 + 1e-9):
+            return f"{name} = {value:.3g}; legal: from {low:g} to {high:g}"
+    return ""
+
+
+def _factors(beam: FoilBeam, kind: str) -> dict[str, float]:
+    row = terms(*groups(beam))
+    return {mode: float(np.exp(row @ np.array(c))[0]) for mode, c in fit()[kind].items()}
+
+
+def stiffness(beam: FoilBeam) -> dict[str, float]:
+    """Stiffness of every mode: N/mm; bending and twist N mm a radian.
+
+    Beam theory times a factor that was fitted on solid elements (data/beam.json): clamped roots keep a wide
+    beam from curling and its ends from warping.
+    """
+    factors = _factors(beam, "stiffness")
+    return {mode: value * factors[mode] for mode, value in base(beam).items()}
+
+
+def stress(beam: FoilBeam) -> dict[str, float]:
+    """Largest von Mises stress of the foil's face per relative motion 1 of the ends (MPa/mm; MPa/rad), from
+    half a thickness off the clamped edge on."""
+    k, plain, factors = stiffness(beam), base(beam), _factors(beam, "stress")
+    return {m: v * factors[m] * k[m] / plain[m] for m, v in nominal_stress(beam).items()}

@@ -1,0 +1,211 @@
+"""The array of cells: placements, steps, and what must hold of its limits."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from math import inf
+
+import numpy as np
+
+from tactcad.parts.array.stiffness_table import Deflection
+from tactcad.parts.bought.standard_parts import dowel
+from tactcad.parts.bought.supply import MECHANICAL, Supply
+from tactcad.scenes.builder import Builder
+from tactcad.scenes.requirement import Deviations, DimensionLimits, Requirement, summed, variable
+from tactcad.scenes.rig import ARRAY, Rig, none
+from tactcad.scenes.scene import Scene
+
+from . import parts
+from .cell_layout import PlanarLayout
+from .cell_tables import PlanarDesign
+
+ADHESIVE = Supply(
+    "ADHESIVE-epoxy",
+    "Epoxy adhesive, cold-curing, low viscosity",
+    1,
+    "pack",
+    "two-component epoxy, thin, cures cold",
+    process=MECHANICAL,
+)
+
+
+def scene(design: PlanarDesign, _pose: object = None) -> Scene:
+    """Base down; posts and magnets are bonded to the foil before the foil goes in."""
+    b, layout = Builder(), PlanarLayout(design)
+    t = design.planar.thickness
+    board = b.place("PCB", parts.board(layout), (0, 0, layout.board_z - design.hall.board))
+    b.step("Board", (0, 0, -45), "Lay the board down, its pads for the chips up.")
+    chip = parts.chip(layout)
+    for e in layout.elements:
+        b.meet(b.place("U", chip, (e.x, e.y, layout.board_z)), board)
+    b.step("Chips", (0, 0, -35), "Solder the chips: the board comes with them from who makes it.")
+    frame = b.place("FR", parts.frame(layout), (0, 0, layout.board_z))
+    b.meet(frame, board)
+    b.step("Frame", (0, 0, -25), "Lay the frame on the board, around the chips.")
+    floor = round(layout.board_z + parts.chip_room(layout), 9)
+    base = b.place("B", parts.base(layout), (0, 0, floor))
+    b.meet(base, frame)
+    pins = [
+        b.place("DP", dowel(parts.DOWEL, parts.dowel_length(layout) or 0.0), (x, y, floor))
+        for x, y in parts.dowel_places(layout)
+    ]
+    for pin in pins:
+        b.meet(pin, base, "press")
+        b.meet(pin, frame)
+    first = "Press the two dowels into the base, flush with its lower face."
+    if not layout.screwed:
+        first = "Lay the base into the bonding jig. Bond every layer on the one below, flush at its edges."
+    b.step("Base", (0, 0, -15), first)
+    lower = b.place("SP", parts.lower_spacer(layout), (0, 0, layout.base_z))
+    b.meet(lower, base)
+    b.step(
+        "Lower spacer",
+        (0, 0, -6),
+        "Lay the lower spacer on the base: its thickness is the islands' way down.",
+    )
+    foil = b.place("F", parts.foil(layout), (0, 0, 0))
+    b.meet(foil, lower)
+    feet = {kind.name: parts.foot(layout, kind) for kind in layout.used}
+    post, magnet = parts.post(layout), parts.magnet(layout)
+    for e in layout.elements:
+        plate = b.place("FP", feet[e.kind.name], (e.x, e.y, t))
+        top = b.place("P", post, (e.x, e.y, t + design.post.foot))
+        below = b.place("M", magnet, (e.x, e.y, -design.magnet.height))
+        b.meet(plate, foil)
+        b.meet(top, plate)
+        b.meet(below, foil)
+    b.step(
+        "Foil with posts and magnets",
+        (0, 0, 8),
+        "On the bonding jig: lay the foil down, bond a foot plate and a post on every island (one drop of "
+        "adhesive each, cured under the jig's weight), turn it over, and bond the magnets, north poles "
+        "marked "
+        "before and up.",
+        bench=True,
+    )
+    upper = b.place("SP", parts.upper_spacer(layout), (0, 0, t))
+    b.meet(upper, foil)
+    b.step(
+        "Foil and upper spacer",
+        (0, 0, 14),
+        "Lay the foil over the dowels, magnets down into their wells, and the upper spacer on it.",
+    )
+    cover = b.place("C", parts.cover(layout), (0, 0, layout.cover_z))
+    b.meet(cover, upper)
+    b.step("Cover", (0, 0, 26), "Lower the cover over dowels and posts.")
+    if layout.screwed:
+        length = parts.screw_length(layout) or 0.0
+        for x, y in parts.screw_places(layout):
+            b.screw(parts.SCREW, length, (x, y, layout.board_z - design.hall.board), (0, 0, 1), board, cover)
+        b.step(
+            "Screws",
+            (0, 0, -45),
+            "Tighten the screws crosswise, in three rounds: they clamp board, base, spacers and foil "
+            "against the cover.",
+        )
+    else:
+        b.supplies.append(ADHESIVE)
+    return b.scene(ARRAY, cover=(cover,))
+
+
+@dataclass(frozen=True)
+class Stacked:
+    """Arrays as made."""
+
+    layout: PlanarLayout
+    made: Deviations
+
+    def with_new(self, variable: DimensionLimits, deviations: np.ndarray) -> Stacked:
+        """The same arrays with one variable drawn anew."""
+        return Stacked(self.layout, {**self.made, variable.name: deviations})
+
+
+def figures(arrays: Stacked) -> dict[str, np.ndarray]:
+    """Stiffness of every cell as built, N/mm: K goes with t^3, the foil's thickness being one cause for
+    all."""
+    from .sensor import rows
+
+    at = np.array([row.stiffness for row in rows(arrays.layout, "", None)])
+    t = arrays.layout.design.planar.thickness
+    return {"stiffness": at * (1.0 + arrays.made["foil: thickness"] / t) ** 3}
+
+
+def limits(
+    layout: PlanarLayout, _scenes: Sequence[Scene]
+) -> tuple[dict[str, DimensionLimits], list[Requirement]]:
+    """Variables of the layers and of every magnet and chip, and what must hold for them."""
+    d, tol, n = layout.design, layout.design.tolerance, len(layout.elements)
+    name, t = d.name, layout.design.planar.thickness
+    foil = d.foil_tolerance
+    known = {
+        v.name: v
+        for v in (
+            variable("foil: thickness", -foil, foil, stated=((f"{name}-foil", "thickness"),)),
+            variable(
+                "lower spacer: thickness",
+                -tol.stop_gap / 2.0,
+                tol.stop_gap / 2.0,
+                stated=((f"{name}-lower-spacer", "thickness"),),
+            ),
+            variable("upper spacer: thickness", -0.03, 0.03, stated=((f"{name}-upper-spacer", "thickness"),)),
+            variable("cover: thickness", -0.02, 0.02, stated=((f"{name}-cover", "thickness"),)),
+            variable("base: thickness", -0.02, 0.02, stated=((f"{name}-base", "thickness"),)),
+            variable("post: length over the shoulder", -0.01, 0.01, n),
+            variable("magnet: along x", -tol.magnet_place, tol.magnet_place, n),
+            variable("magnet: along y", -tol.magnet_place, tol.magnet_place, n),
+        )
+    }
+
+    def pads(a: Stacked) -> np.ndarray:
+        return np.ptp(a.made["post: length over the shoulder"], axis=1, keepdims=True)
+
+    def stiffness(a: Stacked) -> np.ndarray:
+        return (1.0 + a.made["foil: thickness"] / t) ** 3 - 1.0
+
+    def well(a: Stacked) -> np.ndarray:
+        return (
+            d.housing.well
+            - d.housing.side_gap
+            - np.hypot(a.made["magnet: along x"], a.made["magnet: along y"])
+        )
+
+    lift = d.housing.lift
+    return known, [
+        Requirement("pads in one plane", "mm", -inf, 0.04, pads, fields=("post.stand_out",)),
+        Requirement("K as drawn", "", -0.2, 0.2, stiffness, fields=("tolerance.thickness",)),
+        Requirement("magnets clear of their wells", "mm", 0.02, inf, well, fields=("housing.well",)),
+        summed("feet clear of the cover", 0.05, inf, lift, (("upper spacer: thickness", 1.0),)),
+        summed(
+            "island's way down",
+            0.7 * -layout.base_z,
+            1.3 * -layout.base_z,
+            -layout.base_z,
+            (("lower spacer: thickness", 1.0),),
+        ),
+        summed(
+            "magnet to chip",
+            0.9 * d.hall.gap,
+            1.1 * d.hall.gap,
+            d.hall.gap,
+            (("base: thickness", 1.0), ("lower spacer: thickness", 1.0)),
+        ),
+    ]
+
+
+def nothing_bends(_layout: PlanarLayout) -> Iterator[Deflection]:
+    """No part of the array is taken as rigid but the islands, which foot plates make so."""
+    yield from ()
+
+
+RIG = Rig(
+    name=ARRAY,
+    tables=(),
+    make=scene,
+    poses=none,
+    under_sensor=none,
+    rules=(),
+    deflections=nothing_bends,
+    requirements=lambda *_: [],
+    checks=(),
+)

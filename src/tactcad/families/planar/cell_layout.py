@@ -1,0 +1,278 @@
+"""Kinds of cells and where every cell and layer stands.
+
+Frame: x along a row's cells, y along a column's, both from the array's middle; z = 0 is the foil's lower
+face, + towards the object. Lengths in mm.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cached_property
+from math import ceil
+
+from tactcad.contour import Contour, Corner, rectangle, rounded_polygon
+
+from .beam import FoilBeam
+from .cell import Cell, roots
+from .cell_tables import CHIPS, PROCESSES, CellKind, Chip, FoilProcess, PlanarDesign
+from .field import Magnet
+
+
+@dataclass(frozen=True)
+class Kind:
+    """A kind of cell with what follows from the design.
+
+    opening   side of the square in the frame, mm
+    """
+
+    name: str
+    table: CellKind
+    opening: float
+    thickness: float
+    youngs_modulus: float
+    poisson: float
+
+    @property
+    def pinwheel(self) -> bool:
+        return self.table.form == "pinwheel"
+
+    @property
+    def beam_length(self) -> float:
+        """From the island's edge, or its ear's, to the frame."""
+        half = self.table.island / 2.0
+        start = -half + self.table.ear if self.pinwheel else half
+        return self.opening / 2.0 - start
+
+    @property
+    def rim(self) -> float:
+        """How far an ear stands over its beam: room for the root's fillet and its own corner."""
+        return 2.0 * self.table.fillet
+
+    @property
+    def beam_offset(self) -> float:
+        """y of the first beam's axis; of a pinwheel's beside the island."""
+        t = self.table
+        return t.island / 2.0 + t.slot + t.beam_width / 2.0 if self.pinwheel else 0.0
+
+    @property
+    def reach(self) -> float:
+        """Half of the island's side, ears included."""
+        t = self.table
+        return self.beam_offset + t.beam_width / 2.0 + self.rim if self.pinwheel else t.island / 2.0
+
+    @cached_property
+    def beam(self) -> FoilBeam:
+        t = self.table
+        return FoilBeam(
+            self.beam_length, t.beam_width, self.thickness, t.fillet, self.youngs_modulus, self.poisson
+        )
+
+    @cached_property
+    def cell(self) -> Cell:
+        t = self.table
+        start = -t.island / 2.0 + t.ear
+        return Cell(self.beam, roots(t.form, t.island, start, self.beam_offset))
+
+    def slots(self, corner: float, at: tuple[float, float]) -> tuple[Contour, ...]:
+        """The four openings of the cell at `at`, with fillets at the roots and radius `corner` elsewhere."""
+        t, o = self.table, self.opening / 2.0
+        a, w, r = t.island / 2.0, t.beam_width / 2.0, t.fillet
+        if self.pinwheel:
+            low, high, top = a + t.slot, a + t.slot + 2.0 * w, a + t.slot + 2.0 * w + self.rim
+            points = [
+                ((o, high), r),
+                ((o, o), corner),
+                ((-low, o), r),
+                ((-low, -a + t.ear), r),
+                ((-a, -a + t.ear), corner),
+                ((-a, top), corner),
+                ((-a + t.ear, top), corner),
+                ((-a + t.ear, high), r),
+            ]
+        else:
+            points = [((o, w), r), ((o, o), corner), ((w, o), r), ((w, a), r), ((a, a), corner), ((a, w), r)]
+        return tuple(_turned(points, quarter, at) for quarter in range(4))
+
+    def island_outline(self, corner: float, inset: float = 0.0) -> Contour:
+        """The island with its ears, `inset` inside its edge: the foot plate's outline."""
+        t, a = self.table, self.table.island / 2.0
+        if not self.pinwheel:
+            return rectangle(-a + inset, -a + inset, a - inset, a - inset)
+        top = self.reach
+        ear = [(-a + t.ear, a), (-a + t.ear, top), (-a, top)]
+        points: list[tuple[float, float]] = []
+        for quarter in range(4):
+            points += [_turn(p, quarter) for p in ear]
+        inner = [_inset(points, i, inset) for i in range(len(points))]
+        return rounded_polygon([Corner(p, corner) for p in inner])
+
+
+def _turn(p: tuple[float, float], quarter: int) -> tuple[float, float]:
+    x, y = p
+    for _ in range(quarter):
+        x, y = -y, x
+    return x, y
+
+
+def _turned(
+    points: list[tuple[tuple[float, float], float]], quarter: int, at: tuple[float, float]
+) -> Contour:
+    corners = []
+    for point, radius in points:
+        x, y = _turn(point, quarter)
+        corners.append(Corner((round(x + at[0], 9), round(y + at[1], 9)), radius))
+    return rounded_polygon(corners)
+
+
+def _inset(points: list[tuple[float, float]], i: int, d: float) -> tuple[float, float]:
+    """A corner of a counter-clockwise right-angled polygon, moved d to the inside of both its edges."""
+    (x0, y0), (x, y), (x1, y1) = points[i - 1], points[i], points[(i + 1) % len(points)]
+
+    def left(dx: float, dy: float) -> tuple[float, float]:
+        length = abs(dx) + abs(dy)
+        return (-dy / length * d, dx / length * d)
+
+    a, b = left(x - x0, y - y0), left(x1 - x, y1 - y)
+    return (round(x + a[0] + b[0], 9), round(y + a[1] + b[1], 9))
+
+
+@dataclass(frozen=True)
+class CellPlace:
+    """A cell: x and y of its middle, mm. `arm` is its beams' length, by which cells are told apart."""
+
+    number: int
+    row: int
+    column: int
+    x: float
+    y: float
+    kind: Kind = field(repr=False)
+
+    @property
+    def designator(self) -> str:
+        return f"E{self.number}"
+
+    @property
+    def arm(self) -> float:
+        return self.kind.beam_length
+
+
+@dataclass(frozen=True)
+class PlanarLayout:
+    """Where everything stands; cells are numbered along x, row by row from the least y."""
+
+    design: PlanarDesign
+
+    @cached_property
+    def kinds(self) -> dict[str, Kind]:
+        d = self.design
+        opening = round(d.planar.pitch - d.planar.web, 9)
+        m = d.material
+        return {
+            name: Kind(name, table, opening, d.planar.thickness, m.youngs_modulus, m.poisson)
+            for name, table in (("measuring", d.measuring), ("reference", d.reference))
+        }
+
+    @cached_property
+    def elements(self) -> tuple[CellPlace, ...]:
+        p = self.design.planar
+        other = "measuring" if p.first == "reference" else "reference"
+        return tuple(
+            CellPlace(
+                1 + i + j * p.columns,
+                j + 1,
+                i + 1,
+                round((i - (p.columns - 1) / 2.0) * p.pitch, 9),
+                round((j - (p.rows - 1) / 2.0) * p.pitch, 9),
+                self.kinds[p.first if (i + j) % 2 == 0 else other],
+            )
+            for j in range(p.rows)
+            for i in range(p.columns)
+        )
+
+    @property
+    def used(self) -> tuple[Kind, ...]:
+        """Kinds of which there are cells, the first one first."""
+        return tuple({e.kind.name: e.kind for e in self.elements}.values())
+
+    @property
+    def process(self) -> FoilProcess:
+        return PROCESSES[self.design.planar.process]
+
+    @property
+    def corner(self) -> float:
+        """Radius of the foil's other inside corners, mm: the least that the process leaves, to 0.01."""
+        return ceil(100.0 * self.process.inside_radius(self.design.planar.thickness) - 1e-6) / 100.0
+
+    @property
+    def half(self) -> tuple[float, float]:
+        """Half length and half width of foil, spacers, base, cover and board, mm."""
+        p = self.design.planar
+        x, y = (
+            round(n * p.pitch / 2.0 - p.web / 2.0 + border, 9)
+            for n, border in zip((p.columns, p.rows), self.borders)
+        )
+        return x, y
+
+    @property
+    def borders(self) -> tuple[float, float]:
+        """Beyond the outer openings along x and y, mm."""
+        h = self.design.housing
+        return h.border, h.border if h.side is None else h.side
+
+    @property
+    def screwed(self) -> bool:
+        return self.design.housing.joint == "screwed"
+
+    @property
+    def field_half(self) -> tuple[float, float]:
+        """Half sides of the room of all cells, mm."""
+        x, y = (round(h - border, 9) for h, border in zip(self.half, self.borders))
+        return x, y
+
+    @property
+    def chip(self) -> Chip:
+        return CHIPS[self.design.hall.chip]
+
+    @property
+    def magnet(self) -> Magnet:
+        m = self.design.magnet
+        return Magnet(m.diameter / 2.0, m.height, m.remanence)
+
+    # --- heights, mm ---
+
+    @property
+    def upper_spacer(self) -> float:
+        """Thickness: foot plate and room over it."""
+        return round(self.design.post.foot + self.design.housing.lift, 9)
+
+    @property
+    def cover_z(self) -> float:
+        return round(self.design.planar.thickness + self.upper_spacer, 9)
+
+    @property
+    def pad_z(self) -> float:
+        return round(self.cover_z + self.design.housing.cover_thickness + self.design.post.stand_out, 9)
+
+    @property
+    def pad_height(self) -> float:
+        """Pad over the foil's mid-plane, mm: the lever by which shear tips a cell."""
+        return self.pad_z - self.design.planar.thickness / 2.0
+
+    @property
+    def base_z(self) -> float:
+        """The base's upper face: the stop of the kind with the shorter way; the other's lies deeper."""
+        return -min(kind.table.stop_gap for kind in self.used)
+
+    @property
+    def board_z(self) -> float:
+        """The board's upper face, on which the chips stand."""
+        return round(-self.design.magnet.height - self.design.hall.gap - self.chip.height, 9)
+
+    @property
+    def base_thickness(self) -> float:
+        return round(self.base_z - self.board_z, 9)
+
+    @property
+    def well(self) -> float:
+        """Diameter of the base's hole around a magnet, mm."""
+        return round(self.design.magnet.diameter + 2.0 * self.design.housing.well, 9)

@@ -1,0 +1,42 @@
+"""What is measured on every cell of a foil as cut."""
+
+from __future__ import annotations
+
+from tactcad.parts.array.measurements import MICROSCOPE, Measurement
+
+from .cell_layout import CellPlace, PlanarLayout
+
+
+def measured(layout: PlanarLayout) -> list[tuple[CellPlace, str, tuple[Measurement, ...]]]:
+    t = layout.design.planar.thickness
+    cut, foil = layout.process.tolerance(t), layout.design.foil_tolerance
+
+    def of(e: CellPlace) -> tuple[Measurement, ...]:
+        w, s = e.kind.table.beam_width, e.kind.beam_length
+        return (
+            Measurement(
+                "beam width", w, w - cut, w + cut, True, "", "middle of each beam (mean of four)", MICROSCOPE
+            ),
+            Measurement(
+                "beam length",
+                s,
+                s - cut,
+                s + cut,
+                False,
+                "",
+                "island's to frame's edge (mean of four)",
+                MICROSCOPE,
+            ),
+            Measurement(
+                "thickness",
+                t,
+                t - foil,
+                t + foil,
+                True,
+                "",
+                "on the border, near the cell",
+                "micrometer, 0.001",
+            ),
+        )
+
+    return [(e, f"{layout.design.name}-foil", of(e)) for e in layout.elements]

@@ -1,0 +1,41 @@
+"""Checks of planar designs besides those of all families."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from tactcad.checks.check import Check
+from tactcad.parts.language.finding import Finding
+
+from .cell_layout import PlanarLayout
+from .cell_tables import PlanarDesign
+from .sensor import kind_figures, rated_force, rows
+
+
+def check_strength(design: PlanarDesign) -> Iterator[Finding]:
+    """Cells that are rated below the force asked for, a flag a kind; pads whose K is not linear up to it."""
+    layout = PlanarLayout(design)
+    shown = {row.kind: row for row in rows(layout, "", None)}
+    for kind in layout.used:
+        row = shown[kind.name]
+        first = next(e.designator for e in layout.elements if e.kind.name == kind.name)
+        _, rated = rated_force(layout, kind, kind_figures(layout, kind.name).stress)
+        if rated < design.rating.force * (1.0 - 1e-9):
+            message = (
+                f"{kind.name} cells are rated at {rated:.3g} N with a shear of {design.rating.shear:g} of "
+                f"it, not at the "
+                f"{design.rating.force:g} N asked for: there a beam's root would have less than its "
+                f"safety of "
+                f"{design.rating.yield_factor:g} against yield"
+            )
+            yield Finding("planar-rated-force", "flag", first, (), rated, design.rating.force, message)
+        if row.linear_force < rated:
+            message = (
+                f"{kind.name} cells stiffen by {100 * design.rating.linearity:g} % at "
+                f"{row.linear_force:.3g} N, below their rated "
+                f"force of {rated:.3g} N: readings beyond it are to be corrected"
+            )
+            yield Finding("planar-linear", "flag", first, (), row.linear_force, rated, message)
+
+
+CHECKS = (Check("planar strength", "design", lambda design, _: check_strength(design), place=10, quick=True),)

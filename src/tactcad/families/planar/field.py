@@ -1,0 +1,74 @@
+"""The field of a disc magnet, axially magnetised, and what a three-axis Hall chip below it feels.
+
+Two discs of magnetic charge, +- Br/mu0 each, integrated by Gauss' rule over the radius and the trapezoid
+rule over the angle: within 1e-6 of the largest field from half a radius off the magnet on (tests compare
+with magpylib). Own code, since estimates load numpy alone. z points away from the chip; fields in mT,
+lengths in mm.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import pi
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+RADII, ANGLES = 16, 48
+STEP = 1e-20  # of the complex-step derivative: no digits are lost
+
+
+@dataclass(frozen=True)
+class Magnet:
+    """Radius and height, mm; remanence, T, of the pole that faces away from the chip."""
+
+    radius: float
+    height: float
+    remanence: float
+
+
+def field(magnet: Magnet, at: NDArray) -> NDArray:
+    """Field (mT) of a magnet whose lower face's middle is the origin, at points (..., 3)."""
+    q, weight = np.polynomial.legendre.leggauss(RADII)
+    radius = magnet.radius * (q + 1.0) / 2.0
+    area = (weight * magnet.radius / 2.0 * radius)[:, None] * np.full(ANGLES, 2.0 * pi / ANGLES)
+    phi = 2.0 * pi * np.arange(ANGLES) / ANGLES
+    x, y = np.multiply.outer(radius, np.cos(phi)).ravel(), np.multiply.outer(radius, np.sin(phi)).ravel()
+    total = np.zeros(at.shape, dtype=at.dtype)
+    for z, sign in ((magnet.height, 1.0), (0.0, -1.0)):
+        d = at[..., None, :] - np.stack([x, y, np.full_like(x, z)], axis=-1)
+        distance = np.sqrt((d * d).sum(axis=-1))
+        total += sign * np.einsum("...qi,q->...i", d / distance[..., None] ** 3, area.ravel())
+    return 1e3 * magnet.remanence / (4.0 * pi) * total
+
+
+def on_axis(magnet: Magnet, z: float) -> float:
+    """Closed form on the axis, z below the lower face, mT: Br/2 ((z + m)/sqrt((z + m)^2 + R^2) - z/sqrt(z^2
+    + R^2))."""
+    far, R = z + magnet.height, magnet.radius
+    return 500.0 * magnet.remanence * (far / np.hypot(far, R) - z / np.hypot(z, R))
+
+
+def felt(magnet: Magnet, gap: float, lever: float, motion: NDArray) -> NDArray:
+    """Field at a chip `gap` below a magnet at rest, for island motions (..., 6): mm and rad.
+
+    The magnet's lower face is `lever` below the island's middle. A turn moves it and tips it; to first
+    order of the turn, the field is that of the upright magnet at the chip's place as the magnet sees it,
+    turned back.
+    """
+    d, a = motion[..., :3], motion[..., 3:]
+    arm = np.array([0.0, 0.0, -lever])
+    origin = d + np.cross(a, arm)
+    chip = np.array([0.0, 0.0, -gap]) - origin
+    seen = chip - np.cross(a, chip)
+    b = field(magnet, seen)
+    return b + np.cross(a, b)
+
+
+def sensitivity(magnet: Magnet, gap: float, lever: float) -> tuple[Array, Array]:
+    """Field at rest (mT) and its derivatives by the island's six freedoms, (3, 6): mT/mm and mT/rad, by
+    complex steps."""
+    at_rest = felt(magnet, gap, lever, np.zeros(6))
+    slope = felt(magnet, gap, lever, 1j * STEP * np.eye(6)).imag / STEP
+    return at_rest, slope.T

@@ -1,0 +1,352 @@
+"""The parts of a planar array: foil, foot plates and posts, magnets, spacers, base, cover, board with its
+chips.
+
+   pad  __        __
+ ______|  |______|  |______   cover, the screws' threads
+|____  |  |  __  |  |  ____|  upper spacer
+|____[foot]_|  |_[foot]____|  foil
+|____  (m)  |__|  (m)  ____|  lower spacer, base with wells
+|____|_____________________|
+|______[chip]____[chip]____|  board
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import ceil
+from typing import cast
+
+from tactcad.contour import Contour, Corner, circle, rectangle, rounded_polygon
+from tactcad.design.materials import ALLOYS
+from tactcad.parts.array.element import sheet_material
+from tactcad.parts.bought.screws import CAP_SCREW_LENGTHS
+from tactcad.parts.bought.standard_parts import dowel_diameter, dowel_lengths
+from tactcad.parts.language.description import (
+    Extrusion,
+    Feature,
+    Hole,
+    Material,
+    Part,
+    Process,
+    Purchase,
+    Revolution,
+)
+from tactcad.parts.language.limits import FACES, within
+from tactcad.parts.language.metric import METRIC, tapped_through
+from tactcad.parts.language.plate import BREAK_EDGES
+
+from .cell_layout import Kind, PlanarLayout
+
+SCREW, DOWEL = "M2", "2"
+LARGEST_STEP = 20.0  # mm between screws along an edge; chosen: what keeps 1 mm of base flat under them
+SLIDING = 0.02  # mm of play of dowels in foil, spacers and cover, and of posts in their plates; chosen
+FOOT_INSET = (
+    0.03  # mm that a foot plate stays inside the island's edge all round; chosen: the etching's tolerance
+)
+WEB = 0.8  # mm of base left over the chips' pocket, at least: checks/data/shop.toml's floor of a pocket
+FRAME_CORNER = 0.5  # mm; chosen: a cutter of 1 mm, and room for the outer chips
+CHIP_ROOM = 0.2  # mm over and beside a chip; chosen: soldered boards' usual tolerance
+SPRING_STEEL, GLASS_EPOXY = Material("1.4310", 7900, "+C1300", "EN 10151"), Material("FR4", 1850)
+NEODYMIUM = Material("NdFeB, nickel plated", 7500)
+PACKAGE = Material("moulded package", 1800)
+STAINLESS_BAR = Material("X8CrNiS18-9 (1.4305)", 7900, standard="EN 10088-3", magnetic="no")
+
+
+def screw_places(layout: PlanarLayout) -> tuple[tuple[float, float], ...]:
+    """Along the border, corners included, at most LARGEST_STEP apart; none of bonded layers."""
+    if not layout.screwed:
+        return ()
+    x, y = (h - border / 2.0 for h, border in zip(layout.half, layout.borders))
+    nx, ny = (max(1, ceil(2.0 * h / LARGEST_STEP)) for h in (x, y))
+    along = [(-x + 2.0 * x * i / nx, s * y) for i in range(nx + 1) for s in (-1.0, 1.0)]
+    up = [(s * x, -y + 2.0 * y * j / ny) for j in range(1, ny) for s in (-1.0, 1.0)]
+    return tuple((round(u, 9), round(v, 9)) for u, v in along + up)
+
+
+def dowel_places(layout: PlanarLayout) -> tuple[tuple[float, float], ...]:
+    """Two, midway between a corner's screw and the next one along x, at opposite corners; none of bonded
+    layers."""
+    if not layout.screwed:
+        return ()
+    x, y = (h - border / 2.0 for h, border in zip(layout.half, layout.borders))
+    beside = x / max(1, ceil(2.0 * x / LARGEST_STEP))
+    return ((round(-x + beside, 9), round(-y, 9)), (round(x - beside, 9), round(y, 9)))
+
+
+def stack_height(layout: PlanarLayout) -> float:
+    """From the screws' heads to the cover, mm."""
+    return layout.design.hall.board + layout.cover_z - layout.board_z
+
+
+def screw_length(layout: PlanarLayout) -> float | None:
+    """The longest ISO 4762 length that ends inside the cover; None where none engages one diameter."""
+    cover, under = layout.design.housing.cover_thickness, stack_height(layout)
+    fits = [n for n in CAP_SCREW_LENGTHS[SCREW] if METRIC[SCREW].d <= n - under <= cover]
+    return max(fits, default=None)
+
+
+def dowel_length(layout: PlanarLayout) -> float | None:
+    """The longest ISO 8734 length between the base's lower and the cover's upper face."""
+    room = base_plate(layout) + layout.cover_z - layout.base_z + layout.design.housing.cover_thickness
+    return max((n for n in dowel_lengths(DOWEL) if n <= room), default=None)
+
+
+def land_diameter(layout: PlanarLayout) -> float:
+    """Of the sunk lands under the kind of cell with the longer way, mm: WEB stays between neighbours."""
+    return round(layout.design.planar.pitch - WEB, 9)
+
+
+def _outline(layout: PlanarLayout) -> Contour:
+    x, y = layout.half
+    return rectangle(-x, -y, x, y)
+
+
+def _through(
+    layout: PlanarLayout, thickness: float, tapped: bool = False, press: bool = False
+) -> list[Feature]:
+    """The screws' and dowels' holes of a layer, along +z from its lower face."""
+    m = METRIC[SCREW]
+    holes: list[Feature] = []
+    for x, y in screw_places(layout):
+        if tapped:
+            holes.append(tapped_through("screw", SCREW, (x, y, 0.0), (0, 0, 1), thickness))
+        else:
+            holes.append(Hole("screw", (x, y, 0.0), (0, 0, 1), m.clearance, thickness, True))
+    bore = dowel_diameter(DOWEL) + (0.0 if press else SLIDING)
+    for x, y in dowel_places(layout):
+        tolerance = "N7, the pin pressed in" if press else "+0.01/0"
+        holes.append(
+            Hole("dowel_hole", (x, y, 0.0), (0, 0, 1), round(bore, 6), thickness, True, tolerance=tolerance)
+        )
+    return holes
+
+
+def _round_holes(layout: PlanarLayout, name: str, diameter: float, thickness: float) -> list[Feature]:
+    return [Hole(name, (e.x, e.y, 0.0), (0, 0, 1), diameter, thickness, True) for e in layout.elements]
+
+
+def foil(layout: PlanarLayout) -> Part:
+    """The foil: every cell's four slots, spigot, screw and dowel holes."""
+    d, t = layout.design, layout.design.planar.thickness
+    slots = tuple(s for e in layout.elements for s in e.kind.slots(layout.corner, (e.x, e.y)))
+    cut = layout.process.tolerance(t)
+    return Part(
+        part_no=f"{d.name}-foil",
+        name="Foil",
+        process=cast(Process, layout.design.planar.process),
+        material=sheet_material(d),
+        body=Extrusion(_outline(layout), t, slots),
+        features=(
+            *_round_holes(layout, "spigot", round(d.post.spigot + SLIDING, 9), t),
+            *_through(layout, t),
+        ),
+        colour="#c9ccd1",
+        notes=(
+            f"{d.planar.process}; every slot width +-{cut:.3g} over the foil's thickness",
+            "do not bend, do not tumble; packed flat between cards",
+        ),
+        characteristics=(within("thickness", t, d.foil_tolerance, True, between=FACES),),
+        kind="element",
+    )
+
+
+def foot(layout: PlanarLayout, kind: Kind) -> Part:
+    """The plate that keeps an island rigid: its outline, a little inside, with the spigot's hole."""
+    d = layout.design
+    hole = round(d.post.spigot + SLIDING, 9)
+    return Part(
+        part_no=f"{d.name}-foot-{kind.name}",
+        name=f"Foot plate, {kind.name} cell",
+        process=cast(Process, layout.design.planar.process),
+        material=SPRING_STEEL,
+        body=Extrusion(kind.island_outline(layout.corner, FOOT_INSET), d.post.foot),
+        features=(Hole("spigot", (0, 0, 0), (0, 0, 1), hole, d.post.foot, True),),
+        colour="#8f9aa8" if kind.name == "measuring" else "#5b6673",
+    )
+
+
+def post(layout: PlanarLayout) -> Part:
+    """A turned post: spigot through foot plate and foil, shoulder on the foot plate, pad on top; z = 0 its
+    shoulder."""
+    d = layout.design
+    shoulder = layout.design.planar.thickness + d.post.foot
+    up, down = round(layout.pad_z - shoulder, 9), round(-shoulder + SLIDING, 9)
+    r, s = d.post.pad / 2.0, d.post.spigot / 2.0
+    points = [(0.0, down), (s, down), (s, 0.0), (r, 0.0), (r, up), (0.0, up)]
+    names = ("end", "spigot", "shoulder", "pad side", "pad", "axis")
+    return Part(
+        part_no=f"{d.name}-post",
+        name="Post",
+        process="turned",
+        material=STAINLESS_BAR,
+        body=Revolution(_polygon(points, names)),
+        colour="#d8d3c4",
+        notes=(BREAK_EDGES.replace("0.2", "0.05"), "pad's edge 0.1 round", f"shoulder to pad {up:g} +-0.01"),
+    )
+
+
+def _polygon(points: list[tuple[float, float]], names: tuple[str, ...]) -> Contour:
+    return rounded_polygon([Corner(p, 0.0, n) for p, n in zip(points, names)])
+
+
+def magnet(layout: PlanarLayout) -> Part:
+    """A disc magnet, its upper face at z = 0."""
+    m = layout.design.magnet
+    name = f"MAGNET-{m.diameter:g}x{m.height:g}"
+    return Part(
+        part_no=name,
+        name=f"Disc magnet {m.diameter:g}x{m.height:g}",
+        process="bought",
+        material=NEODYMIUM,
+        body=Extrusion(circle((0, 0), m.diameter), m.height),
+        colour="#9aa0a8",
+        purchase=Purchase(
+            f"disc magnet {m.diameter:g} x {m.height:g} mm, axial, remanence {m.remanence:g} T"
+        ),
+        spares=max(1, len(layout.elements) // 10),
+    )
+
+
+def _spacer(layout: PlanarLayout, where: str, thickness: float, limit: float, key: bool) -> Part:
+    """A frame with the openings of the foil's cells, which clamps the foil's webs."""
+    d, half = layout.design, layout.kinds["measuring"].opening / 2.0
+    openings = tuple(
+        rounded_polygon(
+            [
+                Corner((round(e.x + sx * half, 9), round(e.y + sy * half, 9)), layout.corner)
+                for sx, sy in ((-1, -1), (1, -1), (1, 1), (-1, 1))
+            ]
+        )
+        for e in layout.elements
+    )
+    return Part(
+        part_no=f"{d.name}-{where}-spacer",
+        name=f"{where.capitalize()} spacer",
+        process=cast(Process, layout.design.planar.process),
+        material=SPRING_STEEL,
+        body=Extrusion(_outline(layout), thickness, openings),
+        features=tuple(_through(layout, thickness)),
+        colour="#aab2bd",
+        characteristics=(within("thickness", thickness, limit, key, between=FACES),),
+    )
+
+
+def lower_spacer(layout: PlanarLayout) -> Part:
+    """Its thickness is the way of every island down to its stop."""
+    d = layout.design
+    return _spacer(layout, "lower", -layout.base_z, d.tolerance.stop_gap / 2.0, True)
+
+
+def upper_spacer(layout: PlanarLayout) -> Part:
+    return _spacer(layout, "upper", layout.upper_spacer, 0.03, False)
+
+
+def _milled(layout: PlanarLayout, number: str, name: str, thickness: float, features: list[Feature]) -> Part:
+    d = layout.design
+    alloy = ALLOYS[d.housing.plate_alloy]
+    return Part(
+        part_no=f"{d.name}-{number}",
+        name=name,
+        process="milled",
+        material=Material(alloy.name, alloy.density, standard=alloy.standard, magnetic=alloy.magnetic or ""),
+        body=Extrusion(_outline(layout), thickness),
+        features=tuple(features),
+        colour="#7c8794",
+        finish="Ra 1.6, clear anodised after machining; dowel holes masked",
+        notes=(BREAK_EDGES,),
+        characteristics=(within("thickness", thickness, 0.02, between=FACES),),
+    )
+
+
+def chip_room(layout: PlanarLayout) -> float:
+    """Height of the frame around the chips, mm."""
+    return round(layout.chip.height + CHIP_ROOM, 9)
+
+
+def base_plate(layout: PlanarLayout) -> float:
+    """Thickness of the base over the frame, mm."""
+    return round(layout.base_thickness - chip_room(layout), 9)
+
+
+def base(layout: PlanarLayout) -> Part:
+    """The islands' stop, with a well around every magnet, sunk under the kind of cell with the longer way;
+    z = 0 its lower face."""
+    t = base_plate(layout)
+    wells: list[Feature] = []
+    for e in layout.elements:
+        lower = round(e.kind.table.stop_gap + layout.base_z, 9)
+        sunk = (land_diameter(layout), lower) if lower > 0.0 else None
+        name = f"well_{e.kind.name}"
+        wells.append(Hole(name, (e.x, e.y, t), (0, 0, -1), layout.well, t, True, counterbore=sunk))
+    return _milled(layout, "base", "Base", t, [*_through(layout, t, press=True), *wells])
+
+
+def frame(layout: PlanarLayout) -> Part:
+    """Keeps the board off the base by the chips' height."""
+    t = chip_room(layout)
+    x, y = layout.field_half
+    room = rounded_polygon(
+        [Corner((sx * x, sy * y), FRAME_CORNER) for sx, sy in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
+    )
+    plate = _milled(layout, "frame", "Board frame", t, [h for h in _through(layout, t) if h.name == "screw"])
+    return replace(plate, body=Extrusion(_outline(layout), t, (room,)))
+
+
+def cover(layout: PlanarLayout) -> Part:
+    """Round openings around the posts, the sideways stops; the screws' threads. z = 0 its lower face."""
+    d = layout.design
+    t = d.housing.cover_thickness
+    opening = round(d.post.pad + 2.0 * d.housing.side_gap, 9)
+    return _milled(
+        layout,
+        "cover",
+        "Cover",
+        t,
+        [*_through(layout, t, tapped=True), *_round_holes(layout, "post_opening", opening, t)],
+    )
+
+
+def board(layout: PlanarLayout) -> Part:
+    """The chips' board, z = 0 its lower face."""
+    d = layout.design
+    t = d.hall.board
+    m = METRIC[SCREW]
+    holes = tuple(
+        Hole("screw", (x, y, 0.0), (0, 0, 1), m.clearance, t, True) for x, y in screw_places(layout)
+    )
+    return Part(
+        part_no=f"{d.name}-board",
+        name="Board",
+        process="bought",
+        material=GLASS_EPOXY,
+        body=Extrusion(_outline(layout), t),
+        features=holes,
+        colour="#3f6b4b",
+        purchase=Purchase(f"board of {d.name}, {len(layout.elements)} x {layout.chip.name}"),
+    )
+
+
+def chip(layout: PlanarLayout) -> Part:
+    """A chip's body, z = 0 on the board."""
+    c = layout.chip
+    return Part(
+        part_no=f"{c.name}-chip",
+        name=f"Hall chip {c.name}",
+        process="bought",
+        material=PACKAGE,
+        body=Extrusion(rectangle(-c.length / 2, -c.width / 2, c.length / 2, c.width / 2), c.height),
+        colour="#2b2d31",
+        purchase=Purchase(
+            f"three-axis Hall chip {c.name}", manufacturer=c.maker, mpn=c.name, source_verified=False
+        ),
+        spares=max(1, len(layout.elements) // 10),
+    )
+
+
+def about(layout: PlanarLayout) -> str:
+    p = layout.design.planar
+    return (
+        f"{p.rows} x {p.columns} cells in a plane, pitch {p.pitch:g} mm, in one foil of {p.thickness:g} "
+        f"mm: each an island on "
+        "four beams, of two stiffnesses in turn, with a magnet over a three-axis Hall chip."
+    )

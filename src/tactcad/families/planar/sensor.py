@@ -1,0 +1,286 @@
+"""What every cell does: stiffness, forces at yield and at its stop, what its chip feels, how small a force
+it tells."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from dataclasses import asdict, dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tactcad.design.allowance import Allowance
+from tactcad.design.messages import InputError
+
+from . import beam
+from .cell import wrench
+from .cell_layout import Kind, PlanarLayout
+from .cell_tables import PlanarDesign
+from .field import felt, field, sensitivity
+
+Array = NDArray[np.float64]
+NEIGHBOURS = 3  # pitches away at which a neighbour's field still counts: beyond, under 1 % of the nearest's
+
+
+@dataclass(frozen=True)
+class CellEstimate:
+    """One cell; N, mm, N/mm, MPa, mT.
+
+    stiffness, shear_stiffness  at the pad, along z and across
+    expected_error              of the stiffness, against solid elements, relative
+    rated_force                 the lesser of the force asked for and yield over its factor, with the rated
+    shear stop_force                  at which the island meets the base
+    linear_force                up to which K stays within rating.linearity
+    field                       at the chip, cell at rest
+    force_noise                 of fx, fy and fz, from one reading's noise
+    """
+
+    number: int
+    kind: str
+    arm: float
+    stiffness: float
+    shear_stiffness: float
+    expected_error: float
+    force: float
+    sink: float
+    stress: float
+    yield_force: float
+    rated_force: float
+    elastic: bool
+    stop_force: float
+    linear_force: float
+    field: float
+    signal: float
+    condition: float
+    force_noise_x: float
+    force_noise_z: float
+    gauge_strain: None = None
+    peak_strain: float = 0.0
+
+
+@dataclass(frozen=True)
+class KindFigures:
+    """Of a kind of cell: compliance of the pad (3 x 3, mm/N), matrix of the chip (mT/N), stress of 1 N down
+    with the rated shear (MPa)."""
+
+    pad: Array
+    matrix: Array
+    stress: float
+    at_rest: Array
+    moved: float
+
+
+def pad_compliance(kind: Kind, height: float) -> Array:
+    """The pad's motion by a force on it, mm/N, 3 x 3."""
+    load = np.stack([wrench(f, height) for f in np.eye(3)], axis=1)
+    return load.T @ kind.cell.compliance @ load
+
+
+def chip_matrix(layout: PlanarLayout, kind: Kind) -> Array:
+    """The field's change at the chip by a force on the pad, mT/N, 3 x 3, about the cell at rest."""
+    load = np.stack([wrench(f, layout.pad_height) for f in np.eye(3)], axis=1)
+    _, slope = sensitivity(layout.magnet, layout.design.hall.gap, magnet_lever(layout))
+    return slope @ kind.cell.compliance @ load
+
+
+def magnet_lever(layout: PlanarLayout) -> float:
+    """From the island's mid-plane down to the magnet's lower face, mm."""
+    return layout.design.planar.thickness / 2.0 + layout.design.magnet.height
+
+
+def kind_figures(layout: PlanarLayout, name: str) -> KindFigures:
+    kind, design = layout.kinds[name], layout.design
+    down = wrench(np.array([design.rating.shear, 0.0, -1.0]), layout.pad_height)
+    stress = kind.cell.stress(down) * (1.0 + stress_error())
+    at_rest, _ = sensitivity(layout.magnet, design.hall.gap, magnet_lever(layout))
+    rated = rated_force(layout, kind, stress)[1]
+    at_rated = felt(layout.magnet, design.hall.gap, magnet_lever(layout), kind.cell.compliance @ down * rated)
+    return KindFigures(
+        pad_compliance(kind, layout.pad_height),
+        chip_matrix(layout, kind),
+        stress,
+        at_rest,
+        float(np.abs(at_rated).max()),
+    )
+
+
+def stress_error() -> float:
+    """Stated error of the beams' stress: the largest that a climb found, of any mode."""
+    return max(e["climbed"] for e in beam.fit()["errors"]["stress"].values())
+
+
+def stiffness_error() -> float:
+    return max(e["climbed"] for e in beam.fit()["errors"]["stiffness"].values())
+
+
+def rated_force(layout: PlanarLayout, kind: Kind, stress: float) -> tuple[float, float]:
+    """Force at yield with the rated shear beside it, and rated force, N."""
+    at_yield = layout.design.material.yield_strength / stress
+    return at_yield, min(layout.design.rating.force, at_yield / layout.design.rating.yield_factor)
+
+
+def closing_force(layout: PlanarLayout, kind: Kind) -> float:
+    """At which the island meets the base, N: its stiffness grows with the sink (cell.stiffening)."""
+    z, cell = kind.table.stop_gap, kind.cell
+    return float(z / cell.compliance[2, 2] * (1.0 + cell.stiffening * z**2))
+
+
+def neighbours_field(layout: PlanarLayout) -> float:
+    """Largest field of the other cells' magnets at a chip, mT, all at rest: known, and subtracted."""
+    p, gap = layout.design.planar, layout.design.hall.gap
+    at = np.array(
+        [
+            (i * p.pitch, j * p.pitch, -gap)
+            for i in range(-min(NEIGHBOURS, p.columns - 1), min(NEIGHBOURS, p.columns - 1) + 1)
+            for j in range(-min(NEIGHBOURS, p.rows - 1), min(NEIGHBOURS, p.rows - 1) + 1)
+            if (i, j) != (0, 0)
+        ]
+    )
+    return float(np.abs(field(layout.magnet, at).sum(axis=0)).max()) if len(at) else 0.0
+
+
+def rows(layout: PlanarLayout, _rung: str, force: float | None) -> list[CellEstimate]:
+    design, chip = layout.design, layout.chip
+    by_kind: dict[str, dict] = {}
+    for kind in layout.used:
+        figures = kind_figures(layout, kind.name)
+        at_yield, rated = rated_force(layout, kind, figures.stress)
+        load = design.rating.force if force is None else force
+        stiffness = float(1.0 / figures.pad[2, 2])
+        noise = np.linalg.inv(figures.matrix) * (
+            1e-3 * np.array([chip.noise_xy, chip.noise_xy, chip.noise_z])
+        )
+        per_axis = np.sqrt((noise**2).sum(axis=1))
+        linear = kind.cell.linear_range(design.rating.linearity)
+        stress = load * figures.stress
+        by_kind[kind.name] = {
+            "kind": kind.name,
+            "arm": kind.beam_length,
+            "stiffness": stiffness,
+            "shear_stiffness": float(1.0 / figures.pad[0, 0]),
+            "expected_error": stiffness_error(),
+            "force": load,
+            "sink": load / stiffness,
+            "stress": stress,
+            "yield_force": at_yield,
+            "rated_force": rated,
+            "elastic": load < at_yield,
+            "stop_force": closing_force(layout, kind),
+            "linear_force": stiffness * linear * (1.0 + design.rating.linearity),
+            "field": float(np.abs(figures.at_rest).max()),
+            "signal": float(abs(figures.matrix[2, 2])),
+            "condition": float(np.linalg.cond(figures.matrix)),
+            "force_noise_x": float(per_axis[0]),
+            "force_noise_z": float(per_axis[2]),
+            "peak_strain": stress / design.material.youngs_modulus,
+        }
+    return [CellEstimate(number=e.number, **by_kind[e.kind.name]) for e in layout.elements]
+
+
+HEADINGS = (
+    ("kind", "kind", "", 1.0),
+    ("stiffness", "K", "N/mm", 1.0),
+    ("shear_stiffness", "K across", "N/mm", 1.0),
+    ("sink", "sink", "um", 1e3),
+    ("stress", "stress", "MPa", 1.0),
+    ("yield_force", "yields at", "N", 1.0),
+    ("rated_force", "rated", "N", 1.0),
+    ("stop_force", "stop closes", "N", 1.0),
+    ("linear_force", "linear to", "N", 1.0),
+    ("signal", "signal", "mT/N", 1.0),
+    ("force_noise_x", "noise x, y", "mN", 1e3),
+    ("force_noise_z", "noise z", "mN", 1e3),
+)
+
+
+def run(args: argparse.Namespace, asked: Allowance, design: PlanarDesign) -> int:
+    """`tactcad estimate`: a line a kind, since cells of a kind are equal; --json has every cell."""
+    from tactcad.scenes import overall_size, stated_size
+
+    for option, given in (("--model", args.model), ("--inspection", args.inspection), ("--within", asked)):
+        if given:
+            raise InputError(option, "does not take designs of this family", value="planar")
+    layout = PlanarLayout(design)
+    found, size = rows(layout, "", args.force), overall_size(design)
+    if args.json:
+        document = {
+            "design": design.name,
+            "revision": design.design.revision,
+            "family": "planar",
+            "alloy": design.material.alloy,
+            "size_mm": size,
+            "units": {"length": "mm", "force": "N", "stiffness": "N/mm", "stress": "MPa", "field": "mT"},
+            "neighbours_field_mT": neighbours_field(layout),
+            "elements": [asdict(row) for row in found],
+        }
+        print(json.dumps(document, indent=2))
+        return 0
+    print(
+        f"{design.name} {design.design.revision}, {design.material.alloy}, {len(found)} cells, "
+        f"{found[0].force:g} N on each pad, {stated_size(size)} overall"
+    )
+    shown = list({row.kind: row for row in found}.values())
+    cells = [
+        [
+            (getattr(row, name) if name == "kind" else f"{scale * getattr(row, name):.4g}")
+            for name, _, _, scale in HEADINGS
+        ]
+        for row in shown
+    ]
+    table = [[h for _, h, _, _ in HEADINGS], [u for _, _, u, _ in HEADINGS], *cells]
+    widths = [max(len(line[i]) for line in table) for i in range(len(HEADINGS))]
+    for line in table:
+        print("  ".join(text.rjust(w) for text, w in zip(line, widths)).rstrip())
+    print(
+        f"K against solid elements: within {100 * stiffness_error():.2g} %; stress includes its own error of "
+        f"{100 * stress_error():.2g} % and the rated shear; noise is of one reading of {layout.chip.name}"
+    )
+    unread = "unread" in layout.chip.source
+    print(
+        f"at a chip at rest {found[0].field:.3g} mT, of which neighbours make {neighbours_field(layout):.2g}"
+        + ("; the chip's figures were not all read in its maker's sheet" if unread else "")
+    )
+    ratio = {row.kind: row.stiffness for row in shown}
+    if len(ratio) == 2:
+        print(f"K_r/K_m {max(ratio.values()) / min(ratio.values()):.3g}")
+    return 0
+
+
+def golden(design: PlanarDesign) -> dict[str, dict]:
+    layout = PlanarLayout(design)
+    found = {row.number: row for row in rows(layout, "", None)}
+    return {
+        e.designator: {
+            "part_no": f"{design.name}-foil",
+            "stiffness_n_per_mm": found[e.number].stiffness,
+            "yield_force_n": found[e.number].yield_force,
+        }
+        for e in layout.elements
+    }
+
+
+STRENGTH = ("kind", "stiffness", "rated_force", "yield_force", "stop_force", "linear_force", "stress")
+
+
+def strength(layout: PlanarLayout) -> bytes:
+    """strength.csv: a row a cell; N, N/mm, MPa."""
+    d = layout.design.design
+    lines = [",".join(("design", "revision", "element", *STRENGTH))]
+    for row, place in zip(rows(layout, "", None), layout.elements):
+        values = [v if isinstance(v := getattr(row, n), str) else f"{v:.5g}" for n in STRENGTH]
+        lines.append(",".join((d.name, d.revision, place.designator, *values)))
+    return ("\r\n".join(lines) + "\r\n").encode()
+
+
+def stop_stress(layout: PlanarLayout, kind: Kind, gap: float) -> float:
+    """Stress of a cell that is pressed down on its stop, `gap` mm deep, with the rated shear of the force
+    that closes it, MPa: of bending, of the beams' stretch by 3 z^2/(5 s^2) where the island cannot turn,
+    and of tipping."""
+    cell = kind.cell
+    down = wrench(np.array([0.0, 0.0, -1.0]), layout.pad_height) / cell.compliance[2, 2]
+    tip = wrench(np.array([layout.design.rating.shear, 0.0, 0.0]), layout.pad_height)
+    force = gap / cell.compliance[2, 2] * (1.0 + cell.stiffening * gap**2)
+    stretch = layout.design.material.youngs_modulus * 0.6 * (gap / kind.beam_length) ** 2 * cell.held
+    bent = cell.stress(down) * gap + cell.stress(tip) * force
+    return bent * (1.0 + stress_error()) + stretch

@@ -1,0 +1,128 @@
+"""A planar cell's stiffness, stress and linear range, against solid elements, beam theory and symmetry."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from tactcad.families.planar import beam
+from tactcad.families.planar.beam import MODES, FoilBeam
+from tactcad.families.planar.beam_elements import solved
+from tactcad.families.planar.cell import Cell, roots, wrench
+
+SOFT = FoilBeam(4.0, 0.4, 0.08, 0.1, 179_000.0, 0.30)
+STIFF = FoilBeam(2.2, 0.9, 0.08, 0.2, 179_000.0, 0.30)
+PINWHEEL = Cell(SOFT, roots("pinwheel", 2.2, -1.1 + 0.8, 1.1 + 0.35 + 0.2))
+STRAIGHT = Cell(STIFF, roots("straight", 3.0, 0.0, 0.0))
+
+
+@pytest.mark.parametrize("held_out", [SOFT, STIFF, FoilBeam(3.0, 1.2, 0.1, 0.35, 127_000.0, 0.34)])
+def test_closed_form_is_within_its_stated_error_of_solid_elements(held_out):
+    stiffness, stress = solved(held_out)
+    stated = beam.fit()["errors"]
+    for mode in MODES:
+        # density 1 itself errs by up to 0.1 %
+        assert beam.stiffness(held_out)[mode] == pytest.approx(
+            stiffness[mode], rel=stated["stiffness"][mode]["climbed"] + 1e-3
+        )
+        assert beam.stress(held_out)[mode] == pytest.approx(
+            stress[mode], rel=stated["stress"][mode]["climbed"] + 0.03
+        )
+
+
+def test_long_narrow_beams_are_beam_theory():
+    """Euler and Saint-Venant, of a beam at the slender end of the range with small fillets."""
+    b = FoilBeam(10.0, 1.0, 0.2, 0.1, 200_000.0, 0.3)
+    k, I, s = beam.stiffness(b), 1.0 * 0.2**3 / 12.0, 10.0 - 0.02  # the fillets' sections, nearly
+    assert k["axial"] == pytest.approx(200_000.0 * 0.2 / s, rel=0.01)
+    assert k["bend_out"] == pytest.approx(200_000.0 * I / s, rel=0.02)
+    assert k["shear_out"] == pytest.approx(12.0 * 200_000.0 * I / s**3, rel=0.03)
+    shear = 2.4 * 1.3 * (1.0 / s) ** 2  # Timoshenko's 12 E I/(kappa G A s^2)
+    assert k["shear_in"] == pytest.approx(12.0 * 200_000.0 * (0.2 / 12.0) / s**3 / (1 + shear), rel=0.03)
+
+
+@pytest.mark.parametrize("cell", [PINWHEEL, STRAIGHT])
+def test_a_cell_is_square_symmetric_reciprocal_and_scales(cell):
+    K = cell.stiffness
+    assert np.allclose(K, K.T) and np.linalg.eigvalsh(K).min() > 0
+    turn = np.zeros((6, 6))
+    turn[:3, :3] = turn[3:, 3:] = [[0, -1, 0], [1, 0, 0], [0, 0, 1]]
+    assert np.allclose(turn @ K @ turn.T, K, rtol=1e-9, atol=1e-9 * K.max())
+    b = cell.beam
+    twice = Cell(
+        replace(b, length=2 * b.length, width=2 * b.width, thickness=2 * b.thickness, fillet=2 * b.fillet),
+        tuple(replace(r, at=(2 * r.at[0], 2 * r.at[1])) for r in cell.roots),
+    )
+    assert twice.stiffness[2, 2] == pytest.approx(2 * K[2, 2]) and twice.stiffness[3, 3] == pytest.approx(
+        8 * K[3, 3]
+    )
+
+
+def test_sink_is_four_guided_beams():
+    assert PINWHEEL.stiffness[2, 2] == pytest.approx(4 * beam.stiffness(SOFT)["shear_out"])
+    assert PINWHEEL.stiffness[2, 2] == pytest.approx(4 * 179_000 * 0.4 * 0.08**3 / 4.0**3, rel=0.05)
+
+
+def test_tilt_of_a_straight_cell_by_hand():
+    """Two beams bend at the island's half width, two twist: 2 (k_b + k_s (a/2 + s/2)^2) + 2 k_t + ... of
+    the others' sink, none."""
+    k = beam.stiffness(STIFF)
+    by_hand = 2 * (k["bend_out"] + k["shear_out"] * (1.5 + 1.1) ** 2) + 2 * k["twist"]
+    assert STRAIGHT.stiffness[3, 3] == pytest.approx(by_hand)
+
+
+def test_a_straight_cell_stiffens_as_a_string_of_guided_beams():
+    """F/(K z) - 1 = 0.72 (z/t)^2 of plain beams (A = w t, I = w t^3/12); a pinwheel gives nearly all of it
+    back."""
+    assert STRAIGHT.held == pytest.approx(1.0)
+    assert STRAIGHT.stiffening * STIFF.thickness**2 == pytest.approx(0.72, rel=0.05)
+    assert PINWHEEL.held < 0.05
+    z = STRAIGHT.linear_range(0.05)
+    assert STRAIGHT.stiffening * z**2 == pytest.approx(0.05)
+
+
+def test_stiffening_against_the_beam_s_own_nonlinear_energy():
+    """The stretch of a guided beam by quadrature of half its slope's square."""
+    s, t = 2.2, 0.08
+    u, weight = np.polynomial.legendre.leggauss(20)
+    x, dx = (u + 1) * s / 2, weight * s / 2
+    slope = 6 * x / s**2 - 6 * x**2 / s**3
+    stretch = 0.5 * (slope**2 * dx).sum()
+    assert stretch == pytest.approx(3 / (5 * s))
+    k = beam.stiffness(STIFF)
+    cubic = 2 * k["axial"] * stretch**2 / k["shear_out"]  # U = k z^2/2 + k_a (stretch z^2)^2/2
+    assert STRAIGHT.stiffening == pytest.approx(cubic)
+    assert cubic * t**2 == pytest.approx(0.72, rel=0.05)
+
+
+def test_stress_of_a_sink_by_hand():
+    """A guided beam's root: 3 E t z/s^2, lowered by the fillet, raised by the clamp."""
+    by_hand = 3 * 179_000 * 0.08 / 4.0**2
+    per_mm = PINWHEEL.stress(wrench(np.array([0.0, 0.0, -1.0]), 3.0)) * PINWHEEL.stiffness[2, 2]
+    assert 0.9 * by_hand < per_mm < 1.3 * by_hand
+
+
+def test_shear_tips_the_cell_by_its_lever():
+    load = wrench(np.array([0.1, 0.0, 0.0]), 4.0)
+    motion = PINWHEEL.compliance @ load
+    assert motion[4] == pytest.approx(0.4 / PINWHEEL.stiffness[4, 4])
+    assert load.tolist() == pytest.approx([0.1, 0, 0, 0, 0.4, 0])
+
+
+def test_the_fit_s_report_keeps_what_is_promised():
+    errors = beam.fit()["errors"]
+    assert max(e["climbed"] for e in errors["stiffness"].values()) < 0.005
+    assert all(e["held_out"] <= e["climbed"] for kind in errors.values() for e in kind.values())
+    assert json.dumps(errors)
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [({"width": 2.2}, "w/s = 0.55"), ({"thickness": 0.3}, "s/t = 13.3"), ({"poisson": 0.45}, "nu = 0.45")],
+)
+def test_out_of_range_is_said(change, said):
+    assert beam.out_of_range(SOFT) == ""
+    assert beam.out_of_range(replace(SOFT, **change)).startswith(said)

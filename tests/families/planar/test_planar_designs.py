@@ -1,0 +1,156 @@
+"""Two planar designs, as their files are read, refused, estimated and laid out."""
+
+from __future__ import annotations
+
+import csv
+import io
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tactcad.contour.inside import side
+from tactcad.design.family import family_of
+from tactcad.design.load import parse
+from tactcad.design.messages import InputError
+from tactcad.families.planar import cell_array, parts
+from tactcad.families.planar.cell_layout import PlanarLayout
+from tactcad.families.planar.rules import design_rules
+from tactcad.families.planar.sensor import chip_matrix, closing_force, rows, strength
+from tactcad.parts.designs import load
+
+DESIGNS = Path(__file__).parent / "designs"
+PLANAR, JAW = (DESIGNS / f"{name}-array.toml" for name in ("planar", "jaw"))
+
+
+@pytest.fixture(scope="module", params=[PLANAR, JAW], ids=["planar", "jaw"])
+def layout(request):
+    return PlanarLayout(load(str(request.param)))
+
+
+def test_kinds_alternate_like_a_chessboard(layout):
+    p = layout.design.planar
+    kinds = {(e.row, e.column): e.kind.name for e in layout.elements}
+    assert len(kinds) == p.rows * p.columns
+    for (j, i), kind in kinds.items():
+        assert all(kinds.get(n, "") != kind for n in ((j + 1, i), (j, i + 1)))
+
+
+def test_the_foil_s_area_by_hand(layout):
+    """Border and webs, islands with ears, beams, (1 - pi/4) r^2 of every root's corner. Of the corners with
+    the process' radius as many are inside as outside."""
+    d, foil = layout.design, parts.foil(layout)
+    x, y = layout.half
+    area = 4 * x * y
+    for e in layout.elements:
+        t, o = e.kind.table, e.kind.opening
+        held = 4 * e.kind.beam_length * t.beam_width + t.island**2
+        if e.kind.pinwheel:
+            held += 4 * t.ear * (e.kind.reach - t.island / 2)
+        corners = (1 - np.pi / 4) * 16 * t.fillet**2
+        area -= o**2 - held - corners
+    assert foil.extrusion.section_area == pytest.approx(area, rel=1e-9)
+    assert d.planar.thickness == foil.extrusion.thickness
+
+
+def test_beams_are_as_wide_and_as_long_as_they_are_computed(layout):
+    """Across each beam's middle the foil is material for its width, and slot beside it."""
+    foil = parts.foil(layout)
+    for e in layout.elements[:2]:
+        for root in e.kind.cell.roots:
+            (x, y), (u, v) = root.at, root.along
+            middle = np.array([e.x + x + u * e.kind.beam_length / 2, e.y + y + v * e.kind.beam_length / 2])
+            across = np.array([-v, u])
+            half = e.kind.table.beam_width / 2
+            for off, material in (
+                (0.0, True),
+                (half - 1e-3, True),
+                (half + 1e-3, False),
+                (-half - 1e-3, False),
+            ):
+                point = tuple(middle + off * across)
+                inside = all(side(slot, point) < 0 for slot in foil.extrusion.openings)
+                assert inside is material, (e.number, root, off)
+
+
+def test_heights_add_up(layout):
+    """From the board's underside to the pad: layer on layer, and the chip as far from the magnet as asked."""
+    scene = cell_array.scene(layout.design)
+    at = {p.designator: p for p in scene.placements}
+    d = layout.design
+    magnet, chip = at["M1"], at["U1"]
+    assert magnet.origin[2] - (chip.origin[2] + layout.chip.height) == pytest.approx(d.hall.gap)
+    cover = at["C1"]
+    assert at["P1"].origin[2] + at["P1"].part.body.box[1][2] == pytest.approx(
+        cover.origin[2] + cover.part.extrusion.thickness + d.post.stand_out
+    )
+    assert scene.size[2] > 0 and all(p.part.volume > 0 for p in scene.placements)
+
+
+def test_estimate_tells_ratio_resolution_and_stops(layout):
+    found = {row.kind: row for row in rows(layout, "", None)}
+    soft, stiff = found["measuring"], found["reference"]
+    assert 5 < stiff.stiffness / soft.stiffness < 20
+    for row in found.values():
+        kind = layout.kinds[row.kind]
+        assert row.rated_force <= row.yield_force / layout.design.rating.yield_factor * (1 + 1e-9)
+        assert (
+            row.stop_force == pytest.approx(closing_force(layout, kind)) and row.stop_force > row.rated_force
+        )
+        # noise: the chip's own, through the inverse of the matrix, by drawing it
+        noise = np.array([layout.chip.noise_xy] * 2 + [layout.chip.noise_z]) * 1e-3
+        drawn = np.linalg.solve(
+            chip_matrix(layout, kind), (np.random.default_rng(1).normal(size=(4000, 3)) * noise).T
+        )
+        assert drawn.std(axis=1)[[0, 2]] == pytest.approx([row.force_noise_x, row.force_noise_z], rel=0.05)
+    table = list(csv.DictReader(io.StringIO(strength(layout).decode())))
+    assert [r["element"] for r in table] == [e.designator for e in layout.elements]
+
+
+def test_three_components_come_back_from_the_field(layout):
+    """Forces through compliance, magnet and the inverse matrix: small ones exactly, to the square of the
+    motion."""
+    from tactcad.families.planar.cell import wrench
+    from tactcad.families.planar.field import felt
+    from tactcad.families.planar.sensor import magnet_lever
+
+    for kind in layout.used:
+        force = np.array([2e-5, -1e-5, -1e-4])
+        motion = kind.cell.compliance @ wrench(force, layout.pad_height)
+        gap, lever = layout.design.hall.gap, magnet_lever(layout)
+        change = felt(layout.magnet, gap, lever, motion) - felt(layout.magnet, gap, lever, np.zeros(6))
+        assert np.linalg.solve(chip_matrix(layout, kind), change) == pytest.approx(force, rel=2e-3, abs=1e-8)
+
+
+BROKEN = {
+    "foil_suits_process": ("stop_gap = 0.045", "stop_gap = 0.02"),
+    "islands_fit_pitch": ("island = 3.0", "island = 7.3"),
+    "beams_can_be_cut": ("fillet = 0.1\n", "fillet = 0.05\n"),
+    "beams_in_range": ("beam_width = 0.9", "beam_width = 1.3"),
+    "island_takes_post": ("spigot = 0.8", "spigot = 1.5"),
+    "island_lands_on_base": ("border = 5.0", "border = 5.0\nwell = 1.3"),
+    "chips_fit": ("gap = 1.8", "gap = 1.8\nbuses = 2"),
+    "screws_fit": ("cover_thickness = 3.0", "cover_thickness = 1.0"),
+    "stop_protects": ("stop_gap = 0.2", "stop_gap = 0.6"),
+    "field_in_scale": ("gap = 1.8", "gap = 1.0"),
+}
+
+
+@pytest.mark.parametrize("name", BROKEN)
+def test_every_rule_refuses_its_witness_in_one_line(name):
+    old, new = BROKEN[name]
+    text = PLANAR.read_text("utf-8")
+    assert old in text
+    layout = PlanarLayout(parse(text.replace(old, new), "broken.toml"))
+    (finding,) = design_rules()[name](layout)
+    assert finding.limit and "\n" not in finding.broken
+
+
+def test_every_rule_has_a_witness():
+    assert set(BROKEN) == set(design_rules())
+
+
+def test_what_the_family_cannot_do_is_refused_in_one_line():
+    design = load(str(PLANAR))
+    with pytest.raises(InputError, match="does not take designs of this family"):
+        family_of(design).must("readings", "calibrate --design")
