@@ -182,12 +182,6 @@ def test_the_export_is_what_the_contract_says(shipped):
         assert p["qty"] == max(r["qty"] for r in rows if r["part_no"] == p["part_no"])
 
 
-@pytest.mark.parametrize("name", ["open", "below"])
-def test_pictures_shown_in_the_docs_are_the_exports(shipped, name):
-    shown = (HARDWARE.parent / "docs" / "images" / f"macro-array-{name}.svg").read_bytes()
-    assert (shipped / f"out-1/pictures/macro-array-array-{name}.svg").read_bytes() == shown
-
-
 def test_nothing_in_the_export_names_the_machine(shipped):
     assert_names_no_machine(shipped, "out-1")
 
