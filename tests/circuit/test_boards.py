@@ -23,6 +23,7 @@ from tactcad.circuit.kicad_board import board_bytes
 from tactcad.circuit.netlist_files import kicad_bytes
 from tactcad.circuit.read_board import board_netlist
 from tactcad.design.messages import CheckFailure
+from tactcad.export.board_files import check_flashes
 from tactcad.parts.array.board_outline import board_outline
 from tactcad.parts.array.layout import Layout
 
@@ -160,6 +161,16 @@ def test_a_board_that_is_too_small_is_refused():
         lay_out(circuit, replace(outline, width=60.0))
     with pytest.raises(CheckFailure, match=r"needs a height of \d+"):
         lay_out(circuit, replace(outline, height=80.0))
+
+
+def test_gerber_files_with_other_pads_are_refused():
+    board = laid_out()
+    files = gerber_files(board, "any", "2026-01-01")
+    check_flashes(board, files)
+    for layer in ("F_Cu.gbr", "B_Cu.gbr"):
+        lost = files[layer].decode().replace("D03*", "D02*", 1).encode()
+        with pytest.raises(CheckFailure, match=f"{layer} reads back with other pads"):
+            check_flashes(board, files | {layer: lost})
 
 
 def test_equal_designs_give_equal_bytes():

@@ -20,7 +20,7 @@ from tactcad.mechanics import ladder, strain
 from tactcad.parts.array.element import element
 from tactcad.parts.array.hinge_section import hinge_section
 from tactcad.parts.array.layout import ElementPlace, Layout
-from tactcad.parts.array.stop_gap import overloads, seat
+from tactcad.parts.array.stop_gap import land_room, overloads, seat
 from tactcad.parts.designs import load
 
 # every different element of the shipped designs, under its design's overload force
@@ -156,4 +156,5 @@ def test_no_hinge_passes_its_rated_deflection_under_the_whole_load(name, arm):
     mean = estimated.stress / float(strain.peak_share(section)[0])
     assert np.abs(state.stress).max() == pytest.approx(mean, rel=0.02)
     assert width_share(name) < estimated.stress / mean < 1.02 * width_share(name)
-    assert np.abs(stopped(1.2 * widest)[0].stress).max() > limit
+    if gap_of(layout, place) + 0.005 <= land_room(layout, place.hinge):  # else the land's room ends it first
+        assert np.abs(stopped(1.2 * widest)[0].stress).max() > limit

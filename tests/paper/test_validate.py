@@ -123,7 +123,7 @@ def test_calibration_as_json_serves_as_well(tmp_path, capsys):
     table = tmp_path / "calibration.json"
     table.write_text(capsys.readouterr().out)
     assert main(["stiffness", str(GRASP), "--calibration", str(table), "--reference", "1"]) == 0
-    assert "sample 1: K_obj = 3.79" in capsys.readouterr().out
+    assert "sample 1: K_obj = 3.8" in capsys.readouterr().out
 
 
 @pytest.mark.parametrize("level, said", [("0.95", "95%"), ("0.975", "97.5%"), ("0.999", "99.9%")])

@@ -65,7 +65,7 @@ def _rows(circuit: Netlist, leads: Sequence[Lead]) -> Iterator[Row]:
             )
     for rail, volts in circuit.supplies:
         bridges = sum(warm.values()) if rail == "VPOS" else 0.0
-        yield f"supply {rail}", "all boards", f"{volts:g} V", "", 0.0, OWN[rail] * len(warm) + bridges
+        yield f"supply {rail}", "all boards", f"{rail} {volts:g} V", "", 0.0, OWN[rail] * len(warm) + bridges
 
 
 def _cable(connector: Component, warm: float) -> Iterator[Row]:
