@@ -84,7 +84,7 @@ def review(freecad: list[str], folder: Path) -> list[str]:
             wrong += assembly_faults(f["path"], found, bill, parts)
             if program:
                 wrong += window.tree_faults(f["path"], window.shown(program, folder / f["path"]), bill)
-        else:
+        elif f["kind"] == "dxf":  # not a board's outline: no part has it
             wrong += cut_faults(f["path"], found, parts[f["part_no"]])
     if program:
         wrong += own_document_faults(freecad, folder, manifest["design"], parts)
