@@ -3,6 +3,7 @@ holds."""
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -102,7 +103,8 @@ def ordered(scenes: Sequence[Scene], revision: str, sets: Sets) -> tuple[OrderLi
     bills = {scene.name: {row.part_no: row for row in bom_rows(scene, revision, {})} for scene in scenes}
     rows = {number: row for bill in bills.values() for number, row in reversed(bill.items())}
     array = {n for n, row in bills.get("array", {}).items() if row.make_buy == "make"}
-    own = [dict(_own(scene, bills[scene.name], array)) for scene in scenes]
+    whole = {(p.designator, p.part.part_no) for s in scenes if s.name == "array" for p in s.placements}
+    own = [dict(_own(scene, bills[scene.name], array, whole)) for scene in scenes]
     lines = []
     for number in dict.fromkeys(n for bill in bills.values() for n in bill):
         each = [bill[number].qty for bill in bills.values() if number in bill]
@@ -112,10 +114,19 @@ def ordered(scenes: Sequence[Scene], revision: str, sets: Sets) -> tuple[OrderLi
     return tuple(lines)
 
 
-def _own(scene: Scene, bill: Mapping[str, BomRow], array: Set[str]) -> Iterator[tuple[str, float]]:
+def _own(
+    scene: Scene, bill: Mapping[str, BomRow], array: Set[str], whole: Set[tuple[str, str]]
+) -> Iterator[tuple[str, float]]:
     """Quantities of a scene without those of the scenes that were put together before and stand in it, and
-    without the array's own parts (`array`), one of which is in the bonding fixture."""
-    ready = [{row.part_no: row.qty for row in bom_rows(s, "", {})} for s in scene.ready]
+    without the array's own parts: those made (`array`), one of which is in the bonding fixture, and what the
+    setting fixture holds of the array (`whole`: its designators and part numbers) while it is screwed."""
+    ready: list[Mapping[str, float]] = [
+        {row.part_no: row.qty for row in bom_rows(s, "", {})} for s in scene.ready
+    ]
+    if scene.ready and scene.name != "array":
+        there = {(p.designator, p.part.part_no) for s in scene.ready for p in s.placements}
+        placed = {(p.designator, p.part.part_no) for p in scene.placements}
+        ready.append(Counter(number for _, number in (placed & whole) - there))
     for number, row in bill.items():
         if scene.name == "array" or number not in array:
             yield number, row.qty - sum(counts.get(number, 0) for counts in ready)
