@@ -259,7 +259,8 @@ def parts(folder, whole):
     from tactcad.parts.designs import load
 
     design = load(folder / "tiny.toml")
-    contents = ReleaseContents(design, [make_scene(design, "array")], (), (), False)
+    scenes = [make_scene(design, name) for name in scene_names(design)]
+    contents = ReleaseContents(design, scenes, (), (), False)
     return contents, packed(contents, whole, load_shop())
 
 

@@ -27,7 +27,7 @@ from tactcad.release.archive import MODE, archive_bytes
 from tactcad.release.readme import DRAFT, SAMPLE
 from tactcad.release.release_contents import ReleaseContents, owned
 from tactcad.release.verify import check_archive, read_back
-from tactcad.scenes import make_scene
+from tactcad.scenes import make_scene, scene_names
 
 pytestmark = [pytest.mark.cad, pytest.mark.slow]  # releases again and again
 
@@ -99,7 +99,8 @@ def files(released):
 @pytest.fixture(scope="module")
 def contents(project):
     design = owned(load(project / "hardware" / "tiny.toml"), OWNER, CONTACT, False)
-    return ReleaseContents(design, [make_scene(design, "array")], (), (), False)
+    scenes = [make_scene(design, name) for name in scene_names(design)]
+    return ReleaseContents(design, scenes, (), (), False)
 
 
 def test_nothing_in_it_names_the_machine(home, files):
