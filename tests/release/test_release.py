@@ -473,7 +473,7 @@ def test_a_failed_check_is_refused_and_a_draft_says_so(copy, coarse_shop, capsys
     with zipfile.ZipFile(copy / "out" / f"tiny-{REVISION}-PRELIMINARY.zip") as archive:
         readme = archive.read("README.txt").decode()
         sheets = {n: pdf_runs(archive.read(n)) for n in archive.namelist() if n.endswith(".pdf")}
-    assert len(sheets) == 9 and all("PRELIMINARY" in runs for pages in sheets.values() for runs in pages)
+    assert len(sheets) == 12 and all("PRELIMINARY" in runs for pages in sheets.values() for runs in pages)
     assert DRAFT in readme.splitlines()[:5]
     flat = " ".join(readme.split())
     assert all(" ".join(failure.split()) in flat for failure in record["failures"])
