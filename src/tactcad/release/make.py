@@ -138,7 +138,7 @@ def release(
         digests = {path: file.sha256 for path, file in chosen.items() if path}
         files = {path: (folder / "export" / chosen[path].path).read_bytes() for path in sorted(digests)}
     date, shop = design.design.date, load_shop(shop_file)
-    files |= nest_files(contents, shop)
+    files = dict(sorted((files | nest_files(contents, shop)).items()))
     files = {README: readme_bytes(contents, list(files)), **files}
     data = archive_bytes(files, date)
     target = places[0]
