@@ -92,6 +92,9 @@ def folder(tmp_path_factory) -> tuple[Path, set[str]]:
         "utf-8",
     )
     typed(place, NEW)
+    own = (place / "my-sensor.toml").read_text("utf-8")  # whose it is, as the release page asks for
+    owner = '[design]\norganisation = "Our lab"\ncontact = "workshop@our-lab.example"\n'
+    (place / "my-sensor.toml").write_text(own.replace("[design]\n", owner, 1), "utf-8")
     shutil.copy(place / "my-sensor.toml", place / "hardware")
     who = "git -c user.name=a -c user.email=a@b.example"
     typed(place, "git init -q . && git add hardware && " + f"{who} commit -qm 0")

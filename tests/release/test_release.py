@@ -131,14 +131,17 @@ def test_the_bill_and_the_folders_agree(files):
     rows = list(csv.DictReader(io.StringIO(files["bom.csv"].decode(), newline="")))
     made = [row for row in rows if row["make_buy"] == "make"]
     assert {row["file"] for row in made} <= set(files) and len(made) == 7
-    readme = files["README.txt"].decode()
-    for row in made:  # what to make, how many, of what
-        assert re.search(
-            rf"^  {row['part_no']} +{row['qty']} +{row['spares'] if row['spares'] != '0' else ''} *"
-            rf"{re.escape(row['material'])} ",
-            readme,
-            flags=re.M,
-        ), row
+    lines = files["README.txt"].decode().splitlines()
+    head = next(line for line in lines if line.startswith("  part  "))
+    of, size = head.index("material"), head.index("size, mm")
+    for row in made:  # what to make, how many, of what: a material may take several lines
+        (first,) = (i for i, line in enumerate(lines) if line.startswith(f"  {row['part_no']}  "))
+        assert lines[first][:of].split()[1:] == [
+            row["qty"],
+            *([row["spares"]] if row["spares"] != "0" else []),
+        ]
+        last = next(i for i in range(first + 1, len(lines)) if not lines[i].startswith(" " * of))
+        assert " ".join(line[of:size].strip() for line in lines[first:last]).strip() == row["material"], row
 
 
 def test_the_readme_answers_a_shops_questions(files):

@@ -28,7 +28,7 @@ COLOURS = """(canvas) => {
   }
   return [...seen];
 }"""
-MOVED = 300  # pixels that differ at least where something moves
+MOVED = 200  # pixels that differ at least where something moves
 HOSTILE = "</script><img/src=x/onerror=alert(1)>'\"&amp;\u202e"
 # What the page's script compares or looks up; no text of a design.
 NOT_TEXT = ("colour", "kind", "schema", "severity", "kept", "failures", "sheets")

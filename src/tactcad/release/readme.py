@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Mapping, Sequence
+from itertools import zip_longest
 from textwrap import wrap
 
 from tactcad import __version__
@@ -396,6 +397,7 @@ def _blank_for(row: Mapping[str, str]) -> str:
 
 
 WIDTH = 96
+WIDEST = 28  # letters of a column of a table, unless one of its words is longer: the last has room then
 
 
 def paragraph(text: str, indent: str = "", first: str | None = None) -> list[str]:
@@ -416,15 +418,16 @@ def heading(text: str, line: str = "-") -> list[str]:
 
 
 def table(heads: Sequence[str], groups: Sequence[tuple[str, Sequence[Sequence[str]]]]) -> list[str]:
-    """Rows below their heads, group by group, each with its title; the last column is wrapped."""
-    rows = [row for _, group in groups for row in group]
-    widths = [max(len(row[i]) for row in (heads, *rows)) for i in range(len(heads) - 1)]
-    left = "  " + " " * sum(w + 2 for w in widths)
+    """Rows below their heads, group by group, each with its title; what is too wide is wrapped."""
+    rows = [heads, *(row for _, group in groups for row in group)]
+    widths = [min(WIDEST, max(len(row[i]) for row in rows)) for i in range(len(heads) - 1)]
+    widths = [max([w, *(len(word) for row in rows for word in row[i].split())]) for i, w in enumerate(widths)]
+    widths.append(max(WIDTH - sum(w + 2 for w in widths) - 2, 24))
 
     def line(row: Sequence[str]) -> list[str]:
-        start = "  " + "".join(cell.ljust(w + 2) for cell, w in zip(row, widths))
-        last = wrap(row[-1], max(WIDTH - len(start), 24)) or [""]
-        return [(start + last[0]).rstrip(), *(left + more for more in last[1:])]
+        cells = [wrap(cell, w) or [""] for cell, w in zip(row, widths)]
+        across = zip_longest(*cells, fillvalue="")
+        return [("  " + "  ".join(map(str.ljust, texts, widths))).rstrip() for texts in across]
 
     lines = line(heads)
     for title, group in groups:

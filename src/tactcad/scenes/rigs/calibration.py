@@ -19,7 +19,7 @@ from tactcad.parts.rigs.frame import (
     pad_middles,
     under_carrier_screw,
 )
-from tactcad.parts.rigs.stand import StandLayout
+from tactcad.parts.rigs.stand import StandLayout, most_before_post
 from tactcad.parts.rigs.stiffness import calibration_lines, calibration_loads, series_give
 from tactcad.parts.rules.calibration_rules import FITS
 
@@ -142,7 +142,12 @@ def _stages(b: Builder, rig: StandLayout, dx: float, dy: float) -> str:
             "end and fix the other two. Then drive it to the middle of its travel."
             + (" Square to the x stage within 0.02 mm on 20 mm." if axis == "y" else ""),
             order=driven(
-                (low, high, micrometer), high, screws, along, stage.travel, dx if axis == "x" else dy
+                (low, high, micrometer),
+                high,
+                screws,
+                along,
+                stage.travel if axis == "x" else min(stage.travel, most_before_post(stage)),
+                dx if axis == "x" else dy,
             ),
         )
         below = high
