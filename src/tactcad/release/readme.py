@@ -397,7 +397,7 @@ def _blank_for(row: Mapping[str, str]) -> str:
 
 
 WIDTH = 96
-WIDEST = 28  # letters of a column of a table, unless one of its words is longer: the last has room then
+WIDEST = 32  # letters in a column, or its longest word: an aluminium with its standard takes one line
 
 
 def paragraph(text: str, indent: str = "", first: str | None = None) -> list[str]:
@@ -422,7 +422,7 @@ def table(heads: Sequence[str], groups: Sequence[tuple[str, Sequence[Sequence[st
     rows = [heads, *(row for _, group in groups for row in group)]
     widths = [min(WIDEST, max(len(row[i]) for row in rows)) for i in range(len(heads) - 1)]
     widths = [max([w, *(len(word) for row in rows for word in row[i].split())]) for i, w in enumerate(widths)]
-    widths.append(max(WIDTH - sum(w + 2 for w in widths) - 2, 24))
+    widths.append(max(WIDTH - sum(w + 2 for w in widths) - 2, 22))
 
     def line(row: Sequence[str]) -> list[str]:
         cells = [wrap(cell, w) or [""] for cell, w in zip(row, widths)]
