@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 import yourdfpy
 from faults.command_line import one_by_one
+from simulated import check_frames
 from trimesh import load_mesh
 
 from tactcad.cli.main import main
@@ -49,30 +50,11 @@ def test_the_manifest_lists_them(folder):
 
 def test_frames_are_those_of_taxels_urdf_and_mjcf(folder):
     """At rest and turned: pads by both models; at rest also the table's, and the layout's own numbers."""
-    taxels = read_taxels(folder)
-    urdf = yourdfpy.URDF.load(str(folder / "macro-array.urdf"), build_collision_scene_graph=True)
-    model = mujoco.MjModel.from_xml_path(str(folder / "macro-array.xml"))
-    data = mujoco.MjData(model)
-    for share in (0.0, 0.7):
-        joints = share * model.jnt_range[:, 1]
-        data.qpos[:] = joints
-        mujoco.mj_kinematics(model, data)
-        urdf.update_cfg({t.joints[0]: q for t, q in zip(taxels.taxels, joints)})
-        for t in taxels.taxels:
-            for name, of in ((f"{t.designator}_taxel", data.site), (t.designator, data.body)):
-                by_urdf, by_mjcf = urdf.get_transform(name, "mount"), of(name)
-                assert np.abs(by_urdf[:3, 3] - by_mjcf.xpos).max() < 1e-9
-                assert np.abs(by_urdf[:3, :3] - by_mjcf.xmat.reshape(3, 3)).max() < 1e-9
-            if share == 0:
-                site = data.site(f"{t.designator}_taxel")
-                assert np.abs(1e-3 * np.array([t.x_mm, t.y_mm, t.z_mm]) - site.xpos).max() < 1e-9
-                assert site.xmat[2::3] == pytest.approx([t.normal_x, t.normal_y, t.normal_z])
-                turn = np.zeros(9)
-                mujoco.mju_quat2Mat(turn, np.array([t.q_w, t.q_x, t.q_y, t.q_z]))
-                assert turn == pytest.approx(site.xmat, abs=1e-12)
-            else:  # a positive angle sinks the pad
-                sunk = t.z_mm - 1e3 * data.site(f"{t.designator}_taxel").xpos[2]
-                assert sunk == pytest.approx(0.7 * t.range_mm, rel=0.02)
+    check_frames(folder, "macro-array", 0.0)
+    taxels, data = check_frames(folder, "macro-array", 0.7)
+    for t in taxels.taxels:  # a positive angle sinks the pad
+        sunk = t.z_mm - 1e3 * data.site(f"{t.designator}_taxel").xpos[2]
+        assert sunk == pytest.approx(0.7 * t.range_mm, rel=0.02)
 
 
 def test_pads_stand_where_the_array_has_them():
@@ -108,7 +90,7 @@ def test_inertia_is_that_of_the_meshes(folder):
     mujoco.mj_forward(model, data)
     found = cantilevers(load(str(folder.parents[1] / "two.toml")))
     tensor, mass = np.zeros((3, 3)), 0.0
-    for p in (*found.fixed, *(m.arm for m in found.moving)):
+    for p in (*found.fixed, *(p for m in found.moving for p in m.parts)):
         mesh = load_mesh(folder / "meshes" / f"{p.part.part_no}.stl")
         mesh.density = 1e-3 * p.part.mass / mesh.volume
         place = np.eye(4)
@@ -143,7 +125,7 @@ def test_the_table_as_csv_is_the_one_as_json(folder):
         assert tuple(map(int, row["neighbours"].split())) == t.neighbours
     told = json.loads((folder / "taxels.json").read_text())
     model = mujoco.MjModel.from_xml_path(str(folder / "macro-array.xml"))
-    assert told["version"] == "1.0" and told["timestep_s"] == model.opt.timestep
+    assert told["version"] == "1.1" and told["timestep_s"] == model.opt.timestep
 
 
 # --- what is refused ---
@@ -157,6 +139,8 @@ def test_the_table_as_csv_is_the_one_as_json(folder):
         ("stop_gap_mm", -0.01, "taxels[1]: stop_gap_mm: out of range; found -0.01; legal: above 0"),
         ("range_mm", 0, "taxels[1]: range_mm: out of range; found 0; legal: above 0"),
         ("sink_mm_per_rad", [], "taxels[1]: sink_mm_per_rad: out of range"),
+        ("shear_x_N_per_rad", [1.0, 2.0], "taxels[1]: shear_x_N_per_rad: out of range"),
+        ("noise_V", None, "taxel 2: signal and noise: missing; legal: both in V, or both in mT"),
     ],
 )
 def test_a_table_that_cannot_be_is_refused(folder, tmp_path, field, value, said):

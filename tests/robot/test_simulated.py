@@ -2,69 +2,24 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import mujoco
 import numpy as np
 import pytest
+from simulated import Simulated, check_energy, check_mass, check_plate, polygon_moments, simulated
 from sound_designs import as_table, sound_table
 
 from tactcad.design.load import from_table
-from tactcad.export.cache import Cache
-from tactcad.export.shapes import Shapes
-from tactcad.lab.array_estimate import estimate
 from tactcad.mechanics.ladder import DEFAULT_RUNG
 from tactcad.parts.array.element import element
 from tactcad.parts.array.hinge_section import hinge_section, not_reached
 from tactcad.parts.array.layout import Layout
 from tactcad.parts.array.stop_gap import stop_gap
 from tactcad.parts.designs import load
-from tactcad.robot import Taxels, mjcf, read
-from tactcad.robot.cantilevers import cantilevers
-from tactcad.robot.robot_files import solids
-from tactcad.robot.taxel_table import as_made
-from tactcad.scenes import make_scene
+from tactcad.robot import read
 
 pytestmark = pytest.mark.cad
 SHIPPED = ("macro-array", "better-array", "double-sample", "smallest-bearing", "soft-tissue")
 RANDOM = [*range(3), *(pytest.param(seed, marks=pytest.mark.slow) for seed in range(3, 50))]
-
-
-@dataclass
-class Simulated:
-    """A design, its model as text, and its table."""
-
-    layout: Layout
-    text: str
-    taxels: Taxels
-    step: float
-
-    def model(self, change=lambda spec: None) -> mujoco.MjModel:
-        """Compiled, after `change`; with all joints damped critically, so that it comes to rest at once."""
-        spec = mujoco.MjSpec.from_string(self.text)
-        change(spec)
-        model = spec.compile()
-        n = len(self.taxels.taxels)
-        model.opt.gravity[:] = 0
-        model.dof_damping[:n] *= 1 / mjcf.DAMPING
-        return model
-
-    def column(self, name: str) -> np.ndarray:
-        return self.taxels.column(name)
-
-    @property
-    def lever(self) -> np.ndarray:
-        """Hinge to pad's middle, m."""
-        return 1e-3 * self.column("sink_mm_per_rad")[:, 0]
-
-
-def simulated(design, folder) -> Simulated:
-    mechanism = cantilevers(design)
-    shapes = Shapes(Cache(folder, lambda text: None), "test")
-    base, arms = solids(mechanism, shapes, False)
-    step = mjcf.timestep(mechanism, arms)
-    text = mjcf.text(mechanism, base, arms, step).decode()
-    return Simulated(Layout(design), text, as_made(design, (m.taxel for m in mechanism.moving)), step)
 
 
 def drawn(number: int):
@@ -93,28 +48,6 @@ def random(request, tmp_path_factory) -> Simulated:
 # --- what holds of every design ---
 
 
-def check_plate(s: Simulated) -> None:
-    """Pressed by a rigid plate: force over way is what `estimate` says."""
-    depth = 0.4e-3 * s.column("range_mm").min()
-    high = 1e-3 * s.column("z_mm")[0]
-
-    def plate(spec) -> None:
-        thick = 5e-3
-        body = spec.worldbody.add_body(name="plate", mocap=True, pos=[0, 0, high + thick - depth])
-        body.add_geom(type=mujoco.mjtGeom.mjGEOM_BOX, size=[0.5, 0.5, thick])
-
-    model = s.model(plate)
-    data = mujoco.MjData(model)
-    for _ in range(600):
-        mujoco.mj_step(model, data)
-    K = np.array([e.stiffness for e in estimate(s.layout, DEFAULT_RUNG)])
-    force = data.sensordata[1::2]
-    assert force / (1e3 * depth) == pytest.approx(K, rel=0.01)
-    # the contact's own softness
-    assert len(data.contact.dist) >= len(K)
-    assert np.abs(data.contact.dist).max() < 1e-3 * depth
-
-
 def check_stops(s: Simulated) -> None:
     """Pushed by thrice the force that closes it, every stop stands where it should, at pad and tip."""
     model = s.model()
@@ -134,21 +67,10 @@ def check_stops(s: Simulated) -> None:
     assert s.column("stop_gap_mm") == pytest.approx(np.array(gaps))
 
 
-def polygon_moments(contour, x: float) -> tuple[float, float, np.ndarray]:
-    """Area, polar moment about the origin and first moments of what lies left of x, by a fine polygon."""
-    points = np.array([s.at(u) for s in contour for u in np.linspace(0, 1, 200, endpoint=False)])
-    points[:, 0] = np.minimum(points[:, 0], x)
-    (a, b), (c, d) = points.T, np.roll(points, -1, axis=0).T
-    cross = a * d - c * b
-    ixx, iyy = ((p * p + p * q + q * q) @ cross / 12 for p, q in ((a, c), (b, d)))
-    return cross.sum() / 2, ixx + iyy, np.array([(a + c) @ cross, (b + d) @ cross]) / 6
-
-
 def check_inertia(s: Simulated) -> None:
     """Masses add up to the parts'; each arm's moment about its hinge is its contour's."""
     model = s.model()
-    parts = make_scene(s.layout.design, "array").placements
-    assert model.body_mass.sum() == pytest.approx(1e-3 * sum(p.part.mass for p in parts), rel=1e-6)
+    check_mass(s, model)
     d = s.layout.design
     for i, place in enumerate(s.layout.elements):
         area, polar, first = polygon_moments(element(s.layout, place).extrusion.outer, place.hinge_x)
@@ -159,25 +81,6 @@ def check_inertia(s: Simulated) -> None:
         z = place.hinge.t / 2 if d.element.sides == "one" else place.hinge.h / 2
         about = polar - 2 * first @ (x, z) + area * (x * x + z * z)
         assert model.dof_M0[i] == pytest.approx(1e-6 * about * per_area, rel=1e-3)
-
-
-def check_energy(s: Simulated) -> None:
-    """Free and undamped: kept to 0.1 % over 100 shortest periods; the step is a tenth of one at most."""
-    model = s.model()
-    model.dof_damping[:] = 0
-    model.opt.enableflags |= mujoco.mjtEnableBit.mjENBL_ENERGY
-    assert (model.dof_armature == 0).all()
-    periods = 2 * np.pi * (model.dof_M0 / model.jnt_stiffness) ** 0.5
-    assert model.opt.timestep == s.step <= periods.min() / 10
-    data = mujoco.MjData(model)
-    data.qpos[:] = 0.3 * model.jnt_range[:, 1]
-    mujoco.mj_forward(model, data)
-    stored, swing = data.energy.sum(), 0.5 * model.jnt_stiffness @ data.qpos**2
-    worst = 0.0
-    for _ in range(int(100 * periods.min() / s.step) + 1):
-        mujoco.mj_step(model, data)
-        worst = max(worst, abs(data.energy.sum() - stored))
-    assert worst < 1e-3 * swing
 
 
 def pressed_on_springs(s: Simulated, k: float) -> np.ndarray:

@@ -16,11 +16,9 @@ from tactcad.parts.array.hinge_section import design_readout, hinge_section
 from tactcad.parts.array.layout import ElementPlace, Layout
 from tactcad.parts.array.stop_gap import stop_gap
 from tactcad.parts.language.description import Extrusion, Part
-from tactcad.scenes import make_scene
-from tactcad.scenes.rig import ARRAY
 from tactcad.scenes.scene import DOWN
 
-from .mechanism import ElementJoint, Mechanism, Moving, seen
+from .mechanism import ElementJoint, Mechanism, Moving, array_seen
 from .taxel_table import Taxel
 
 
@@ -39,7 +37,7 @@ def cantilevers(design: Design) -> Mechanism:
     K, arms = 1 / springs.compliance[:, 0, 0], np.array([p.arm for p in layout.elements])
     tip = tip_compliance(hinge_section(layout, layout.elements), K, arms)
     flange = np.array([0.0, 0.0, layout.carrier_bottom + design.clamp.carrier_thickness])
-    placed = {p.designator: seen(p, flange, np.array(DOWN)) for p in make_scene(design, ARRAY).placements}
+    placed = array_seen(design, flange, np.array(DOWN))
     noise, beside, moving = design_readout(design).averaged_noise, [*_neighbours(layout.elements)], []
     for i, p in enumerate(layout.elements):
         whole = placed[p.designator]
@@ -76,7 +74,7 @@ def cantilevers(design: Design) -> Mechanism:
         top = hinge_z - arm.extrusion.outer.box[3]
         least, most = (lever + half - p.arm, -width / 2, top), (lever + half, width / 2, hinge_z)
         at, box = np.array([-lever, 0.0, -level]), np.array([least, most])
-        moving.append(Moving(taxel, turn, at, (hinge,), replace(whole, part=arm), box, level))
+        moving.append(Moving(taxel, turn, at, (hinge,), (replace(whole, part=arm),), box, level))
     return Mechanism(design, tuple(placed.values()), tuple(moving))
 
 

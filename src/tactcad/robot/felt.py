@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from math import inf
+from math import inf, nan
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -29,21 +29,34 @@ class Felt:
     """What the taxels feel, in the table's order; with several frames, a row a frame.
 
     deflection  of the pads' middles, mm
-    force       N; at its stop a pad bears more
+    force       across the pads, N; at its stop a pad bears more
+    shear       along x and y of the pads' frames, N, [.., taxel, 2]; not a number where none is felt
     used        pads that touch and are off their stops
-    object      K_obj of each frame, N/mm, with its interval; None where fewer than two pads are used
     """
 
     deflection: np.ndarray
     force: np.ndarray
+    shear: np.ndarray
     used: np.ndarray
-    object: tuple[Interval | None, ...]
+    _objects: tuple[Interval | None, ...] | None
+
+    @property
+    def object(self) -> tuple[Interval | None, ...]:
+        """K_obj of each frame, N/mm, with its interval; None where fewer than two pads are used.
+
+        Raises InputError for taxels of a family whose readings `tactcad stiffness` does not take either.
+        """
+        if self._objects is None:
+            raise InputError(
+                "K_obj", "is read from volts only", value="taxels without signal_V_per_mm", legal="volts"
+            )
+        return self._objects
 
 
 def read(taxels: Taxels, joints: ArrayLike, level: float = 0.95, coupling: float = 1.0) -> Felt:
     """Forces and K_obj from the elements' joint positions, from one frame or from many.
 
-    Positions are from rest, in the table's order, rad (of slides mm): [joint], or [frame, joint]. The
+    Positions are from rest, in the table's order, rad (of slides m): [joint], or [frame, joint]. The
     interval, at that level, is by the read-out's noise, by how far K and the pads' heights are known of an
     array as made, and by any coupling of the pads from 0 (separate springs) to `coupling` (1: a half-space).
     Raises InputError for positions that are not finite or not one for each joint, and a level or share out
@@ -58,11 +71,16 @@ def read(taxels: Taxels, joints: ArrayLike, level: float = 0.95, coupling: float
         legal = f"[{count}] or [frame, {count}], finite"
         raise InputError("joints", "not a position for each joint", value=q.shape, legal=legal)
     deflection = np.add.reduceat(q * np.concatenate(sinks), first, axis=-1)
-    quiet = TOUCHES * taxels.column("noise_V") / np.abs(taxels.column("signal_V_per_mm"))
+    quiet = TOUCHES * taxels.column("noise_mm")
     used = (deflection > quiet) & (deflection < NEAR_STOP * taxels.column("range_mm"))
-    frames = zip(np.atleast_2d(deflection), np.atleast_2d(used))
-    objects = tuple(_object(taxels, s, u, level, coupling) for s, u in frames)
-    return Felt(deflection, taxels.column("stiffness_N_per_mm") * deflection, used, objects)
+    sideways = [(t.shear_x_N_per_rad, t.shear_y_N_per_rad, len(t.joints)) for t in taxels.taxels]
+    per_joint = np.hstack([(x, y) if x and y else np.full((2, n), nan) for x, y, n in sideways])
+    shear = np.moveaxis(np.add.reduceat(q[..., None, :] * per_joint, first, axis=-1), -2, -1)
+    objects = None
+    if None not in taxels.column("signal_V_per_mm"):
+        frames = zip(np.atleast_2d(deflection), np.atleast_2d(used))
+        objects = tuple(_object(taxels, s, u, level, coupling) for s, u in frames)
+    return Felt(deflection, taxels.column("stiffness_N_per_mm") * deflection, shear, used, objects)
 
 
 def _object(taxels: Taxels, s: np.ndarray, used: np.ndarray, level: float, share: float) -> Interval | None:

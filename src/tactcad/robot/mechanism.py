@@ -17,10 +17,13 @@ import numpy as np
 from tactcad.design.messages import InputError
 from tactcad.design.tree import CommonTables
 from tactcad.parts.language.description import Vector
+from tactcad.scenes import make_scene
+from tactcad.scenes.rig import ARRAY
 from tactcad.scenes.scene import Placement, rotation
 
 from .taxel_table import Taxel, require_positive
 
+OUTWARD = 0.5  # rad or mm toward the object, where nothing stops an element
 NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_.-]*")  # of XML 1.0's names those that ROS and MuJoCo take too
 
 
@@ -29,9 +32,10 @@ class ElementJoint:
     """One freedom of an element, in its frame.
 
     kind       hinge: turns about an axis through the origin; slide: moves along it
-    axis       positive where the pad sinks
+    axis       positive where the pad sinks; of a tilt either way
     stiffness  N mm/rad, or N/mm
     reach      to the stop, rad or mm
+    outward    how far it moves the other way
     """
 
     name: str
@@ -39,6 +43,7 @@ class ElementJoint:
     axis: Vector
     stiffness: float
     reach: float
+    outward: float = OUTWARD
 
 
 @dataclass(frozen=True)
@@ -49,18 +54,20 @@ class Moving:
     turn       axes of the pad's frame and the element's, as columns, [3, 3]
     joints_at  origin of the element's frame, in the pad's
     joints     one, or three of a cell (sink and two tilts) along its stiffness matrix's own axes
-    arm        what of it moves, at its place
+    parts      what of it moves, at its place
     box        least and largest corner of what of it can be hit besides the pad, in its frame
     ball       radius of the ball that stands for the pad where it touches; 0: the flat pad
+    rubs       what touches may push the pad sideways, by its own friction
     """
 
     taxel: Taxel
     turn: np.ndarray
     joints_at: np.ndarray
     joints: tuple[ElementJoint, ...]
-    arm: Placement
+    parts: tuple[Placement, ...]
     box: np.ndarray
     ball: float
+    rubs: bool = False
 
     @property
     def name(self) -> str:
@@ -93,7 +100,8 @@ class Mechanism:
                 raise InputError(where, "no name in XML, URDF and MJCF", value=name, legal=legal)
         for m in self.moving:
             own = {"stiffness": m.taxel.stiffness_N_per_mm, "stop gap": m.taxel.stop_gap_mm}
-            of_joints = {f"{j.name} {f}": getattr(j, f) for j in m.joints for f in ("stiffness", "reach")}
+            figures = ("stiffness", "reach", "outward")
+            of_joints = {f"{j.name} {f}": getattr(j, f) for j in m.joints for f in figures}
             require_positive(f"element {m.name}", own | of_joints)
 
 
@@ -101,6 +109,11 @@ def seen(p: Placement, origin: np.ndarray, turn: np.ndarray) -> Placement:
     """The placement in a frame with that origin, whose axes are the columns of `turn`."""
     x, y, z = (turn.T @ (np.array(p.origin) - origin)).tolist()
     return Placement(p.designator, p.part, (x, y, z), rotation((turn.T @ np.array(p.rotation)).tolist()))
+
+
+def array_seen(design: CommonTables, origin: np.ndarray, turn: np.ndarray) -> dict[str, Placement]:
+    """The array's placements by designator, in such a frame."""
+    return {p.designator: seen(p, origin, turn) for p in make_scene(design, ARRAY).placements}
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ from scipy.spatial.transform import Rotation
 
 from .mechanism import ElementJoint, Mechanism, Moving, Solid, mesh_name
 from .taxel_table import SCHEMA, VERSION
-from .urdf import MM, OUTWARD, add, colour, document, unit, way
+from .urdf import MM, add, colour, document, unit, way
 
 # Steps in the shortest period: a free vibration by Runge and Kutta's fourth order loses (w dt)^6/72 of its
 # energy a step, over 100 periods 0.03 %.
@@ -21,6 +21,8 @@ DAMPING = 0.01  # of the critical one; chosen: metal has less, bonded gauges and
 # much of the rest the contact bears. With m the arm's mass at the pad its softness is
 # (1 - IMPEDANCE)/IMPEDANCE (SETTLING w dt)^2 of the arm's own, here 3e-5 at most.
 SETTLING, IMPEDANCE = 4, 0.9999
+# Of two geoms of one priority the larger friction holds, so the object's; the pad's own hardness still does.
+RUBS = {"priority": 0, "condim": 3, "friction": (0.0, 0.0, 0.0), "solmix": 1e6}
 
 
 def moment(joint: ElementJoint, arm: Solid) -> float:
@@ -52,7 +54,7 @@ def text(mechanism: Mechanism, base: Solid, arms: Sequence[Solid], step: float) 
         file = file.removeprefix("meshes/")
         add(asset, "mesh", name=file.removesuffix(".stl"), file=file, inertia="shell")
     stands = add(add(root, "worldbody"), "body", name="base")
-    add(stands, "site", name="mount")
+    add(stands, "site", name="mount", size=MM)
     _solid(stands, base)
     sensors = add(root, "sensor")
     for m, arm in zip(mechanism.moving, arms):
@@ -84,7 +86,7 @@ def _defaults(root: Element, step: float) -> None:
 def _joint(body: Element, j: ElementJoint, moved: float) -> None:
     K = j.stiffness * unit(j)
     spring = {"stiffness": K, "damping": 2 * DAMPING * sqrt(K * moved)}
-    ends = (-way(j, OUTWARD), way(j, j.reach))
+    ends = (-way(j, j.outward), way(j, j.reach))
     add(body, "joint", name=j.name, type=j.kind, axis=j.axis, range=ends, **spring)
 
 
@@ -106,6 +108,7 @@ def _pad(body: Element, m: Moving) -> None:
     deep = m.ball or min(length, width)
     shape, size = ("sphere", (deep,)) if m.ball else ("box", (length, width, deep))
     geom = {"type": shape, "size": np.array(size) * MM, "pos": (face - [0, 0, deep]) * MM}
-    add(body, "geom", name=f"{m.name}_pad", class_="collision", **geom)
+    rubs = RUBS if m.rubs else {}
+    add(body, "geom", name=f"{m.name}_pad", class_="collision", **geom, **rubs)
     box = np.array([length, width, deep / 4]) * MM
     add(body, "site", name=f"{m.name}_taxel", type="box", pos=face * MM, size=box, group=4)

@@ -29,7 +29,7 @@ def jobs(plan: Plan) -> Iterator[Batch]:
     """One job for all files: they follow from one mechanism. Envelopes have no meshes to look at."""
     design, detail = plan.design, plan.options.detail
     mechanism: Mechanism = family_of(design).must("robot", "export --robot").mechanism(design)
-    placed = (*mechanism.fixed, *(m.arm for m in mechanism.moving))
+    placed = (*mechanism.fixed, *(p for m in mechanism.moving for p in m.parts))
     meshes = {mesh_name(p): p.part for p in placed} if detail == "full" else {}
     key, name = digest(("robot", plan.shapes.made_by, design, detail)), design.design.name
     paths = [f"robot/{p}" for p in ("taxels.csv", "taxels.json", f"{name}.urdf", f"{name}.xml", *meshes)]
@@ -70,9 +70,10 @@ def solids(mechanism: Mechanism, shapes: Shapes, drawn: bool) -> tuple[Solid, tu
     base = Solid(stands, mechanism.fixed if drawn else (), tuple(_box(p, shapes) for p in made))
     arms = []
     for m in mechanism.moving:
-        arm, sides = seen(m.arm, m.origin, m.turn), MM * m.box
+        parts, sides = tuple(seen(p, m.origin, m.turn) for p in m.parts), MM * m.box
         box = (sides.mean(axis=0), (sides[1] - sides[0]) / 2)
-        arms.append(Solid(_inertia(arm, shapes), (arm,) if drawn else (), (box,)))
+        inertia = together([_inertia(p, shapes) for p in parts])
+        arms.append(Solid(inertia, parts if drawn else (), (box,)))
     return base, tuple(arms)
 
 

@@ -21,10 +21,12 @@ from tactcad.stacks.stack import SEED
 from tactcad.stacks.variables import made
 from tactcad.stacks.virtual_build import sensor
 
-SCHEMA, VERSION = "tactcad-taxels-1", "1.0"  # the version counts up where columns are added
+SCHEMA, VERSION = "tactcad-taxels-1", "1.1"  # the version counts up where columns are added
 MOST_BYTES = 50_000_000
 BUILDS = 1000  # virtual arrays: a standard deviation to 2 %
-POSITIVE = ("stiffness_N_per_mm", "range_mm", "stop_gap_mm", "length_mm", "width_mm", "noise_V")
+POSITIVE = ("stiffness_N_per_mm", "range_mm", "stop_gap_mm", "length_mm", "width_mm", "noise_mm")
+PER_JOINT = ("sink_mm_per_rad", "shear_x_N_per_rad", "shear_y_N_per_rad")  # the first always, others or none
+KINDS = {"int": int, "float": (int, float), "float | None": (int, float, type(None)), "str": str}
 
 
 @dataclass(frozen=True)
@@ -32,8 +34,11 @@ class Taxel:
     """One pad in the mount's frame: place, quaternion and normal (outwards, its z axis) of the pad's frame.
 
     range       of the pad's middle, up to the stop
-    noise       standard deviation of an averaged reading
-    joints      by name, and the sink of the pad's middle over each one's motion: mm/rad, or 1 of a slide
+    signal, noise  over the sink of the pad's middle, and standard deviation of a reading: averaged, of a
+                bridge; one, of a Hall chip; None of what does not read it
+    joints      by name, and the sink of the pad's middle over each one's motion: mm/rad, or 1000 mm/m of a
+                slide
+    shear       force on the pad along x and y of its frame over each joint's motion; empty where none is felt
     neighbours  numbers of the pads beside it
     variance, covariance  of K and of how far the pad stands back from the highest, over arrays as made
     """
@@ -55,8 +60,8 @@ class Taxel:
     width_mm: float
     area_mm2: float
     stiffness_N_per_mm: float
-    signal_V_per_mm: float
-    noise_V: float
+    signal_V_per_mm: float | None
+    noise_V: float | None
     range_mm: float
     stop_gap_mm: float
     joints: tuple[str, ...]
@@ -65,6 +70,20 @@ class Taxel:
     variance_stiffness_N2_per_mm2: float = 0.0
     variance_offset_mm2: float = 0.0
     covariance_stiffness_offset_N: float = 0.0
+    signal_mT_per_mm: float | None = None
+    noise_mT: float | None = None
+    shear_x_N_per_rad: tuple[float, ...] = ()
+    shear_y_N_per_rad: tuple[float, ...] = ()
+
+    @property
+    def noise_mm(self) -> float:
+        """Of the pad's sink. Raises InputError where the table has neither volts nor teslas."""
+        for signal, noise in ((self.signal_V_per_mm, self.noise_V), (self.signal_mT_per_mm, self.noise_mT)):
+            if signal and noise is not None:
+                return noise / abs(signal)
+        raise InputError(
+            f"taxel {self.number}: signal and noise", "missing", legal="both in V, or both in mT"
+        )
 
 
 @dataclass(frozen=True)
@@ -90,8 +109,14 @@ def as_made(design: CommonTables, taxels: Iterable[Taxel]) -> Taxels:
     rows = []
     for t, of in zip(taxels, np.moveaxis(both[:, known], 2, 0)):
         (K, cross), (_, offset) = np.cov(of).tolist()
-        spread = (f.name for f in fields(Taxel)[-3:])
-        rows.append(replace(t, **dict(zip(spread, (K, offset, cross)))))
+        rows.append(
+            replace(
+                t,
+                variance_stiffness_N2_per_mm2=K,
+                variance_offset_mm2=offset,
+                covariance_stiffness_offset_N=cross,
+            )
+        )
     return Taxels(design.design.name, design.design.revision, tuple(rows))
 
 
@@ -107,7 +132,9 @@ def csv_bytes(taxels: Taxels) -> bytes:
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow([*(f.name for f in fields(Taxel)), "schema", "version"])
     for t in taxels.taxels:
-        cells = (" ".join(map(str, v)) if isinstance(v, tuple) else v for v in vars(t).values())
+        cells = (
+            " ".join(map(str, v)) if isinstance(v, tuple) else v for v in vars(t).values()
+        )  # None: empty
         writer.writerow([*cells, SCHEMA, VERSION])
     return text.getvalue().encode()
 
@@ -136,19 +163,20 @@ def _read(where: str, row: Any) -> Taxel:
         raise InputError(where, "not a taxel", value=row, legal="an object with a field a column")
     values: dict[str, Any] = {}
     for f in fields(Taxel):
-        value, kind = row.get(f.name), {"int": int, "float": (int, float), "str": str}.get(str(f.type), list)
+        value, kind = row.get(f.name), KINDS.get(str(f.type), list)
         if not isinstance(value, kind) or isinstance(value, bool):  # type: ignore[arg-type]
             raise InputError(
                 f"{where}: {f.name}", "missing or of another kind", value=value, legal=str(f.type)
             )
         values[f.name] = tuple(value) if isinstance(value, list) else value
-    numbers = values["sink_mm_per_rad"]
-    if len(numbers) != len(values["joints"]) or not all(isinstance(v, int | float) for v in numbers):
-        raise InputError(
-            f"{where}: sink_mm_per_rad", "out of range", value=numbers, legal="one for each joint"
-        )
-    require_positive(where, {name: values[name] for name in POSITIVE})
-    return Taxel(**values)
+    for name in PER_JOINT:
+        numbers, many = values[name], len(values["joints"])
+        short = len(numbers) != many and (numbers or name == PER_JOINT[0])
+        if short or not all(isinstance(v, int | float) for v in numbers):
+            raise InputError(f"{where}: {name}", "out of range", value=numbers, legal="one for each joint")
+    taxel = Taxel(**values)
+    require_positive(where, {name: getattr(taxel, name) for name in POSITIVE})
+    return taxel
 
 
 def require_positive(where: str, values: Mapping[str, float]) -> None:

@@ -11,7 +11,6 @@ from scipy.spatial.transform import Rotation
 from .mechanism import ElementJoint, Mechanism, Moving, Solid, mesh_name
 
 MM = 1e-3  # m
-OUTWARD = 0.5  # rad or mm that an arm may swing out toward the object: nothing stops it there
 SPEED = 10.0  # rad/s or m/s, which URDF asks for; chosen beyond what any arm reaches
 
 
@@ -38,7 +37,7 @@ def text(mechanism: Mechanism, base: Solid, arms: Sequence[Solid]) -> bytes:
             kind = "revolute" if j.kind == "hinge" else "prismatic"
             joint = _joint(root, j.name, kind, parent, child, at, turn)
             add(joint, "axis", xyz=j.axis)
-            low, high = -way(j, OUTWARD), way(j, j.reach)
+            low, high = -way(j, j.outward), way(j, j.reach)
             effort = j.stiffness * unit(j) * high
             add(joint, "limit", lower=low, upper=high, effort=effort, velocity=SPEED)
             if child != m.name:

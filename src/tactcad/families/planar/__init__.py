@@ -3,7 +3,7 @@ three-axis Hall chip (the paper's Figure 1(b))."""
 
 from __future__ import annotations
 
-from tactcad.design.family import Family, FamilyEstimate, FamilyStack, Late
+from tactcad.design.family import Family, FamilyEstimate, FamilyRobot, FamilyStack, Late
 
 from .cell_tables import PlanarDesign
 
@@ -35,4 +35,7 @@ FAMILY = Family(
     readings=None,
     variables=None,
     checks=f"{HERE}.checks",
+    robot=FamilyRobot(
+        mechanism=Late(f"{HERE}.cell_joints:cells"), jobs=Late("tactcad.robot.robot_files:jobs")
+    ),
 )

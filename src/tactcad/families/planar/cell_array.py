@@ -123,12 +123,16 @@ class Stacked:
 
 def figures(arrays: Stacked) -> dict[str, np.ndarray]:
     """Stiffness of every cell as built, N/mm: K goes with t^3, the foil's thickness being one cause for
-    all."""
+    all; and how far its pad stands back from the highest, um."""
     from .sensor import rows
 
     at = np.array([row.stiffness for row in rows(arrays.layout, "", None)])
     t = arrays.layout.design.planar.thickness
-    return {"stiffness": at * (1.0 + arrays.made["foil: thickness"] / t) ** 3}
+    post = arrays.made["post: length over the shoulder"]
+    return {
+        "stiffness": at * (1.0 + arrays.made["foil: thickness"] / t) ** 3,
+        "pad_height_um": 1e3 * (post.max(axis=1, keepdims=True) - post),
+    }
 
 
 def limits(

@@ -6,6 +6,7 @@ face, + towards the object. Lengths in mm.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from functools import cached_property
 from math import ceil
@@ -16,6 +17,8 @@ from .beam import FoilBeam
 from .cell import Cell, roots
 from .cell_tables import CHIPS, PROCESSES, CellKind, Chip, FoilProcess, PlanarDesign
 from .field import Magnet
+
+Point = tuple[tuple[float, float], float]  # of a polygon, with the radius that rounds it
 
 
 @dataclass(frozen=True)
@@ -73,13 +76,13 @@ class Kind:
         start = -t.island / 2.0 + t.ear
         return Cell(self.beam, roots(t.form, t.island, start, self.beam_offset))
 
-    def slots(self, corner: float, at: tuple[float, float]) -> tuple[Contour, ...]:
-        """The four openings of the cell at `at`, with fillets at the roots and radius `corner` elsewhere."""
+    def _slot(self, corner: float) -> list[Point]:
+        """The first opening, of a cell at the origin: three corners of the frame, then the island's."""
         t, o = self.table, self.opening / 2.0
         a, w, r = t.island / 2.0, t.beam_width / 2.0, t.fillet
         if self.pinwheel:
             low, high, top = a + t.slot, a + t.slot + 2.0 * w, a + t.slot + 2.0 * w + self.rim
-            points = [
+            return [
                 ((o, high), r),
                 ((o, o), corner),
                 ((-low, o), r),
@@ -89,9 +92,20 @@ class Kind:
                 ((-a + t.ear, top), corner),
                 ((-a + t.ear, high), r),
             ]
-        else:
-            points = [((o, w), r), ((o, o), corner), ((w, o), r), ((w, a), r), ((a, a), corner), ((a, w), r)]
-        return tuple(_turned(points, quarter, at) for quarter in range(4))
+        return [((o, w), r), ((o, o), corner), ((w, o), r), ((w, a), r), ((a, a), corner), ((a, w), r)]
+
+    def slots(self, corner: float, at: tuple[float, float]) -> tuple[Contour, ...]:
+        """The four openings of the cell at `at`, with fillets at the roots and radius `corner` elsewhere."""
+        return tuple(_turned(self._slot(corner), (quarter,), at) for quarter in range(4))
+
+    def parted(self, corner: float, at: tuple[float, float]) -> tuple[Contour, Contour]:
+        """The island with its half of every beam, at the origin, and the frame's edge around it, at `at`."""
+        points, every = self._slot(corner), range(4)
+        half = self.beam_length / 2.0
+        first = ((points[-1][0][0] + half, points[0][0][1]), 0.0)  # on the first beam's edge
+        second = ((points[2][0][0], points[3][0][1] + half), 0.0)
+        island = [first, *reversed(points[3:]), second]
+        return _turned(island, every, (0.0, 0.0)), _turned([first, *points[:3], second], every, at)
 
     def island_outline(self, corner: float, inset: float = 0.0) -> Contour:
         """The island with its ears, `inset` inside its edge: the foot plate's outline."""
@@ -114,13 +128,13 @@ def _turn(p: tuple[float, float], quarter: int) -> tuple[float, float]:
     return x, y
 
 
-def _turned(
-    points: list[tuple[tuple[float, float], float]], quarter: int, at: tuple[float, float]
-) -> Contour:
+def _turned(points: list[Point], quarters: Iterable[int], at: tuple[float, float]) -> Contour:
+    """The polygon of these points, turned by each of these quarters one after another."""
     corners = []
-    for point, radius in points:
-        x, y = _turn(point, quarter)
-        corners.append(Corner((round(x + at[0], 9), round(y + at[1], 9)), radius))
+    for quarter in quarters:
+        for point, radius in points:
+            x, y = _turn(point, quarter)
+            corners.append(Corner((round(x + at[0], 9), round(y + at[1], 9)), radius))
     return rounded_polygon(corners)
 
 
