@@ -1,7 +1,7 @@
 """The least half-width of K_obj that an array can have, against the angle at which the object's face may lie:
 a table of docs/targets.md.
 
-    python benchmarks/angle_front.py docs/targets.md        an hour of one core, with one thread (OMP_NUM_THREADS=1)
+    python benchmarks/angle_front.py docs/targets.md    an hour of one core; set OMP_NUM_THREADS=1
 
 Each angle is searched from three starts of their own: another number of elements, other places of the kinds,
 pitches and pads. The table says what the best answer lies on; where none keeps every limit, what it misses.
@@ -36,7 +36,7 @@ FREE = {
     "elements.pads": (1.5, 8.0),
     "elements.arms": (4.0, 12.0),
 }
-HEADS = "K_obj, N/mm | thickness, mm | angle, degrees | half-width from each start, % | elements | pad, mm | lies on"
+HEADS = "K_obj, N/mm | thickness, mm | angle, degrees | half-width by start, % | elements | pad, mm | binds"
 
 
 def started(target: Target, elements: int, pad: float) -> tuple[Stand, np.ndarray]:

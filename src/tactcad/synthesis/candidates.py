@@ -232,6 +232,11 @@ class Candidates:
     radius: Array
 
     @cached_property
+    def decided_by(self) -> dict[int, tuple[int, ...]]:
+        """Numbers of the poses on a body that decide a candidate, by its row, of those that were tried."""
+        return {}
+
+    @cached_property
     def layout(self) -> Layout:
         """Of all candidates at once, with one element of each kind."""
         d = self.stand.base

@@ -166,11 +166,6 @@ def of_elements(known: Knowledge, pick: Callable[[Array], Array]) -> Knowledge:
 class CandidatesOnLayer(Candidates):
     """Candidates whose interval and forces are those of rigid pads on a body."""
 
-    @cached_property
-    def decided_by(self) -> dict[int, tuple[int, ...]]:
-        """Numbers of the poses that decide a candidate, by its row, of those that were tried."""
-        return {}
-
     def feel(self) -> tuple[Array, Array, Array]:
         """As on springs where other limits are broken anyway, and then too deep."""
         s, shape = self.stand, self.arm.shape
@@ -199,7 +194,7 @@ class CandidatesOnLayer(Candidates):
             width[i], deep[i] = widths.max(), depths.max()
             of_kinds = [got.force[:, kind == k].max(1, initial=0.0) for k in range(shape[1])]
             force[i] = np.max(of_kinds, axis=1)
-            self.decided_by[i] = tuple({int(np.argmax(each)) for each in (widths, depths, *of_kinds)})
+            self.decided_by[int(i)] = tuple({int(np.argmax(each)) for each in (widths, depths, *of_kinds)})
         return width, force, deep
 
 

@@ -27,7 +27,7 @@ from tactcad.mechanics.section import Array
 from tactcad.parts.rules import broken_rules
 
 from .candidates import Candidates, Stand, realised
-from .on_layer import CandidatesOnLayer, others
+from .on_layer import others
 
 SEED = 20261122
 POPULATION = 12  # candidates for each number
@@ -259,7 +259,7 @@ def _on_layer(
     best, passed = (inf, stand, starts[0]), list[tuple[float, Stand, Array]]()
     decided_by: tuple[int, ...] = ()
 
-    def valued(at: Stand, rows: Array) -> tuple[CandidatesOnLayer, Array]:
+    def valued(at: Stand, rows: Array) -> tuple[Candidates, Array]:
         c = at.candidates(rows)
         with np.errstate(all="ignore"):
             bad, wanted = c.violation, goal(c)
@@ -279,7 +279,7 @@ def _on_layer(
                 if refused := refusals(realised(at.candidates(rows[i : i + 1]))):
                     why.update(refused)
                     continue
-            best, decided_by = (float(value[i]), at, rows[i]), c.decided_by.get(i, decided_by)
+            best, decided_by = (float(value[i]), at, rows[i]), c.decided_by.get(int(i), decided_by)
             if value[i] < FAR:
                 passed.append(best)
             return True
