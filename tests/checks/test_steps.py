@@ -12,9 +12,10 @@ from test_tools import block
 
 from tactcad.checks.on_solids.steps import check_steps
 from tactcad.parts.bought.screws import cap_screw
-from tactcad.parts.bought.standard_parts import dowel
+from tactcad.parts.bought.standard_parts import STAGES, dowel
 from tactcad.parts.designs import load
 from tactcad.parts.language.description import Hole
+from tactcad.parts.rigs import stand
 from tactcad.scenes import make_scene, scene_names
 from tactcad.scenes.moves import guide_json, settles, step_moves
 from tactcad.scenes.scene import DOWN, STILL, Contact, Move, Need, Placement, Scene, Step
@@ -147,3 +148,18 @@ def test_usual_ways_follow_from_the_placements():
     titles = [s.title for s in made.steps]
     sets, _ = settles(made, titles.index("Carrier"))
     assert any("CA1 to EP1: all, by SC5 SC6" in said for said in sets)
+
+
+@pytest.mark.parametrize("stage", STAGES, ids=lambda stage: f"{stage.size:g} mm")
+def test_every_stage_sold_can_be_screwed_down(monkeypatch, stage):
+    """The largest stands 8 mm before the post: there its screws would stay covered."""
+    monkeypatch.setattr(stand, "calibration_stage", lambda _layout: stage)
+    made = make_scene(load("macro-array"), "calibration")
+    steps = made.steps[: 1 + [s.title for s in made.steps].index("Stages on the base plate")]
+    names = {d for s in steps for d in s.designators}
+    assert {"PO1", "SF2", "SM2"} <= names and len([n for n in names if n.startswith("RS")]) == 4 + 4 + 4
+    placed = tuple(p for p in made.placements if p.designator in names)
+    assert placed[[p.designator for p in placed].index("SM2")].part.body.box[1][0] == stage.size / 2
+    met = tuple(c for c in made.contacts if {c.first, c.second} <= names)
+    stands = replace(made, placements=placed, contacts=met, steps=steps, groups=(), motions=(), ready=())
+    assert found(stands) == []

@@ -37,6 +37,7 @@ pitch = 4
 arms = [4, 8]
 hinges = [0.15, 0.6]
 """
+NEWTON = 1e-6  # relative: the equations of a batch are solved until all of it is done
 # Least and largest modulus (MPa), thickness and what else is said of it, largest force (N), elements.
 TEN = [
     (0.4, 1.4, "thickness = 10\nthickness_limits = 5", 4.0, 10),
@@ -133,6 +134,25 @@ def test_a_known_thickness_helps_and_an_inclination_costs(better):
     widths = [float(v[0, 2] - v[0, 1]) for v in (sure.object_, unsure.object_)]
     of_E = [float(v[0, 2] - v[0, 1]) / 0.7 for v in (sure.modulus, unsure.modulus)]
     assert widths[1] > widths[0] and of_E[1] > of_E[0]
+
+
+def test_few_poses_decide_a_candidate():
+    """At the poses that decide one candidate it is worth what it is at all of them, and no other candidate is
+    better there than it is: what the search leaves out on their word is no answer."""
+    (stand,) = stands(target_of(0.4, 1.4, "thickness = 10\nangle = [0, 2]", 4.0, 10))
+    low, high = stand.limits
+    share = np.random.default_rng(3).uniform(0.3, 0.7, (6, len(low)))
+    rows = np.rint(low + share * (high - low))
+    rows[:, [2, 5]] = 5, 5
+    whole = stand.candidates(rows)
+    assert len(whole.violation) == 6 and len(whole.decided_by) > 2
+    near = 1 + NEWTON
+    for i, tried in whole.decided_by.items():
+        few = replace(stand, tried=tried).candidates(rows)
+        assert len(tried) < 5 and few.violation[i] == pytest.approx(whole.violation[i], rel=NEWTON)
+        assert few.half_width[i] == pytest.approx(whole.half_width[i], rel=NEWTON)
+        assert (few.violation <= whole.violation * near).all()
+        assert (few.half_width <= whole.half_width * near).all()
 
 
 @pytest.mark.parametrize(

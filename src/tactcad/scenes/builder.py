@@ -48,7 +48,7 @@ class Builder:
         self.placed_in: dict[str, list[str]] = {}
         self._numbers: dict[str, int] = {}
         self._group: str | None = None
-        self._stepped = 0
+        self._open: list[str] = []  # placed, in no step yet
         self._ready: set[str] = set()
         self._scenes: list[Scene] = []
         self._unit = ""
@@ -79,6 +79,7 @@ class Builder:
         """A part under a designator of its own; returns it."""
         placement = replace(placement, origin=_rounded(placement.origin))
         self.placements.append(placement)
+        self._open.append(placement.designator)
         if self._group is not None:
             self.groups.setdefault(self._group, []).append(placement.designator)
         return placement.designator
@@ -108,12 +109,18 @@ class Builder:
         self.supplies += scene.supplies
 
     def step(
-        self, title: str, explode: Vector, text: str, order: Sequence[Move | Sequence[str]] = (), **more: Any
+        self,
+        title: str,
+        explode: Vector,
+        text: str,
+        order: Sequence[Move | Sequence[str]] = (),
+        later: Sequence[str] = (),
+        **more: Any,
     ) -> None:
-        """Close a step: it takes what was placed since the step before; parts of a subassembly are ready.
-        What else there is to say of it: the fields of `Step`."""
-        names = tuple(p.designator for p in self.placements[self._stepped :])
-        self._stepped = len(self.placements)
+        """Close a step: it takes what was placed since the step before, but `later` ones, which the next one
+        takes; parts of a subassembly are ready. What else there is to say of it: the fields of `Step`."""
+        names = tuple(n for n in self._open if n not in later)
+        self._open = [*later]
         ready = frozenset(self._ready & set(names))
         moves = tuple(item if isinstance(item, Move) else tuple(item) for item in order)
         self.steps.append(

@@ -235,7 +235,7 @@ def place_force_axis(
         f"post's rows at z = {zs - STAGE_HOLE:g} and {zs + STAGE_HOLE:g} mm, then drive it down and fix "
         "the other two. It must run square to the base plate: 0.01 mm on the whole travel against a "
         "square; where it does not, lay shim foil between post and fixed half.",
-        order=driven((fixed, moving, head), moving, fixings, (0.0, 0.0, 1.0), travel, z - height - zs),
+        order=[(fixed, moving, head), *driven((moving,), fixings, (0.0, 0.0, 1.0), travel, z - height - zs)],
         tools=(SQUARE, SHIMS, "lever indicator, 1 um, on a stand"),
     )
     b.group("axis")
@@ -302,24 +302,24 @@ def raised(b: Builder, down: bool = False) -> Move:
 
 
 def driven(
-    stage: tuple[str, ...],
-    moving: str,
+    moving: tuple[str, ...],
     fixings: Sequence[tuple[int, str]],
     axis: Vector,
     travel: float,
     off: float = 0.0,
+    at: Vector = STILL,
 ) -> list[Move | tuple[str, ...]]:
-    """A stage is fixed: it comes whole; its moving half is driven to one end, the screws of the side that is
-    then free go in, then those of the other side, and it is driven back.
+    """A stage is fixed: its moving half, and what stands on it, is driven to one end, the screws of the side
+    that is then free go in, then those of the other side, and it is driven back.
 
     `fixings` are the screws, each with the side along the axis that it is on; `off` is how far, mm, the
-    moving half stands from the middle of its travel at last.
+    moving half stands from the middle of its travel at last; `at` is where the stage is meanwhile.
     """
-    by, here = "its micrometer", STILL
-    moves: list[Move | tuple[str, ...]] = [stage]
+    by, here = "its micrometer", at
+    moves: list[Move | tuple[str, ...]] = []
     for side in (-1, 1):
-        there = vector((-side * travel - off) * a for a in axis)
-        moves.append(Move((moving,), here, (there,), by))
+        there = vector(p + (-side * travel - off) * a for p, a in zip(at, axis))
+        moves.append(Move(moving, here, (there,), by))
         moves += [(name,) for on, name in fixings if on == side]
         here = there
-    return [*moves, Move((moving,), here, (STILL,), by)]
+    return [*moves, Move(moving, here, (at,), by)]

@@ -71,6 +71,7 @@ class Stand:
     base      the target's base design with sheet, alloy, tolerance, pitch, forces and rows set
     pattern   how kinds are dealt out over the rows: 0 spread evenly, else one of chance
     springs   whether a body counts as a spring under each pad, for a first guess
+    tried     numbers of the poses on a body at which a candidate is tried; none for all of them
     """
 
     target: Target
@@ -78,6 +79,7 @@ class Stand:
     kinds: int
     pattern: int = 0
     springs: bool = False
+    tried: tuple[int, ...] = ()
 
     @property
     def on_layer(self) -> bool:
@@ -228,6 +230,11 @@ class Candidates:
     count: Array
     slot: Array
     radius: Array
+
+    @cached_property
+    def decided_by(self) -> dict[int, tuple[int, ...]]:
+        """Numbers of the poses on a body that decide a candidate, by its row, of those that were tried."""
+        return {}
 
     @cached_property
     def layout(self) -> Layout:

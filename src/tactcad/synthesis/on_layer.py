@@ -175,6 +175,8 @@ class CandidatesOnLayer(Candidates):
         broken = sum(np.maximum(v, 0.0) for v in self.of_shape.values()) > 0.0
         usable = np.isfinite(self.elements.stiffness).all(axis=1) & self.known_as_made & ~broken
         at, rows = poses(s.target, s.base), s.target.room.rows
+        if s.tried:
+            at = Poses(at.modulus[list(s.tried)], at.slope[list(s.tried)])
         for i in np.flatnonzero(usable):
             dealt = order([int(n) for n in self.count[i]], rows, s.pattern)
             kind = np.array([k for row in dealt for k in row])
@@ -188,8 +190,11 @@ class CandidatesOnLayer(Candidates):
             except (InputError, np.linalg.LinAlgError):  # no stiffer than the load cell
                 width[i] = inf
                 continue
-            width[i], deep[i] = made.half_width(at, got).max(), made.depth(at, got).max()
-            force[i] = [got.force[:, kind == k].max(initial=0.0) for k in range(shape[1])]
+            widths, depths = made.half_width(at, got), made.depth(at, got)
+            width[i], deep[i] = widths.max(), depths.max()
+            of_kinds = [got.force[:, kind == k].max(1, initial=0.0) for k in range(shape[1])]
+            force[i] = np.max(of_kinds, axis=1)
+            self.decided_by[int(i)] = tuple({int(np.argmax(each)) for each in (widths, depths, *of_kinds)})
         return width, force, deep
 
 

@@ -257,15 +257,21 @@ def _on_layer(
             looked += guess.evaluations
     rng, why = np.random.default_rng(SEED), dict[str, str]()
     best, passed = (inf, stand, starts[0]), list[tuple[float, Stand, Array]]()
+    decided_by: tuple[int, ...] = ()
 
-    def better(at: Stand, rows: Array) -> bool:
-        nonlocal best, looked
-        looked += len(rows)
+    def valued(at: Stand, rows: Array) -> tuple[Candidates, Array]:
         c = at.candidates(rows)
         with np.errstate(all="ignore"):
             bad, wanted = c.violation, goal(c)
             value = np.where(bad > 0.0, FAR * (1.0 + np.minimum(bad, 1e3)), wanted)
-        value = np.where(np.isfinite(value), value, FAR * 1e4)
+        return c, np.where(np.isfinite(value), value, FAR * 1e4)
+
+    def better(at: Stand, few: Stand, rows: Array) -> bool:
+        nonlocal best, looked, decided_by
+        looked += len(rows)
+        # no candidate is better than at the few poses that decide the best: most need no others
+        rows = rows[valued(few, rows)[1] < best[0] * (1.0 - WORTH)]
+        c, value = valued(at, rows)
         for i in np.argsort(value):
             if not value[i] < best[0] * (1.0 - WORTH):
                 return False
@@ -273,7 +279,7 @@ def _on_layer(
                 if refused := refusals(realised(at.candidates(rows[i : i + 1]))):
                     why.update(refused)
                     continue
-            best = float(value[i]), at, rows[i]
+            best, decided_by = (float(value[i]), at, rows[i]), c.decided_by.get(int(i), decided_by)
             if value[i] < FAR:
                 passed.append(best)
             return True
@@ -286,9 +292,10 @@ def _on_layer(
             low, high = at.limits
             some = np.unique(np.clip(row + few_moves(len(row)), low, np.maximum(low, high)), axis=0)
             parts = np.array_split(rng.permutation(some), max(len(some) // AT_ONCE, 1))
-            steps = [(at, part) for part in parts]
+            few = replace(at, tried=decided_by)
+            steps = [(at, few, part) for part in parts]
             if evolve:
-                steps += [(other, row[np.newaxis]) for other in others(at, rng)]
+                steps += [(o, replace(o, tried=decided_by), row[np.newaxis]) for o in others(at, rng)]
             for k in rng.permutation(len(steps)):
                 if time.perf_counter() > until:
                     break
@@ -299,7 +306,7 @@ def _on_layer(
     ends = []
     for left, first in zip(range(len(starts), 0, -1), starts):
         best, now = (inf, stand, first), time.perf_counter()
-        better(stand, first[np.newaxis])
+        better(stand, stand, first[np.newaxis])
         descend(now + (until - now) / (left + 0.5))
         ends.append(best)
     best = min(ends, key=lambda end: end[0])

@@ -19,7 +19,7 @@ from tactcad.parts.rigs.frame import (
     pad_middles,
     under_carrier_screw,
 )
-from tactcad.parts.rigs.stand import StandLayout, most_before_post
+from tactcad.parts.rigs.stand import StandLayout
 from tactcad.parts.rigs.stiffness import calibration_lines, calibration_loads, series_give
 from tactcad.parts.rules.calibration_rules import FITS
 
@@ -29,9 +29,11 @@ from ..rig_requirements import roller
 from ..scene import AGAINST_Y, DOWN, REST, STILL, Motion, Move, Need, Pose, Rotation, Scene, Vector, whole_um
 from ..shared_rigs import (
     AXIS_LIFT,
+    BESIDE,
     CORNERS,
     JAM_SPANNER,
     LENGTH,
+    OVER,
     RAISED,
     STAND,
     THREAD,
@@ -111,16 +113,21 @@ def calibration(design: Design, pose: Pose = REST) -> Scene:
 
 
 def _stages(b: Builder, rig: StandLayout, dx: float, dy: float) -> str:
-    """The x stage on the base plate, the y stage on it; returns the moving half on top."""
+    """The y stage on the x stage, both on the base plate; returns the moving half on top.
+
+    They are put together on the bench: on the base plate a large y stage would meet the post before its
+    screws are free.
+    """
     b.unit("stages")
     stage = rig.stage
     fixed, moving = rigs.stage_fixed(stage), rigs.stage_moving(stage)
     head = rigs.micrometer(stage.travel, 0.01)
     t, half = stage.plate, stage.size / 2
     below, at = STAND, (0.0, 0.0)
+    stages: list[tuple[str, ...]] = []
+    fixings: list[list[tuple[int, str]]] = []
     for level, (axis, out, side) in enumerate((("x", OUT_OF_X, (-1, 0)), ("y", AGAINST_Y, (0, -1)))):
         z = 2 * t * level
-        along = (1.0, 0.0, 0.0) if axis == "x" else (0.0, 1.0, 0.0)
         b.group(None if axis == "x" else "stage-x")
         low = b.place("SF", fixed, (*at, z))
         b.meet(below, low)
@@ -135,23 +142,36 @@ def _stages(b: Builder, rig: StandLayout, dx: float, dy: float) -> str:
         b.group("stage-x" if axis == "x" else "stage-y")
         high = b.place("SM", moving, (*at, z + t))
         b.meet(low, high)
-        b.step(
-            f"Stage along {axis}",
-            (0, 0, 30 + 25 * level),
-            f"Drive the {axis} stage to one end until two screws are free, fix them; drive it to the other "
-            "end and fix the other two. Then drive it to the middle of its travel."
-            + (" Square to the x stage within 0.02 mm on 20 mm." if axis == "y" else ""),
-            order=driven(
-                (low, high, micrometer),
-                high,
-                screws,
-                along,
-                stage.travel if axis == "x" else min(stage.travel, most_before_post(stage)),
-                dx if axis == "x" else dy,
-            ),
-        )
+        stages.append((low, high, micrometer))
+        fixings.append(screws)
         below = high
     b.group(None)
+    (x_fixed, x_moving, x_micrometer), upper = stages
+    on_x, on_base = ([name for _, name in screws] for screws in reversed(fixings))
+    b.step(
+        "Stage along y on stage along x",
+        (0, 0, 55),
+        "On the bench: set the y stage on the x stage, a quarter turn off, so that its micrometer points to "
+        "the front where the other's points to the left. The square pattern of threads fits each way: look "
+        "at the micrometers. Drive the y stage to one end until two screws are free, fix them; drive it to "
+        "the other end and fix the other two, square to the x stage within 0.02 mm on 20 mm. Then drive "
+        "it to the middle of its travel.",
+        bench=True,
+        at=BESIDE,
+        later=on_base,
+        order=[stages[0], upper, *driven((upper[1],), fixings[1], (0.0, 1.0, 0.0), stage.travel, dy, BESIDE)],
+    )
+    b.step(
+        "Stages on the base plate",
+        (0, 0, 30),
+        "Set both on the base plate, the lower micrometer to the left (-x), the upper one to the front, away "
+        "from the post. Drive the x stage to one end until two screws are free, fix them; drive it to the "
+        "other end and fix the other two. Then drive it to the middle of its travel.",
+        order=[
+            Move((x_fixed, x_moving, x_micrometer, *upper, *on_x), BESIDE, (OVER, STILL)),
+            *driven((x_moving, *upper, *on_x), fixings[0], (1.0, 0.0, 0.0), stage.travel, dx),
+        ],
+    )
     return below
 
 
