@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+import json
+from pathlib import Path
+
 import mujoco
 import numpy as np
 import pytest
 from simulated import Simulated, check_energy, check_mass, check_plate, polygon_moments, simulated
 from sound_designs import as_table, sound_table
 
+from tactcad.cli.main import main
 from tactcad.design.load import from_table
+from tactcad.lab.calibration_file import FIELDS
 from tactcad.mechanics.ladder import DEFAULT_RUNG
 from tactcad.parts.array.element import element
 from tactcad.parts.array.hinge_section import hinge_section, not_reached
@@ -18,7 +23,8 @@ from tactcad.parts.designs import load
 from tactcad.robot import read
 
 pytestmark = pytest.mark.cad
-SHIPPED = ("macro-array", "better-array", "double-sample", "smallest-bearing", "soft-tissue")
+DESIGNS = Path(__file__).parents[2] / "hardware"
+SHIPPED = ("macro-array", *sorted({p.stem for p in DESIGNS.glob("*.toml")} - {"macro-array"}))
 RANDOM = [*range(3), *(pytest.param(seed, marks=pytest.mark.slow) for seed in range(3, 50))]
 
 
@@ -156,3 +162,37 @@ def test_frames_read_together_are_those_read_one_by_one(shipped):
     for i, frame in enumerate(frames):
         one = read(s.taxels, frame)
         assert (one.force == felt.force[i]).all() and one.object[0] == felt.object[i]
+
+
+def test_deflection_is_a_sensor_too(shipped):
+    """Each element's sensor says the joint's own position, which `read` takes."""
+    s = shipped
+    model = s.model()
+    data = mujoco.MjData(model)
+    data.qpos[:] = np.linspace(0.1, 0.6, len(s.lever)) * 1e-3 * s.column("range_mm") / s.lever
+    mujoco.mj_forward(model, data)
+    told = [data.sensor(f"{t.designator}_hinge_deflection").data[0] for t in s.taxels.taxels]
+    assert told == pytest.approx(data.qpos, rel=1e-12)
+
+
+def test_k_obj_is_that_of_the_command(shipped, tmp_path, capsys):
+    """The same exact ways on separate springs of 4 N/mm, as volts for `tactcad stiffness`."""
+    s, k, steps = shipped, 4.0, 8
+    K, V = s.column("stiffness_N_per_mm"), s.column("signal_V_per_mm")
+    most = 0.8 * (s.column("range_mm") * (K + k) / k).min()
+    way = np.linspace(0, most, steps + 1)[:, None] * k / (K + k)
+    heads = ",".join(f.name for f in FIELDS)
+    known = [f"{t.number},{a},{1e-3 * a},{b},{1e-3 * b},0,100" for t, a, b in zip(s.taxels.taxels, K, V)]
+    (tmp_path / "known.csv").write_text("\n".join([heads, *known]), "utf-8")
+    rows = [
+        f"{load},{t.number},{v}"
+        for load, volts in zip(way @ K, V * way)
+        for t, v in zip(s.taxels.taxels, volts)
+    ]
+    (tmp_path / "grasp.csv").write_text("\n".join(["load_N,element,signal_V", *rows]), "utf-8")
+    files = [str(tmp_path / "grasp.csv"), "--calibration", str(tmp_path / "known.csv")]
+    assert main(["stiffness", *files, "--coupling", "0", "--json"]) == 0
+    (told,) = json.loads(capsys.readouterr().out)["samples"]
+    assert told["combined"]["estimate"] == pytest.approx(k, rel=1e-6)
+    (own,) = read(s.taxels, way[-1] / (1e3 * s.lever), coupling=0.0).object
+    assert own.estimate == pytest.approx(k, rel=1e-6)
