@@ -157,3 +157,31 @@ def test_a_small_file_takes_little_memory_whatever_it_may_be_at_most(tmp_path):
     peak = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
     assert peak < 5_000_000
+
+
+@pytest.mark.parametrize(
+    "made, staged", [("mkstemp", "staged_file(here / 'out.csv')"), ("mkdtemp", "staged_folder(here, 'out')")]
+)
+def test_a_signal_as_soon_as_it_exists_leaves_nothing(tmp_path, made, staged):
+    """The moment between making a file or folder and knowing what to remove."""
+    code = f"""
+import os, signal, sys, tempfile
+from pathlib import Path
+from tactcad.design import staging
+from tactcad.shutdown import end_on_signals
+
+here, make = Path(sys.argv[1]), tempfile.{made}
+
+def then_killed(*args, **how):
+    out = make(*args, **how)
+    os.kill(os.getpid(), signal.SIGTERM)
+    return out
+
+tempfile.{made} = then_killed
+end_on_signals()
+with staging.{staged}:
+    pass
+"""
+    ended = subprocess.run([sys.executable, "-c", code, str(tmp_path)], capture_output=True, text=True)
+    assert ended.returncode == 128 + signal.SIGTERM, ended.stderr
+    assert list(tmp_path.iterdir()) == []

@@ -14,10 +14,10 @@ import shutil
 import stat
 import tempfile
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager, suppress
+from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 
-from tactcad.shutdown import unfinished
+from tactcad.shutdown import no_signals, unfinished
 
 MARK = "written-by-tactcad"  # in every folder of ours, and locked
 OWN = ".tactcad-"  # in every name of ours, before eight characters drawn by chance
@@ -60,8 +60,10 @@ def staged_folder(parent: Path, stem: str, settle: Settle = lambda _: None) -> I
                     removed(left)
             with suppress(OSError):  # killed before it could be marked: empty, or somebody else's
                 left.rmdir()
-    folder, lock = _new_folder(parent, stem)
-    with unfinished(lambda: removed(folder)):
+    with ExitStack() as known:
+        with no_signals():  # until it is known what to remove
+            folder, lock = _new_folder(parent, stem)
+            known.enter_context(unfinished(lambda: removed(folder)))
         try:
             yield folder
         finally:
@@ -94,13 +96,15 @@ def staged_file(place: Path) -> Iterator[Path]:
     stem = f".{place.name[:100]}"
     for left in _of_our_form(place.parent, stem, ".part"):
         remove_left(left)
-    while True:
-        lock, name = tempfile.mkstemp(prefix=stem + OWN, suffix=".part", dir=place.parent)
-        part = Path(name)
-        if _take(lock) is not False and part.exists():
-            break
-        os.close(lock)  # another process took it for a killed run's
-    with unfinished(lambda: part.unlink(missing_ok=True)):
+    with ExitStack() as known:
+        with no_signals():  # until it is known what to remove
+            while True:
+                lock, name = tempfile.mkstemp(prefix=stem + OWN, suffix=".part", dir=place.parent)
+                part = Path(name)
+                if _take(lock) is not False and part.exists():
+                    break
+                os.close(lock)  # another process took it for a killed run's
+            known.enter_context(unfinished(lambda: part.unlink(missing_ok=True)))
         try:
             yield part
         finally:
