@@ -162,6 +162,16 @@ def test_thin_webs_are_for_the_quotation_and_broken_ones_fail():
         assert [f.severity for f in broken] == ["fail"]
 
 
+@pytest.mark.parametrize("depth", [10.0, 1.0])
+def test_webs_of_flat_blind_holes_are_those_of_deep_ones(depth):
+    """Two holes of 6 mm, 6.3 mm apart; the flat one is shallower than its radius, both are."""
+    for other in (depth, 1.0):
+        found = check_machining(
+            part(hole(d=6.0, depth=depth), hole(at=(26.3, 15, 20), d=6.0, depth=other)), USUAL
+        )
+        assert {f.message.split(" mm")[0] for f in found if f.check == "hole-web"} == {"0.3"}
+
+
 def test_bought_and_wire_cut_parts_are_not_looked_at():
     bad = part(hole(d=0.1))
     assert (

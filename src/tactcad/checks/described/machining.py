@@ -220,7 +220,7 @@ def _between(a: Vector, b: Vector, c: Vector, d: Vector) -> float:
 
     def nearest(p: Vector, q0: Vector, q1: Vector) -> float:
         w = sub(q1, q0)
-        u = min(1.0, max(0.0, dot(sub(p, q0), w) / dot(w, w)))
+        u = min(1.0, max(0.0, dot(sub(p, q0), w) / (dot(w, w) or 1.0)))  # a flat blind hole has no axis
         return dist(p, tuple(x + u * y for x, y in zip(q0, w)))
 
     u, v, w = sub(b, a), sub(d, c), sub(a, c)
