@@ -42,7 +42,7 @@ def draw_readout(d: Draw) -> None:
         d.put("gauge.resistance", 10000.0)
         d.put("gauge.power_density", 1000.0)
         d.table.pop("readout.completion_resistance", None)
-    volts = min(20.0, _power(d)) / 1.05
+    volts = min(16.0, _power(d)) / 1.05
     d.put("readout.amplifier", d.choice(*AMPLIFIERS))
     least, most, above, below, gains, microvolts, _ = AMPLIFIERS[d.table["readout.amplifier"]]
     # room for the bridges' middle and the multiplexer's supply: 9 V at least
@@ -51,7 +51,7 @@ def draw_readout(d: Draw) -> None:
     low, high = volts * (0.5 - x) - above, max(volts + below, 1.0)
     negative = d.number("readout.supply_negative", max(-30.0, high - span + 0.1 - 30.0), min(low, 0.0) - 0.05)
     negative = d.put(
-        "readout.supply_negative", min(max(negative, high + 0.1 - span, -span + 1.0), 29.9 - span, 0.0)
+        "readout.supply_negative", min(max(negative, high + 0.1 - span, -span + 1.0), 19.9 - span, 0.0)
     )
     positive = d.put("readout.supply_positive", round(span + negative, 3))
     # the range is what the bridges reach at the least gain, or more

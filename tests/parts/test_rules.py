@@ -167,6 +167,7 @@ WITNESSES = {
     ],
     "supplies_suit_parts": [
         ({"readout.supply_positive": 30.0}, "readout.supply_positive"),
+        ({"readout.supply_positive": 24.0}, "readout.supply_positive"),  # the bridges' regulator
         ({"readout.amplifier": "AD623", "readout.supply_positive": 8.0}, "readout.supply_positive"),
     ],
     "boards_have_inputs": [({"readout.inputs": 1}, "readout.inputs")],
