@@ -141,6 +141,12 @@ def test_the_table_as_csv_is_the_one_as_json(folder):
         ("sink_mm_per_rad", [], "taxels[1]: sink_mm_per_rad: out of range"),
         ("shear_x_N_per_rad", [1.0, 2.0], "taxels[1]: shear_x_N_per_rad: out of range"),
         ("noise_V", None, "taxel 2: signal and noise: missing; legal: both in V, or both in mT"),
+        ("sink_mm_per_rad", [-3.0], "taxels[1]: sink_mm_per_rad: out of range; found -3.0; legal: above 0"),
+        ("sink_mm_per_rad", [True], "taxels[1]: sink_mm_per_rad: out of range"),
+        ("joints", [], "taxels[1]: sink_mm_per_rad: out of range"),
+        ("joints", ["E1_hinge"], "taxels.json: joints: of two taxels; found 'E1_hinge'; legal: each once"),
+        ("number", 1, "taxels.json: number: of two taxels; found 1; legal: each once"),
+        ("variance_offset_mm2", -1.0, "taxels[1]: variance_offset_mm2: below zero; found -1.0"),
     ],
 )
 def test_a_table_that_cannot_be_is_refused(folder, tmp_path, field, value, said):
@@ -150,6 +156,13 @@ def test_a_table_that_cannot_be_is_refused(folder, tmp_path, field, value, said)
     with pytest.raises(InputError) as refused:
         read_taxels(tmp_path)
     assert said in str(refused.value) and "\n" not in str(refused.value)
+
+
+def test_another_version_is_refused(folder, tmp_path):
+    told = json.loads((folder / "taxels.json").read_text()) | {"version": "1.0"}
+    (tmp_path / "taxels.json").write_text(json.dumps(told))
+    with pytest.raises(InputError, match="version: another one; found '1.0'; legal: 1.1: export again"):
+        read_taxels(tmp_path)
 
 
 def test_other_files_are_refused(tmp_path):
@@ -190,7 +203,7 @@ def test_meshes_outside_the_folder_are_refused(file):
         refuse_foreign_meshes("r.urdf", text.encode(), {"meshes/known.stl": None})
 
 
-@pytest.mark.parametrize("joints", [[0.0], [[[0.0, 0.0]]], [0.0, float("nan")]])
+@pytest.mark.parametrize("joints", [[0.0], [[[0.0, 0.0]]], [0.0, float("nan")], np.zeros((0, 2))])
 def test_positions_that_do_not_fit_are_refused(folder, joints):
     with pytest.raises(InputError, match="joints: not a position for each joint"):
         read(read_taxels(folder), joints)

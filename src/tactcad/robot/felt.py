@@ -65,9 +65,15 @@ def read(taxels: Taxels, joints: ArrayLike, level: float = 0.95, coupling: float
     require_level(level)
     if not 0 <= coupling <= 1:
         raise InputError("coupling", "out of range", value=coupling, legal="from 0 to 1")
-    sinks, q = [t.sink_mm_per_rad for t in taxels.taxels], np.asarray(joints, float)
+    sinks = [t.sink_mm_per_rad for t in taxels.taxels]
+    try:
+        q = np.asarray(joints, float)
+    except (TypeError, ValueError):
+        raise InputError(
+            "joints", "not an array of numbers", value=type(joints).__name__, legal="numbers"
+        ) from None
     count, first = sum(map(len, sinks)), np.cumsum([0, *map(len, sinks)])[:-1]
-    if q.ndim not in (1, 2) or q.shape[-1] != count or not np.isfinite(q).all():
+    if q.ndim not in (1, 2) or q.shape[-1] != count or not q.size or not np.isfinite(q).all():
         legal = f"[{count}] or [frame, {count}], finite"
         raise InputError("joints", "not a position for each joint", value=q.shape, legal=legal)
     deflection = np.add.reduceat(q * np.concatenate(sinks), first, axis=-1)

@@ -103,12 +103,12 @@ def _solid(body: Element, solid: Solid) -> None:
 
 
 def _pad(body: Element, m: Moving) -> None:
-    """What touches, and the site at the pad's face whose box takes in where it does."""
+    """What touches, and the site at the pad's face; its box takes in wherever the pad's ball is touched."""
     face, length, width = -m.joints_at, m.taxel.length_mm / 2, m.taxel.width_mm / 2
     deep = m.ball or min(length, width)
     shape, size = ("sphere", (deep,)) if m.ball else ("box", (length, width, deep))
     geom = {"type": shape, "size": np.array(size) * MM, "pos": (face - [0, 0, deep]) * MM}
     rubs = RUBS if m.rubs else {}
     add(body, "geom", name=f"{m.name}_pad", class_="collision", **geom, **rubs)
-    box = np.array([length, width, deep / 4]) * MM
+    box = np.array([max(length, deep), max(width, deep), deep]) * MM
     add(body, "site", name=f"{m.name}_taxel", type="box", pos=face * MM, size=box, group=4)

@@ -142,8 +142,8 @@ def csv_bytes(taxels: Taxels) -> bytes:
 def read_taxels(path: str | Path) -> Taxels:
     """The table of an export's robot/taxels.json; `path` may be the folder.
 
-    Raises InputError where it is no such file, or a taxel lacks a field, has no stiffness, or no way to its
-    stop.
+    Raises InputError where it is no such file or another version's, or a taxel lacks a field, has no
+    stiffness, no way to its stop, or the number or a joint of another one.
     """
     path = Path(path)
     path = path / "taxels.json" if path.is_dir() else path
@@ -151,10 +151,21 @@ def read_taxels(path: str | Path) -> Taxels:
     schema = data.get("schema") if isinstance(data, dict) else None
     if schema != SCHEMA:
         raise InputError(f"{path}: schema", "not a table of taxels", value=schema, legal=SCHEMA)
+    if data.get("version") != VERSION:
+        raise InputError(
+            f"{path}: version", "another one", value=data.get("version"), legal=f"{VERSION}: export again"
+        )
     rows = data.get("taxels")
     if not isinstance(rows, list) or not rows:
         raise InputError(f"{path}: taxels", "no taxel", value=rows, legal="one at least")
     taxels = tuple(_read(f"{path}: taxels[{i}]", row) for i, row in enumerate(rows))
+    each_once: dict[str, list[Any]] = {
+        "number": [t.number for t in taxels],
+        "joints": [j for t in taxels for j in t.joints],
+    }
+    for name, of in each_once.items():
+        if twice := [v for v in of if of.count(v) > 1]:
+            raise InputError(f"{path}: {name}", "of two taxels", value=twice[0], legal="each once")
     return Taxels(str(data.get("design", "")), str(data.get("revision", "")), taxels)
 
 
@@ -172,10 +183,14 @@ def _read(where: str, row: Any) -> Taxel:
     for name in PER_JOINT:
         numbers, many = values[name], len(values["joints"])
         short = len(numbers) != many and (numbers or name == PER_JOINT[0])
-        if short or not all(isinstance(v, int | float) for v in numbers):
+        if short or not many or any(isinstance(v, bool) or not isinstance(v, int | float) for v in numbers):
             raise InputError(f"{where}: {name}", "out of range", value=numbers, legal="one for each joint")
     taxel = Taxel(**values)
     require_positive(where, {name: getattr(taxel, name) for name in POSITIVE})
+    require_positive(where, {PER_JOINT[0]: max(taxel.sink_mm_per_rad)})
+    for name in ("variance_stiffness_N2_per_mm2", "variance_offset_mm2"):
+        if not getattr(taxel, name) >= 0:
+            raise InputError(f"{where}: {name}", "below zero", value=getattr(taxel, name), legal="0 or more")
     return taxel
 
 

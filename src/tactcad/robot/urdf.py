@@ -12,6 +12,8 @@ from .mechanism import ElementJoint, Mechanism, Moving, Solid, mesh_name
 
 MM = 1e-3  # m
 SPEED = 10.0  # rad/s or m/s, which URDF asks for; chosen beyond what any arm reaches
+LEAST = 2e-14  # kg m2: MuJoCo refuses inertias under 1e-14
+LIGHT = 4e-4  # of an element's mass and inertia; chosen: two such links stay within 0.1 %
 
 
 def unit(joint: ElementJoint) -> float:
@@ -41,7 +43,7 @@ def text(mechanism: Mechanism, base: Solid, arms: Sequence[Solid]) -> bytes:
             effort = j.stiffness * unit(j) * high
             add(joint, "limit", lower=low, upper=high, effort=effort, velocity=SPEED)
             if child != m.name:
-                add(root, "link", name=child)
+                _between(add(root, "link", name=child), arm)
             parent, at, turn = child, np.zeros(3), np.eye(3)
         _pad(_link(root, m.name, arm), m)
         add(root, "link", name=f"{m.name}_taxel")
@@ -57,6 +59,13 @@ def _joint(
     add(joint, "parent", link=parent)
     add(joint, "child", link=child)
     return joint
+
+
+def _between(link: Element, arm: Solid) -> None:
+    """A link between two joints of one element: simulators take no moving link without inertia."""
+    inertial, each = add(link, "inertial"), max(LIGHT * np.trace(arm.inertia.tensor) / 3, LEAST)
+    add(inertial, "mass", value=LIGHT * arm.inertia.mass)
+    add(inertial, "inertia", ixx=each, ixy=0.0, ixz=0.0, iyy=each, iyz=0.0, izz=each)
 
 
 def rpy(turn: object) -> np.ndarray:

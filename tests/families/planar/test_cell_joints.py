@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 
 import mujoco
@@ -212,6 +213,45 @@ def test_models_meshes_and_table_are_one(folder):
     first, second = read_taxels(folder).taxels
     assert (first.kind, second.kind, first.neighbours) == ("reference", "measuring", (2,))
     assert first.variance_stiffness_N2_per_mm2 > 0 and first.variance_offset_mm2 > 0
+
+
+def test_mujoco_takes_the_urdf_and_its_mass_is_the_mjcf_s(folder):
+    """Links between a cell's joints weigh next to nothing; without any inertia simulators refuse them."""
+    own = mujoco.MjModel.from_xml_path(str(folder / "jaw-array.xml"))
+    urdf = yourdfpy.URDF.load(str(folder / "jaw-array.urdf"))
+    links = {name: link.inertial for name, link in urdf.link_map.items() if link.inertial}
+    for cell in ("E1", "E2"):
+        between = [i for name, i in links.items() if name.startswith(f"{cell}_")]
+        assert len(between) == 2
+        mass = sum(i.mass for i in between) + links[cell].mass
+        assert mass == pytest.approx(own.body(cell).mass[0], rel=1e-3)
+    text = (folder / "jaw-array.urdf").read_text()
+    spec = mujoco.MjSpec.from_string(re.sub(r"<visual>.*?</visual>", "", text, flags=re.S))
+    assert spec.compile().njnt == own.njnt == 6
+
+
+def test_a_pad_touched_beside_its_middle_is_felt(folder):
+    """By a small ball 1.5 mm beside it: the sensor's force is the contacts' own."""
+    taxels = read_taxels(folder)
+    first = taxels.taxels[0]
+    spec = mujoco.MjSpec.from_file(str(folder / "jaw-array.xml"))
+    spec.option.gravity = [0, 0, 0]
+    x, y, z = 1e-3 * np.array([first.x_mm, first.y_mm - 1.5, first.z_mm])
+    r, deep = 2e-3, 1e-3 * (2.02 - (2.02**2 - 1.5**2) ** 0.5)  # where the pad's ball is, 1.5 mm beside
+    ball = spec.worldbody.add_body(mocap=True, pos=[x, y, z + r - deep])
+    ball.add_geom(type=mujoco.mjtGeom.mjGEOM_SPHERE, size=[r, 0, 0])
+    model = spec.compile()
+    data = mujoco.MjData(model)
+    for _ in range(2000):
+        mujoco.mj_step(model, data)
+    force = np.zeros(6)
+    touched = 0.0
+    for i in range(data.ncon):
+        mujoco.mj_contactForce(model, data, i, force)
+        touched += force[0]
+    assert touched > 0 and data.sensor(f"{first.designator}_force").data[0] == pytest.approx(
+        touched, rel=1e-6
+    )
 
 
 def test_frames_together_and_k_obj_refused(folder):
