@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
+from collections import Counter
 from collections.abc import Iterable, Mapping
 from dataclasses import asdict, dataclass, fields, replace
 from io import StringIO
@@ -164,8 +165,9 @@ def read_taxels(path: str | Path) -> Taxels:
         "joints": [j for t in taxels for j in t.joints],
     }
     for name, of in each_once.items():
-        if twice := [v for v in of if of.count(v) > 1]:
-            raise InputError(f"{path}: {name}", "of two taxels", value=twice[0], legal="each once")
+        ((most, count),) = Counter(of).most_common(1)
+        if count > 1:
+            raise InputError(f"{path}: {name}", "of two taxels", value=most, legal="each once")
     return Taxels(str(data.get("design", "")), str(data.get("revision", "")), taxels)
 
 

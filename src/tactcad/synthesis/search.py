@@ -270,7 +270,8 @@ def _on_layer(
         nonlocal best, looked, decided_by
         looked += len(rows)
         # no candidate is better than at the few poses that decide the best: most need no others
-        rows = rows[valued(few, rows)[1] < best[0] * (1.0 - WORTH)]
+        if few.tried:
+            rows = rows[valued(few, rows)[1] < best[0] * (1.0 - WORTH)]
         c, value = valued(at, rows)
         for i in np.argsort(value):
             if not value[i] < best[0] * (1.0 - WORTH):
