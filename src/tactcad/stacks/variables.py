@@ -159,8 +159,8 @@ SIGMAS = 2.0
 # Share of a dimension's variance that one machine's offset gives all pieces of a batch alike; chosen: as much
 # as each piece has of its own.
 OFFSET_SHARE = 0.5
-# Share of the variance of a wire-cut piece's tightest size that the wire's offset gives it; the others move as
-# many mm with it. Chosen: the rest is the machine's way and what the skimming cuts leave.
+# Share of the variance of a wire-cut piece's tightest size that the wire's offset gives it; the others move
+# with it as far as it takes them. Chosen: the rest is the machine's way and what the skimming cuts leave.
 WIRE_SHARE = 0.5
 
 
