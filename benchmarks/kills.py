@@ -5,7 +5,7 @@
 Prints one row for benchmarks/results/sweeps.md. Ends with status 1 if the tables differ, or if something
 finished was run again: the store shows that, since an entry that is written again is another file. If it is
 stopped itself, it goes on with the same FOLDER. The cluster is `dask scheduler` and two `dask worker` by
-command line, so that each can be killed alone; `dask worker` starts its processes again, this script all else.
+command line, so that each can be killed alone; `dask worker` restarts its processes, this script all else.
 """
 
 from __future__ import annotations
