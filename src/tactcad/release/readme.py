@@ -132,8 +132,8 @@ def _to_make(contents: ReleaseContents) -> list[str]:
     lines += paragraph(SPARES)
     return lines + paragraph(
         "Bought parts (screws, pins, bearings, gauges) are in the bills of materials with make_buy = buy; "
-        "they need no quotation unless we ask for one. The other zips split the same order by way of making, each "
-        "with only its own files."
+        "they need no quotation unless we ask for one. The other zips split the same order by way of "
+        "making, each with only its own files."
     )
 
 
