@@ -355,7 +355,7 @@ class Readout:
         Number("s", 0, 1, "of the instant, plus and minus"), None, "1 us by hardware, 1 ms by software"
     )
     mains: float | None = given(
-        Number("Hz", 10, 1000, "of the mains: the samples are spread over a whole period of it"),
+        Number("Hz", 10, 1000, "of the mains: the samples are spread over a whole period"),
         None,
         "not asked: samples follow each other at readout.sample_rate",
     )

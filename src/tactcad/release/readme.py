@@ -131,9 +131,9 @@ def _to_make(contents: ReleaseContents) -> list[str]:
     lines += paragraph(f"Quantities are for {SETS[contents.sets]}.")
     lines += paragraph(SPARES)
     return lines + paragraph(
-        "Bought parts (screws, pins, bearings, gauges) stand in the bills of materials with make_buy = buy; "
-        "they need no quotation unless we ask for one. The zips beside this one hold the same order by way "
-        "of making, each with its own files alone."
+        "Bought parts (screws, pins, bearings, gauges) are in the bills of materials with make_buy = buy; "
+        "they need no quotation unless we ask for one. The other zips split the same order by way of "
+        "making, each with only its own files."
     )
 
 
