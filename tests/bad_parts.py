@@ -416,6 +416,18 @@ BAD: dict[str, Bad] = {
     ),
     "gauge-power": Bad("circuit", "bridges fed with 7 V", lambda: circuit(readout__excitation=7.0), CIRCUIT),
     "settling": Bad("circuit", "10 us for a reading", lambda: circuit(readout__on_time=1e-5), CIRCUIT),
+    "converter-reference": Bad(
+        "circuit",
+        "a gauge of 80 ohm that a converter reads",
+        lambda: circuit(readout__converter="AD7124-8", gauge__resistance=80.0),
+        CIRCUIT,
+    ),
+    "converter-time": Bad(
+        "circuit",
+        "five elements in 0.2 s",
+        lambda: circuit(readout__converter="AD7124-8", readout__period=0.2),
+        CIRCUIT,
+    ),
     "lead-room": Bad("circuit", "a recess 0.2 mm deep", lambda: circuit(element__recess_depth=0.2), CIRCUIT),
     "strain-relief": Bad("circuit", "leads not bonded", lambda: circuit(wiring__bonded=0.0), CIRCUIT),
     "signal-range": Bad("signals", "a converter of 0.9 V", lambda: signals(readout__adc_range=0.9), CIRCUIT),
