@@ -126,7 +126,8 @@ class Completion(Bought):
 
 @dataclass(frozen=True)
 class Converter(Bought):
-    """A sigma-delta converter; noise V rms at the input at a gain and a rate (Hz), drift V/K, clock Hz."""
+    """A sigma-delta converter; noise V rms at the input at a gain and a rate (Hz), drift V/K, clock Hz,
+    least_reference V. pins by role: AIN0 and on, and the others'."""
 
     inputs: int
     bits: int
@@ -136,7 +137,10 @@ class Converter(Bought):
     noise_rate: float
     clock: float
     drift: float
+    least_reference: float
     ratiometric: bool
+    pins: dict[str, str]
+    package: str
     source: str
 
 
@@ -239,8 +243,10 @@ CONVERTERS = {
         noise=float(row["noise_nV"]) * 1e-9,
         drift=float(row["drift_nV"]) * 1e-9,
         ratiometric=row["ratiometric"] == "true",
+        pins=dict(pin.split("=") for pin in row["pins"].split()),
+        package=row["package"],
         source=row["source"],
-        **_numbers(row, "noise_gain", "noise_rate", "clock"),
+        **_numbers(row, "noise_gain", "noise_rate", "clock", "least_reference"),
     )
     for row in _rows("converters")
 }
