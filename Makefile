@@ -32,7 +32,8 @@ check: environment ## style, types, and every check of every design: all failure
 	$(BIN)/ruff check || status=1; \
 	$(BIN)/ruff format --check src tests benchmarks packaging || status=1; \
 	$(BIN)/mypy || status=1; \
-	$(BIN)/tactcad check $(DESIGNS) --out exports/check || status=1; \
+	echo $(DESIGNS) | xargs -n 1 -P $(WORKERS) sh -c 'said=$$($(BIN)/tactcad check $$0 --out exports/check/$$(basename $$0 .toml)); \
+		failed=$$?; echo "$$said"; exit $$failed' || status=1; \
 	exit $$status
 
 golden: environment ## take up every design's geometry in exports/golden/, where no check fails; prints what changed
@@ -42,9 +43,9 @@ EXPORTS = $(DESIGNS:hardware/%.toml=exports/%)
 
 review: export ## open every exported STEP and DXF file in ezdxf and FreeCAD; exports/NAME-review.html to look at
 	@status=0; \
-	for folder in $(EXPORTS); do $(BIN)/tactcad review $$folder --out $$folder-review.html || status=1; done; \
+	echo $(EXPORTS) | xargs -n 1 -P $(WORKERS) sh -c '$(BIN)/tactcad review $$0 --out $$0-review.html' || status=1; \
 	$(BIN)/python packaging/review/in_ezdxf.py $(EXPORTS) || status=1; \
-	$(BIN)/python packaging/review/review.py $(EXPORTS) || status=1; \
+	echo $(EXPORTS) | xargs -n 1 -P $(WORKERS) $(BIN)/python packaging/review/review.py || status=1; \
 	exit $$status
 
 release: environment ## what a shop can quote from, of every design no check of which fails: exports/releases, as samples

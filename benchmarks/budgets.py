@@ -1,6 +1,6 @@
-"""Whether budgets are kept on designs drawn by chance, as the tables of docs/accuracy.md.
+"""Whether budgets are kept on designs drawn by chance, as the tables of benchmarks/results/budgets.md.
 
-    python benchmarks/budgets.py docs/accuracy.md --designs 200 --commands 12     an hour of one core
+    python benchmarks/budgets.py benchmarks/results/budgets.md --designs 200 --commands 12    an hour
 
 Each of the first gets a P or a time by chance and is answered by `tactcad estimate --batch` in a process
 of its own; its K is held against solid elements on a mesh finer than any that was chosen, its processor time

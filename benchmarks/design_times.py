@@ -6,9 +6,8 @@ docs/benchmarks.md and docs/stack.md.
     python benchmarks/design_times.py docs/stack.md         a few minutes
 
 Processor time of one process, each case in turn: arrays of ten and forty elements against the number of free
-numbers; the same candidates in a plain loop over `estimate`'s closed form; arrays made against the width of
-the yield's interval; arrays built against their elements, an element's time level where time goes with the
-elements.
+numbers; arrays made against the width of the yield's interval; arrays built against their elements, an
+element's time level where time goes with the elements.
 """
 
 from __future__ import annotations
@@ -21,11 +20,9 @@ import numpy as np
 from measuring import ROOT, array_of, processor_seconds
 from tables import lines, write_tables
 
-from tactcad.lab.array_estimate import estimate
 from tactcad.mechanics.section import Array
-from tactcad.parts.array.layout import Layout
 from tactcad.stacks.virtual_build import sensor
-from tactcad.synthesis.candidates import Candidates, realised, stands
+from tactcad.synthesis.candidates import Candidates, stands
 from tactcad.synthesis.made_arrays import MadeSensor
 from tactcad.synthesis.search import search
 from tactcad.synthesis.synthesise import Synthesis, design
@@ -60,7 +57,6 @@ BY_HAND = (
     f'target = {{name = "paper"}}{PAPER}',
     f'target = {{name = "paper-finer", half_width = 2}}{PAPER}',
 )
-LOOPED = 50  # candidates of the plain loop
 ARRAYS = (500, 2000, 8000)
 SIZES = (10, 40, 160, 1000)
 ELEMENTS = 20_000  # built in a run of each size, so that each takes about as long
@@ -88,30 +84,6 @@ def searches() -> str:
             shown = (f"{seconds:.2g}", f"{each:.3g}", f"{100 * found.half_width:.3g}")
             rows.append((name, len(stand.limits[0]), found.evaluations, *shown))
     return lines("array | free numbers | candidates | s | us a candidate | half-width, %", rows)
-
-
-def loop() -> str:
-    """The same candidates all at once, and one by one as a design through `estimate`."""
-    stand = stands(target())[0]
-    low, high = stand.limits
-    rows = np.random.default_rng(1).integers(low, np.maximum(high, low) + 1, (100 * LOOPED, len(low)))
-    stand.candidates(rows[:10]).violation
-    start = time.process_time()
-    with np.errstate(all="ignore"):
-        usable = np.isfinite(stand.candidates(rows).violation)
-    at_once = (time.process_time() - start) / len(rows)
-    start = time.process_time()
-    for row in rows[usable][:LOOPED]:
-        estimate(Layout(realised(stand.candidates(row[np.newaxis]))), "solid")
-    alone = (time.process_time() - start) / LOOPED
-    shown = (f"{1e6 * at_once:.3g}", f"{alone / at_once:.3g}")
-    return lines(
-        "way | us a candidate | times",
-        [
-            ("a plain loop over `estimate`", f"{1e6 * alone:.3g}", 1),
-            ("candidates at once, with interval and limits", *shown),
-        ],
-    )
 
 
 def yields() -> str:
@@ -195,11 +167,5 @@ def answers() -> str:
 
 
 if __name__ == "__main__":
-    tables = {
-        "answers": answers,
-        "searches": searches,
-        "loop": loop,
-        "yields": yields,
-        "virtual builds": virtual_builds,
-    }
+    tables = {"answers": answers, "searches": searches, "yields": yields, "virtual builds": virtual_builds}
     raise SystemExit(write_tables(__doc__, tables))

@@ -2,10 +2,10 @@
 
     python benchmarks/kills.py mine.toml exports/kills/mine --kills 20
 
-Prints one row for docs/sweeps.md; ends with status 1 where the tables differ or something finished was run
-again, which is read off the store: an entry that is written again is another file. Itself stopped, it goes on
-with the same FOLDER. The cluster is `dask scheduler` and two `dask worker` by command line, so that each can
-be killed alone; worker processes are started again by their `dask worker`, all else by this.
+Prints one row for benchmarks/results/sweeps.md. Ends with status 1 if the tables differ, or if something
+finished was run again: the store shows that, since an entry that is written again is another file. If it is
+stopped itself, it goes on with the same FOLDER. The cluster is `dask scheduler` and two `dask worker` by
+command line, so that each can be killed alone; `dask worker` restarts its processes, this script all else.
 """
 
 from __future__ import annotations

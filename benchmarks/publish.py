@@ -26,7 +26,7 @@ from tactcad.mechanics.register import rungs
 from tactcad.report.report import sig
 
 REFERENCE = "benchmarks/results/reference.json"
-DOCUMENTS = ("docs/benchmarks.md", "docs/checks.md")
+DOCUMENT = "docs/benchmarks.md"
 
 # --- one table to choose from: rung, tessellation, detail level ---
 
@@ -136,10 +136,9 @@ def publish(report: Path, further: Sequence[Path], root: Path) -> list[Path]:
     files |= {f"docs/images/{name}": text for name, text in images(result).items()}
     if (report / TRUTH).is_file():
         files[f"benchmarks/data/{TRUTH}"] = (report / TRUTH).read_text("utf-8")
-    for document in DOCUMENTS:
-        files[document] = (root / document).read_text("utf-8")
-        for name, block in blocks(result).items():
-            files[document] = filled(files[document], name, block)
+    files[DOCUMENT] = (root / DOCUMENT).read_text("utf-8")
+    for name, block in blocks(result).items():
+        files[DOCUMENT] = filled(files[DOCUMENT], name, block)
     for name, text in files.items():
         (root / name).write_text(text, "utf-8")
     return [root / name for name in files]

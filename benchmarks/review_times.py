@@ -1,7 +1,7 @@
-"""Seconds to see a design, as the tables of docs/review.md: its page, live in a browser, beside OCP CAD
-Viewer.
+"""Seconds to see a design, as the tables of benchmarks/results/review.md: its page, live in a browser,
+beside OCP CAD Viewer.
 
-    python benchmarks/review_times.py docs/review.md [review] [live] [ocp-vscode]
+    python benchmarks/review_times.py benchmarks/results/review.md [review] [live] [ocp-vscode]
 
 Pages: each run is a process of its own, with an empty and with a full cache; the shortest of three counts.
 Live: the hinge of all elements is changed, so that each of their five parts is built anew; Chromium without a

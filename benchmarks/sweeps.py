@@ -1,6 +1,6 @@
-"""What a sweep costs beside what it computes, as the tables of docs/sweeps.md.
+"""What a sweep costs beside what it computes, as the tables of benchmarks/results/sweeps.md.
 
-    python benchmarks/sweeps.py docs/sweeps.md --designs 10000000     some minutes on a quiet machine
+    python benchmarks/sweeps.py benchmarks/results/sweeps.md --designs 10000000    some quiet minutes
 
 Every sweep is one of this machine's own processes, into a new folder. Memory is what each process holds in
 pages (RSS), looked at every 0.2 s. Rates are by processor time, which other work on the machine hardly moves;

@@ -209,7 +209,7 @@ def step_file(spoil: str) -> list[Finding]:
     kept = soundness.write_step
     soundness.write_step = lambda shape: getattr(t, spoil)(kept(shape))
     try:
-        return soundness.check_step(t.BLOCK, build(t.BLOCK).wrapped)
+        return soundness.check_step(t.BLOCK, build(t.BLOCK))
     finally:
         soundness.write_step = kept
 
@@ -227,7 +227,7 @@ def triangles(spoil: Callable) -> list[Finding]:
     from tactcad.checks.on_solids.soundness import check_triangles
     from tactcad.solids.build import build
 
-    vertices, faces = soup(build(BLOCK).wrapped)
+    vertices, faces = soup(build(BLOCK))
     return check_triangles("BLOCK", trimesh.Trimesh(vertices, spoil(faces), process=False))
 
 
@@ -240,7 +240,7 @@ def scaled() -> list[Finding]:
     kept = soundness.triangles
     soundness.triangles = lambda s, a, b: (soup(s)[0] * 1.02, soup(s)[1])
     try:
-        return soundness.check_mesh(BLOCK, build(BLOCK).wrapped)
+        return soundness.check_mesh(BLOCK, build(BLOCK))
     finally:
         soundness.triangles = kept
 
@@ -416,6 +416,18 @@ BAD: dict[str, Bad] = {
     ),
     "gauge-power": Bad("circuit", "bridges fed with 7 V", lambda: circuit(readout__excitation=7.0), CIRCUIT),
     "settling": Bad("circuit", "10 us for a reading", lambda: circuit(readout__on_time=1e-5), CIRCUIT),
+    "converter-reference": Bad(
+        "circuit",
+        "a gauge of 80 ohm that a converter reads",
+        lambda: circuit(readout__converter="AD7124-8", gauge__resistance=80.0),
+        CIRCUIT,
+    ),
+    "converter-time": Bad(
+        "circuit",
+        "five elements in 0.2 s",
+        lambda: circuit(readout__converter="AD7124-8", readout__period=0.2),
+        CIRCUIT,
+    ),
     "lead-room": Bad("circuit", "a recess 0.2 mm deep", lambda: circuit(element__recess_depth=0.2), CIRCUIT),
     "strain-relief": Bad("circuit", "leads not bonded", lambda: circuit(wiring__bonded=0.0), CIRCUIT),
     "signal-range": Bad("signals", "a converter of 0.9 V", lambda: signals(readout__adc_range=0.9), CIRCUIT),

@@ -101,7 +101,7 @@ def counts(orders: list[Item]) -> tuple[list[str], list[str]]:
             for item, found in mine:
                 own = Judged(found["rule"], tuple(found["scenes"]), tuple(found["failed"]))
                 designs.add(f"draw {found['draw']}", own)
-            lines.append(f"| designs drawn by chance, seed {mine[0][0].night.seed} | {designs} |")
+            lines.append(f"| random designs, seed {mine[0][0].night.seed} | {designs} |")
         elif mine:
             said = {
                 "whole": "files of tests, nothing broken: passed",

@@ -23,6 +23,7 @@ from tactcad.design.fields import OneOf
 from tactcad.design.messages import InputError
 from tactcad.design.tree import Design
 
+NAMED = 4  # rules that the line of counts names
 # Letters of names and titles: more than ASCII, quotes and backslashes among them.
 TITLE = "aZ09 -_.,:;/\\\"'<>&#%äßøŁжλ日本語€"
 CHOICES = {
@@ -115,7 +116,9 @@ class Counts:
 
     def __str__(self) -> str:
         refused = sum(self.refused.values())
-        most = ", ".join(f"{rule} {n}" for rule, n in self.refused.most_common())
+        most = ", ".join(f"{rule} {n}" for rule, n in self.refused.most_common(NAMED))
+        if len(self.refused) > NAMED:
+            most += f", and {len(self.refused) - NAMED} other rules"
         scenes = ", ".join(f"{name} {n}" for name, n in self.scenes.items())
         return (
             f"{self.drawn} designs drawn: {self.accepted} accepted ({scenes}), {refused} refused by a named "

@@ -1,6 +1,6 @@
 """A promise is never broken on designs drawn by chance, against meshes finer than any that was chosen.
 
-How long they take is the benchmark's to tell (docs/accuracy.md), not a test's.
+How long they take is the benchmark's to tell (benchmarks/results/budgets.md), not a test's.
 """
 
 from __future__ import annotations

@@ -6,14 +6,16 @@ from dataclasses import replace
 
 import pytest
 from bad_parts import BAD
+from traced_parts import asked_parts, unnamed
 from variants import variant
 
 from tactcad.checks.facing_rows.circuit import check_bridges, check_circuit, check_inputs, check_signals
-from tactcad.checks.facing_rows.gauge_limits import check_gauges, parts_used
+from tactcad.checks.facing_rows.gauge_limits import check_gauges
 from tactcad.circuit.bridges import netlist
 from tactcad.circuit.netlist import Netlist
 from tactcad.design.load import names, read
 from tactcad.parts.array.layout import Layout
+from tactcad.parts.bought.electronic_parts import parts_used
 
 OURS = [name for name, bad in BAD.items() if bad.run in ("circuit", "signals")]
 SHIPPED = netlist(Layout(read("macro-array")))
@@ -87,8 +89,13 @@ def test_no_unread_figure_decides_a_check_without_a_word(monkeypatch):
     design = read("macro-array")
     tables = {k: v for k, v in vars(sensing).items() if isinstance(v, dict) and k.isupper()}
     bought = {k: v for k, v in tables.items() if all(isinstance(p, sensing.Bought) for p in v.values())}
-    del bought["CONVERTERS"]  # no check asks them: settings and figures beside the other read-out
-    assert set(bought) == {"AMPLIFIERS", "SWITCHES", "MULTIPLEXERS", "COMPLETIONS", "FOILS"}
+    assert set(bought) == {"AMPLIFIERS", "SWITCHES", "MULTIPLEXERS", "COMPLETIONS", "FOILS", "CONVERTERS"}
+    digital = [*parts_used(variant({"readout.converter": "AD7124-8"})).values()]
+    (told,) = (
+        f for f in check_gauges(variant({"readout.converter": "AD7124-8"})) if f.check == "unread-figures"
+    )
+    assert [p.name for p in digital][0] == "AD7124-8" and all(p.name in told.message for p in digital)
+    del bought["CONVERTERS"]  # those of a card
     (told,) = (f for f in check_gauges(design) if f.check == "unread-figures")
     chosen = [p for p in parts_used(design).values()]
     assert len(chosen) == len(bought) and all(p.name in told.message for p in chosen)
@@ -96,6 +103,14 @@ def test_no_unread_figure_decides_a_check_without_a_word(monkeypatch):
         for name, part in table.items():
             monkeypatch.setitem(table, name, replace(part, verified=True))
     assert not [f for f in check_gauges(design) if f.check == "unread-figures" or "unread" in f.message]
+
+
+@pytest.mark.parametrize("changes", [{}, {"readout.converter": "AD7124-8"}])
+def test_a_check_of_signals_names_the_unread_parts_that_it_asks(changes):
+    wish = variant({**changes, "readout.force_resolution": 0.01, "readout.adc_range": 0.5})
+    with asked_parts() as asked:
+        found = [*check_signals(wish)]
+    assert found and not any(unnamed(wish, asked, f.message) for f in found)
 
 
 def test_the_gauges_own_limits_are_flagged():

@@ -255,8 +255,7 @@ def test_what_stands_in_series_with_the_gauge_adds_up_and_is_told_in_guide_and_d
 
 def rows_of(design) -> list[str]:
     return [
-        f"| {s.scene} | {s.part} | {s.model} | {s.load:.3g} | {s.origin} | {s.gives:.2g} | {s.allowed:.3g} "
-        f"| {s.why} |"
+        f"| {s.scene} | {s.part} | {s.model} | {s.load:.3g} | {s.gives:.2g} | {s.allowed:.3g} |"
         for s in deflections(design, RIGS)
     ]
 

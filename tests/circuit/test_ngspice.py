@@ -5,23 +5,34 @@ from __future__ import annotations
 from dataclasses import replace
 from math import pi, sqrt
 
+import numpy as np
 import pytest
 from ngspice import solved
 from variants import variant
 
 from tactcad.circuit.bridges import netlist
+from tactcad.circuit.element_signals import element_signals
 from tactcad.circuit.netlist import Netlist
 from tactcad.circuit.netlist_files import DIODE, closed, deck, deck_bytes, lines_of, reading
 from tactcad.circuit.read_board import board_netlist
 from tactcad.circuit.tracks import with_tracks
 from tactcad.design.load import read
+from tactcad.design.sensing import AMPLIFIERS
 from tactcad.mechanics import gauge_signal, readout
-from tactcad.parts.array.bridge_figures import instant_error, instants, power_of, warm_output
-from tactcad.parts.array.hinge_section import design_gauge, design_readout
+from tactcad.parts.array.bridge_figures import instant_error, instants, power_of, settling_time, warm_output
+from tactcad.parts.array.hinge_section import design_gauge, design_readout, hinge_section
 from tactcad.parts.array.layout import Layout
 from tactcad.parts.array.leads import lead_routes
+from tactcad.parts.bought.electronic_parts import completion_drift, completion_tolerance
 
 SWITCHES = {"IRLML6244": 0.021, "BSS138": 6.0, "2N7002": 7.5}
+
+
+def source(circuit: Netlist) -> str:
+    """In the deck: the bridges' supply of the first board."""
+    return f"V{circuit.on_board('regulator', 1).net('out')}"
+
+
 FULL_SCALE = 0.035  # V at a bridge: the converter's 3.5 V over a gain of 100
 
 
@@ -254,21 +265,25 @@ print first last
 
 
 @pytest.mark.parametrize(
-    "changes",
+    ("changes", "tracks"),
     [
-        {},
-        {"readout.gain": 10},
-        {"gauge.resistance": 1000.0},
-        {"readout.amplifier": "AD8221", "readout.multiplexer": "ADG1409"},
-        {"readout.amplifier": "AD620", "readout.gain": 20.0},
-        {"readout.amplifier": "AD623", "readout.gain": 300.0},
+        ({}, False),
+        ({}, True),
+        ({"readout.gain": 10}, False),
+        ({"gauge.resistance": 1000.0}, False),
+        ({"readout.amplifier": "AD8221", "readout.multiplexer": "ADG1409"}, False),
+        ({"readout.amplifier": "AD620", "readout.gain": 20.0}, False),
+        ({"readout.amplifier": "AD623", "readout.gain": 300.0}, False),
     ],
 )
-def test_the_netlists_noise_is_that_of_mechanics(changes, tmp_path):
-    """ngspice adds up Johnson noise of every resistor and the amplifier's, up to 100 MHz, within 1 %."""
+def test_the_netlists_noise_is_that_of_mechanics(changes, tracks, tmp_path):
+    """ngspice adds up Johnson noise of every resistor and the amplifier's, up to 100 MHz, within 1 %; the
+    boards' tracks add nothing to it."""
     design = variant(changes)
     circuit = netlist(Layout(design))
-    commands = [*closed(circuit, 1), "noise v(out1) VEXC1 dec 100 1 1e8", "print onoise_total"]
+    if tracks:
+        circuit = with_tracks(Layout(design), circuit)
+    commands = [*closed(circuit, 1), f"noise v(out1) {source(circuit)} dec 100 1 1e8", "print onoise_total"]
     found = solved(deck(circuit, commands), tmp_path)["onoise_total"]
     assert found == pytest.approx(design_readout(design).noise, rel=0.01)
 
@@ -285,3 +300,150 @@ def test_the_written_deck_reads_every_element(tmp_path):
     found = solved(deck_bytes(netlist(Layout(read("soft-tissue")))).decode(), tmp_path)
     assert set(found) == {f"{what}{n}" for what in ("bridge", "output") for n in range(1, 9)}
     assert all(abs(v) < 1e-7 for v in found.values())
+
+
+def switched(circuit: Netlist, pulse: str, more: dict[str, list[str]], commands: list[str]) -> str:
+    """The deck with the first element's channel addressed and its switch closed while `pulse` is at 1 V;
+    `more` lines take the place of the components of these names."""
+    switch = circuit.of_element("switch", 1)
+    text = deck(circuit, [*(c for c in closed(circuit, 1) if "RQ1" not in c), *commands])
+    ohm = switch.figure("ohm")
+    more = {"RQ1": [f"SQ1 {switch.net('drain')} {switch.net('source')} on 0 enabled"], **more}
+    more["RQ1"] += [f"VON on 0 {pulse}", f".model enabled SW(RON={ohm} ROFF=1e9 VT=0.5 VH=0.1)"]
+    lines = ["\n".join(more.get(line.partition(" ")[0], [line])) for line in text.splitlines()]
+    return "\n".join(lines) + "\n"
+
+
+@pytest.mark.parametrize("strain", [1e-2, -1e-2])
+def test_a_board_has_settled_when_the_first_sample_may_be_taken(strain, tmp_path):
+    """Tracks, the multiplexer's and the amplifier's capacitances, from both inputs at EXC: at the stated time
+    less what the multiplexer itself takes, the output is within half a step of the converter."""
+    design = variant({"array.row_arms": [[5.0]]})
+    circuit = strained(with_tracks(Layout(design), netlist(Layout(design))), {1: 2.1 * strain})
+    amplifier, lines = circuit.on_board("amplifier", 1), []
+    for side in ("plus", "minus"):
+        lines.append(f"CIN{side} {amplifier.net(side)} 0 {150e-12 + 2e-12}")
+    at = settling_time(design) - 350e-9
+    run = ["save v(out1)", "tran 20n 60u", f"meas tran then FIND v(out1) AT={at + 1e-6}"]
+    run += ["meas tran end FIND v(out1) AT=59u", "print then end"]
+    gauge = next(line for line in deck(circuit, []).splitlines() if line.startswith("RB1 "))
+    found = solved(switched(circuit, "PULSE(0 1 1u 1n 1n 1 2)", {"RB1": [gauge, *lines]}, run), tmp_path)
+    assert abs(found["end"]) == pytest.approx(1.414, rel=0.02)
+    assert abs(found["then"] - found["end"]) < 10 / 2**16 / 2
+    assert at < 15e-6
+
+
+def test_the_boards_warmth_at_the_stated_instants(tmp_path):
+    """As above, but of the whole board with its tracks: its output at the first and the last sample."""
+    d = variant({"array.row_arms": [[5.0]], "readout.period": 0.05})
+    layout, gauge = Layout(d), design_gauge(d)
+    circuit, power, at = with_tracks(layout, netlist(layout)), power_of(layout), instants(d)
+    grid = circuit.of_element("gauge", 1)
+    a, b = grid.net("1"), grid.net("2")
+    ohm_k, tau = gauge_signal.thermal_resistance(gauge, power), gauge_signal.time_constant(gauge, power)
+    heat = f"V({a},{b})*V({a},{b})/120"
+    lines = [
+        f"BG {a} {b} I = V({a},{b})/(120*(1 - 17e-6*V(hot)))",
+        f"BP 0 grid I = {heat}",
+        f"RT grid 0 {ohm_k}",
+        f"CT grid 0 {tau / ohm_k}",
+        f"BH hot 0 V = V(grid) + {power.leaf_resistance}*{heat}",
+        "RH hot 0 1",
+    ]
+    run = ["save v(out1)", "tran 20u 0.055 0 20u"]
+    run += [f"meas tran at{i} FIND v(out1) AT={0.05 + at[i] + 2e-8}" for i in (0, 9)]
+    found = solved(
+        switched(circuit, "PULSE(0 1 0 1n 1n 5m 50m)", {"RB1": lines}, [*run, "print at0 at9"]), tmp_path
+    )
+    cold = solved(
+        deck(circuit, ["save v(out1)", *closed(circuit, 1), "op", "let cold = v(out1)", "print cold"]),
+        tmp_path,
+    )
+    ends = warm_output(layout, at[[0, -1]])
+    for i, ours in zip((0, 9), ends):
+        assert found[f"at{i}"] - cold["cold"] == pytest.approx(float(ours), rel=0.01)
+
+
+LENT = 1e-5  # strain by which a board's own slope is taken
+WORST = {"B1": 1, "A1-R11": -1, "A1-R12": 1, "A1-R13": -1}  # which way each arm unbalances the bridge
+
+
+def resolved(design, count: int, worst: bool, tmp_path) -> float:
+    """The smallest force, N, that so many boards tell from none, tracks and all. Their parts are evenly
+    spread over their tolerances, or at their ends where they unbalance the bridge most. Each board is read by
+    ngspice as it is, with its gauge strained, and after its parts have drifted, every drift's half-width as
+    two standard deviations. Twice the root mean square of what they drift and of a reading's noise, by each
+    board's own slope."""
+    layout, rng = Layout(design), np.random.default_rng(33)
+    circuit, r, gauge = with_tracks(layout, netlist(layout)), design.readout, design_gauge(design)
+    ohm = {c.designator: c.figure("ohm") for c in circuit.components if c.designator in {*WORST, "W11"}}
+    tolerances = dict.fromkeys(WORST, completion_tolerance(design)) | {
+        "B1": design.gauge.resistance_tolerance
+    }
+    middle, late = float(instants(design).mean()), {"hardware": 1e-6, "software": 1e-3}[r.timing]
+    commands = ["save v(out1)", *closed(circuit, 1)]
+
+    def even(half: float) -> float:
+        return 1 + rng.uniform(-half, half)
+
+    def drifted(*halves: float) -> float:
+        return 1 + rng.normal(0, np.hypot.reduce(halves) / 2)
+
+    def warmer(shift: float) -> float:
+        """By how much the grid's warmth changes its resistance, samples so many s late."""
+        rises = (gauge_signal.warmth(2.7, gauge, power_of(layout), middle + s) for s in (shift, 0.0))
+        return 17e-6 * (next(rises) - next(rises))
+
+    def read(name: str, values: dict[str, float], volts: float) -> list[str]:
+        lines = [f"alter R{n.replace('-', '_')} = {v!r}" for n, v in values.items()]
+        return [
+            *lines,
+            f"alter {source(circuit)} dc = {volts!r}",
+            "op",
+            f"let {name} = v(out1)",
+            f"print {name}",
+        ]
+
+    offsets = []
+    for k in range(count):
+        sign, span = int(rng.choice([-1, 1])), r.temperature_span
+        own = {"W11": ohm["W11"]} | {
+            n: ohm[n] * (1 + sign * WORST[n] * t if worst else even(t)) for n, t in tolerances.items()
+        }
+        volts, gain = r.excitation * even(0.01), circuit.on_board("amplifier", 1).figure("gain") * even(0.01)
+        moved = {n: v * drifted(completion_drift(design) * span) for n, v in own.items()}
+        moved["B1"] = own["B1"] * drifted(2.1 * design.gauge.thermal_output * span)
+        moved["B1"] -= own["B1"] * warmer(rng.normal(0, late / 2))
+        moved["W11"] = own["W11"] * drifted(0.0039 * 0.5)
+        commands += [f"alter EA1_U1 gain = {gain!r}", *read(f"zero{k}", own, volts)]
+        commands += read(f"bent{k}", {"B1": own["B1"] * (1 + 2.1 * LENT)}, volts)
+        commands += read(f"end{k}", moved, volts * drifted(r.excitation_drift))
+        offsets.append(gain * (drifted(AMPLIFIERS[r.amplifier].drift(r.gain) * span) - 1))
+    found = solved(deck(circuit, commands), tmp_path)
+    zero, bent, end = (
+        np.array([found[f"{name}{k}"] for k in range(count)]) for name in ("zero", "bent", "end")
+    )
+    foil = float(gauge_signal.foil_strain_per_force(hinge_section(layout, layout.elements), gauge)[0])
+    per_force = (bent - zero) / LENT * foil
+    commands = [*closed(circuit, 1), f"noise v(out1) {source(circuit)} dec 20 1 1e8", "print onoise_total"]
+    sample = np.hypot(solved(deck(circuit, commands), tmp_path)["onoise_total"], 28e-6 * 5)
+    parts = (end - zero + offsets) / per_force, sample / 10**0.5 / per_force
+    return 2 * float(np.hypot(*(np.mean(part**2) ** 0.5 for part in parts)))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("changes", "worst"),
+    [
+        ({"readout.completion": "film-1", "readout.amplifier": "AD620"}, False),
+        ({}, True),
+        ({"readout.timing": "software"}, True),
+    ],
+)
+def test_boards_of_parts_within_their_tolerances_resolve_what_is_stated(changes, worst, tmp_path):
+    """Boards of 1 % parts, whose arms' drift outweighs all else; and the shipped board at its worst: its
+    supply's drift over its bridges' imbalance counts."""
+    design = variant({"array.row_arms": [[5.0]], **changes})
+    (signal,) = element_signals(Layout(design))
+    told = resolved(design, 400, worst, tmp_path)
+    assert told == pytest.approx(signal.resolution, rel=0.1)

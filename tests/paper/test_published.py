@@ -59,7 +59,7 @@ def changed(tmp_path, name, old, new):
         ("2,11.57,", "2,-11.57,", ":5:2", "out of range"),
         ("2,11.57,", "2,,", ":5:2", "not a number"),
         ("2,11.57,", "2,inf,", ":5:2", "out of range"),
-        ("2,11.57,", "1,11.57,", ":5:1", "element 1 stands already on line 4"),
+        ("2,11.57,", "1,11.57,", ":5:1", "element 1 is already on line 4"),
         ("2,11.57,", "2,11.57,7,", ":5:10", "another length"),
         ("1,40.12,74.3", "1,40.12,-74.3", ":4:3", "out of range"),
     ],
@@ -75,7 +75,7 @@ def test_a_bad_table_1_is_refused_with_file_line_and_column(tmp_path, old, new, 
     "old, new, where, named",
     [
         ("40.12,10.01,4.083,0.977", "40.12,10.01,4.083,zero", ":5:4", "not a number"),
-        ("40.12,10.01,4.083,0.977", "40.12,7.26,4.083,0.977", ":6:1", "stands already"),
+        ("40.12,10.01,4.083,0.977", "40.12,7.26,4.083,0.977", ":6:1", "is already"),
         ("40.12,10.01,4.083,0.977\n", "", ":51:1", "not every measuring element"),
     ],
 )

@@ -9,6 +9,7 @@ import pytest
 from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
 from sound_designs import sound_designs
+from traced_parts import asked_parts, unnamed
 from variants import DROP, IN_SLOT, ORIGIN, table, variant
 
 from tactcad.design.family import section_types
@@ -202,6 +203,12 @@ WITNESSES = {
         ({"readout.samples": 1000}, "readout.samples"),
         ({"readout.on_time": 1e-5}, "readout.on_time"),
     ],
+    "converter_has_reference": [
+        ({"readout.converter": "AD7124-8", "gauge.resistance": 80.0}, "gauge.resistance")
+    ],
+    "converter_reads_within_period": [
+        ({"readout.converter": "AD7124-8", "readout.period": 0.2}, "readout.period")
+    ],
     "leads_are_relieved": [
         ({"wiring.bonded": 0.0}, "wiring.bonded"),
         ({"wiring.bonded": 20.0}, "wiring.bonded"),
@@ -280,6 +287,23 @@ def test_every_rule_has_a_witness():
             f"rule {name} has no witness: add a design that breaks it alone to WITNESSES in {__file__}"
         )
     assert set(WITNESSES) == array
+
+
+@pytest.mark.parametrize(
+    "rule",
+    [
+        n
+        for n in WITNESSES
+        if design_rules()[n].find.__module__.endswith(("readout_rules", "converter_rules"))
+    ],
+)
+def test_a_rule_names_the_unread_parts_that_it_asks(rule):
+    """In the finding on each of its bad designs: every part of which it took a figure to get there."""
+    for changes, _ in WITNESSES[rule]:
+        design = variant(changes)
+        with asked_parts() as asked:
+            (found,) = design_rules()[rule](Layout(design))
+        assert not asked or not unnamed(design, asked, found.message)
 
 
 def test_what_a_rule_comes_after_stands_before_it():
@@ -387,7 +411,7 @@ def checked(design: Design) -> list[str]:
     from tactcad.solids.build import build
 
     scene, shop = make_scene(design, "array"), load_shop()
-    shapes = {part.part_no: build(part).wrapped for part in scene.parts}
+    shapes = {part.part_no: build(part) for part in scene.parts}
     found = check_interference(scene, shapes)
     for part in scene.parts:
         found += check_brep(part, shapes[part.part_no]) + check_mesh(part, shapes[part.part_no])

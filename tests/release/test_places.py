@@ -110,7 +110,7 @@ def test_what_is_no_file_is_never_replaced(out, others, make):
 def test_what_appears_meanwhile_is_kept_and_said(out, others, name, make):
     if others != "refuse":
         (out / name).write_text("there before")
-    with pytest.raises(CheckFailure, match=f"new zips stand.*{KEPT[name]}"):
+    with pytest.raises(CheckFailure, match=f"new zips are in place.*{KEPT[name]}"):
         publish(out, "new", others, lambda: make(out / name))
     assert make is not replace or zipfile.ZipFile(out / KEPT[name]).namelist() == ["thesis.txt"]
     assert {p.name for p in out.iterdir()} == {*NAMES[:2], KEPT[name]}

@@ -45,7 +45,7 @@ STACK = Path(__file__).parents[2] / "docs" / "stack.md"
 def exported(design, name: str, folder: Path) -> tuple[Path, dict]:
     scene = make_scene(design, name)
     path = folder / f"{name}.step"
-    shapes = {part.part_no: build(part).wrapped for part in scene.parts}
+    shapes = {part.part_no: build(part) for part in scene.parts}
     path.write_bytes(scene_step(scene, shapes, Header(name, name, "A", "2026-01-01", "", "")))
     return path, json.loads(guide_json(scene))
 
@@ -99,7 +99,7 @@ def closed(shape) -> manifold3d.Manifold:
     return made
 
 
-def tried(path: Path, told: dict) -> tuple[int, int, int, int, list[str]]:
+def tried(path: Path, told: dict) -> tuple[int, int, int, list[str]]:
     """Steps, moves, places looked at, freedoms that the steps name; and what met."""
     bodies = solids(path)
     boxes = {n: np.reshape(b.bounding_box(), (2, 3)) for n, b in bodies.items()}
@@ -148,17 +148,16 @@ def tried(path: Path, told: dict) -> tuple[int, int, int, int, list[str]]:
             at |= dict.fromkeys(names, path_[-1])
             bench |= dict.fromkeys(names, one["bench"])
     assert set(at) == set(bodies) and all(np.allclose(x, 0.0) for x in at.values())
-    freedoms = sum(len(one["sets"]) + len(one["leaves"]) for one in told["steps"])
-    return len(told["steps"]), moves, places, freedoms, met
+    return len(told["steps"]), moves, places, met
 
 
-def row(name: str, *found: tuple[int, int, int, int, list[str]]) -> str:
+def row(name: str, *found: tuple[int, int, int, list[str]]) -> str:
     """The page's line of one scene, or of a design's scenes together."""
-    steps, moves, places, freedoms = (sum(f[i] for f in found) for i in range(4))
-    return f"| {name} | {steps} | {moves} | {freedoms} | {places} | {sum(len(f[-1]) for f in found)} |"
+    steps, moves, places = (sum(f[i] for f in found) for i in range(3))
+    return f"| {name} | {steps} | {moves} | {places} |"
 
 
-def rows(design: str, found: dict[str, tuple[int, int, int, int, list[str]]]) -> list[str]:
+def rows(design: str, found: dict[str, tuple[int, int, int, list[str]]]) -> list[str]:
     """The published array scene by scene, another design in one line."""
     if design == "macro-array":
         return [row(f"{design}, {name}", f) for name, f in found.items()]

@@ -1,13 +1,10 @@
-"""The array read by a sigma-delta converter beside it: no amplifier, no multiplexer of ours, no card.
+"""The array read by sigma-delta converters, one a board: no amplifier, no multiplexer of ours, no card.
 
-EXC --+-----------+--- REFIN+      The bridges stand in parallel between EXC and ground and stay warm: EXC is
-what
-      |           |                the grid's backing bears all the time, EXC = 2 sqrt(p A R). It is the
-    bridge n   converter           converter's reference too, so its drift cancels. The converter's own
-    multiplexer
-      |  +AIN 2n |                 takes one differential input after the other, and its filter of third
-      order needs |  -AIN 2n+1                 three periods of its rate after each change.
-GND --+-----------+--- REFIN-
+EXC --+-----------+--- REFIN+     The bridges stand in parallel and stay warm: EXC is what the grids'
+      |           |               backing bears all the time, 2 sqrt(p A R). It is the converter's
+  bridge n    converter           reference too, so its drift cancels. The converter takes one input
+      | AIN 2n, 2n+1              after the other; its filter of third order needs three periods of
+GND --+-----------+--- REFIN-     its rate after each change.
 """
 
 from __future__ import annotations
@@ -21,27 +18,28 @@ import numpy as np
 from tactcad.design.sensing import CONVERTERS, Converter
 from tactcad.mechanics import gauge_signal
 from tactcad.mechanics.readout import BOLTZMANN, ROOM
-from tactcad.parts.array.bridge_figures import zero_drift
+from tactcad.parts.array.bridge_figures import COPPER, zero_drift
+from tactcad.parts.array.converter_figures import RATE, bridge_supply, settling
 from tactcad.parts.array.hinge_section import design_gauge, hinge_section
 from tactcad.parts.array.layout import ElementPlace, Layout
+from tactcad.parts.array.leads import boards, leads, longest_lead_resistance
 from tactcad.parts.bought.electronic_parts import completion_drift, completion_tolerance
 
 from .element_signals import element_signals
-
-RATE = (
-    50.0  # Hz, results a second while one input is read; chosen: the filter's first notch lies on the mains
-)
-ORDER = 3  # of the filter
-HEAT_LEFT = 0.999  # of what the backing bears
 
 
 @dataclass(frozen=True)
 class DigitalReadout:
     """Figures of the array read so.
 
-    excitation  V, all the time; gain of the converter's input; rate Hz; settling s, from one input to the
-    next noise       V rms of one result, at the bridge; drift: V, half-width, at the bridge, between zero
-    and reading per_force   V/N at the bridge, by element; resolution: N, as that of the other read-out
+    excitation  V, all the time
+    gain, rate  of the converter's input; Hz
+    settling    s, from one input to the next
+    noise       V rms of one result, at the bridge
+    drift       V, half-width, at the bridge, between zero and reading
+    per_force   V/N at the bridge, by element
+    resolution  N, by element, as that of the other read-out
+    largest     V at each bridge under overload, tolerances at their worst
     chips       each with its elements, in the order of its inputs
     """
 
@@ -54,26 +52,22 @@ class DigitalReadout:
     drift: float
     per_force: np.ndarray
     resolution: np.ndarray
+    largest: tuple[float, ...]
     chips: tuple[tuple[ElementPlace, ...], ...]
-
-
-def borne_excitation(layout: Layout) -> float:
-    """The supply under which a grid takes what its backing bears all the time, V."""
-    d, gauge = layout.design, design_gauge(layout.design)
-    area = gauge.grid_length * gauge.grid_width * 1e-6
-    return 2 * (HEAT_LEFT * d.gauge.power_density * 1e3 * area * d.gauge.resistance) ** 0.5
 
 
 def digital_readout(layout: Layout, name: str) -> DigitalReadout:
     """The design read by the converter of that name. Raises CheckFailure out of the estimator's range."""
     d, part, gauge = layout.design, CONVERTERS[name], design_gauge(layout.design)
-    volts, span = borne_excitation(layout), d.readout.temperature_span
+    volts, span = bridge_supply(layout), d.readout.temperature_span
     per_strain = volts * gauge.factor / 4
     strains = gauge_signal.foil_strain_per_force(hinge_section(layout, layout.elements), gauge)
     per_force = per_strain * np.broadcast_to(strains, (len(layout.elements),))
-    largest = volts * (d.gauge.resistance_tolerance + 3 * completion_tolerance(d)) / 4
-    largest += abs(per_strain) * max(signal.overload_strain for signal in element_signals(layout))
-    gain = max((g for g in part.gains if volts / g >= largest), default=min(part.gains))
+    two_leads = 2 * longest_lead_resistance(layout) / d.gauge.resistance if leads(layout) == 2 else 0.0
+    off = d.gauge.resistance_tolerance + 3 * completion_tolerance(d) + abs(d.readout.bridge_offset)
+    unloaded = volts * (off + two_leads) / 4
+    largest = tuple(unloaded + abs(per_strain) * s.overload_strain for s in element_signals(layout))
+    gain = max((g for g in part.gains if volts / g >= max(largest)), default=min(part.gains))
     own = part.noise * (part.noise_gain / gain) * (RATE / part.noise_rate) ** 0.5
     thermal = (4 * BOLTZMANN * ROOM * d.gauge.resistance * RATE / 2) ** 0.5
     noise = hypot(own, thermal)
@@ -81,14 +75,13 @@ def digital_readout(layout: Layout, name: str) -> DigitalReadout:
         (per_strain * d.gauge.thermal_output * span) ** 2
         + (volts / 4 * 3**0.5 * completion_drift(d) * span) ** 2
         + (part.drift * span) ** 2
-        + (volts / 4 * zero_drift(layout)) ** 2
+        + (volts / 4 * (zero_drift(layout) + two_leads * COPPER * span)) ** 2
     ) ** 0.5
-    rows = [[p for p in layout.elements if p.row == row] for row in (1, 2)]
-    chips = tuple(
-        tuple(own_row[i : i + part.inputs]) for own_row in rows for i in range(0, len(own_row), part.inputs)
-    )
+    chips = tuple(board.places for board in boards(layout))
     resolution = np.hypot(2 * noise, drift) / np.abs(per_force)
-    return DigitalReadout(part, volts, gain, RATE, ORDER / RATE, noise, drift, per_force, resolution, chips)
+    return DigitalReadout(
+        part, volts, gain, RATE, settling(), noise, drift, per_force, resolution, largest, chips
+    )
 
 
 @dataclass(frozen=True)

@@ -123,9 +123,9 @@ def _load_cell(given: str | None, source: str | None, design: Design | None) -> 
         return LoadCell.parse(given or str(published.load().figure["load_cell_stiffness"]))
     if given is not None:
         raise InputError(
-            "--load-cell", "stands in the design's [calibration]; leave out one of both", value=given
+            "--load-cell", "is in the design's [calibration], too; leave one of them out", value=given
         )
     cell = of_design(design)
     if cell is None:
-        raise InputError(f"design {source}", "has no [calibration] table, where its load cell would stand")
+        raise InputError(f"design {source}", "has no [calibration] table, which would name the load cell")
     return cell

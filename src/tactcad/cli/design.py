@@ -64,7 +64,7 @@ def run(args: argparse.Namespace) -> int:
         return got.met or (args.best and got.found.accepted)
 
     def answered(got: Synthesis) -> None:
-        """The answer as soon as it is there; what the report tells beside it follows."""
+        """The answer as soon as it is there; the rest of the report follows."""
         nonlocal writing
         before = time.perf_counter()
         if is_written(got):
@@ -77,7 +77,7 @@ def run(args: argparse.Namespace) -> int:
             for field, by in r["room"].items() if got.met else ():
                 print(f"  {field}: {by}")
             if is_written(got):
-                print(f"{args.out}: written; what is found beside the answer follows", flush=True)
+                print(f"{args.out}: written; limits and alternatives follow", flush=True)
         writing = time.perf_counter() - before
 
     with slow_work(sys.stderr) as tell:

@@ -78,7 +78,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         metavar="FILE",
         help="the design's inspection sheet, a copy filled in outside the export (inspections/, say): its "
         "elements as "
-        "made, beside the nominal",
+        "made, with the nominal values",
     )
 
 

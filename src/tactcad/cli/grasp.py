@@ -168,7 +168,7 @@ def as_text(done: PressedArray) -> str:
         "",
     ]
     lines += [f"no. {e.number} does not touch" for e in done.elements if not e.touches]
-    lines += [f"no. {e.number} stands on its stop" for e in done.elements if e.stopped]
+    lines += [f"no. {e.number} is on its stop" for e in done.elements if e.stopped]
     return "\n".join([*lines, *text_table(list(PAIR.values()), done.pairs)])
 
 

@@ -42,7 +42,7 @@ GROUPS = {
     },
     "know": {
         "estimate": "stiffness, strain and strength of a design's elements, or of a table of designs",
-        "size": "the hinge that gives a wanted stiffness, and what cutting tolerance leaves of it",
+        "size": "the hinge for a given stiffness, and how far cutting tolerances change it",
         "grasp": "press an array on a soft body: deflection, force and signal of every element",
         "readings": "a lab's log (CSV, .lvm, .tdms) to the tables that calibrate and stiffness read",
         "calibrate": "force, deflection and signal readings to stiffness and sensitivity, with intervals",

@@ -109,7 +109,7 @@ def add_others(
         action="store_const",
         const="keep",
         default="refuse",
-        help=f"where {where}: move it beside, as {kept} (default: refuse)",
+        help=f"where {where}: move it aside, as {kept} (default: refuse)",
     )
     others.add_argument(
         "--discard", dest="others", action="store_const", const="discard", help="remove it, unread"

@@ -52,7 +52,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--out",
         required=True,
         metavar="CSV",
-        help="the readings, for `tactcad calibrate` or `tactcad stiffness`; the plot beside it ends in .svg",
+        help="the readings, for `tactcad calibrate` or `stiffness`; a plot of the same name ends in .svg",
     )
     parser.add_argument("--json", action="store_true", help="print what was taken for what as JSON")
 

@@ -47,7 +47,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--design",
         metavar="DESIGN",
         default=None,
-        help="the array that was pressed: where its pads stand says how far they feel each other through "
+        help="the array that was pressed; the places of its pads decide how far they feel each other through "
         "the object "
         f"(default {DEFAULT_DESIGN})",
     )
@@ -63,7 +63,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--thickness",
         metavar="H[+-DH]",
         help="of the object, a layer bonded to a rigid base, with its limits, mm (inf: a half-space): its "
-        "Young's modulus and inclination are told too; without it the intervals hold for all layers, from "
+        "Young's modulus and inclination are printed too; without it the intervals hold for all layers, from "
         "the thinnest allowed to a half-space",
     )
     parser.add_argument(

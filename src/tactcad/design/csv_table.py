@@ -303,7 +303,7 @@ def refuse_duplicates(rows: Rows, names: tuple[str, ...], legal: str = "each onc
         what = " and ".join(f"{n} {column[order[k]]:g}" for n, column in zip(names, columns))
         raise InputError(
             rows.where(order[k], names[0]),
-            f"{what} stands already on line {rows.lines[order[k - 1]]}",
+            f"{what} is already on line {rows.lines[order[k - 1]]}",
             legal=legal,
         )
 

@@ -264,5 +264,5 @@ def present(value: T | None) -> T:
     TypeError : it is not there.
     """
     if value is None:
-        raise TypeError("a value of the design that is needed here was left out of it")
+        raise TypeError("the design lacks a value that is needed here")
     return value

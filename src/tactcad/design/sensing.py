@@ -126,7 +126,8 @@ class Completion(Bought):
 
 @dataclass(frozen=True)
 class Converter(Bought):
-    """A sigma-delta converter; noise V rms at the input at a gain and a rate (Hz), drift V/K, clock Hz."""
+    """A sigma-delta converter; noise V rms at the input at a gain and a rate (Hz), drift V/K, clock Hz,
+    least_reference V. pins by role: AIN0 and on, and the others'."""
 
     inputs: int
     bits: int
@@ -136,7 +137,10 @@ class Converter(Bought):
     noise_rate: float
     clock: float
     drift: float
+    least_reference: float
     ratiometric: bool
+    pins: dict[str, str]
+    package: str
     source: str
 
 
@@ -239,8 +243,10 @@ CONVERTERS = {
         noise=float(row["noise_nV"]) * 1e-9,
         drift=float(row["drift_nV"]) * 1e-9,
         ratiometric=row["ratiometric"] == "true",
+        pins=dict(pin.split("=") for pin in row["pins"].split()),
+        package=row["package"],
         source=row["source"],
-        **_numbers(row, "noise_gain", "noise_rate", "clock"),
+        **_numbers(row, "noise_gain", "noise_rate", "clock", "least_reference"),
     )
     for row in _rows("converters")
 }
@@ -349,7 +355,7 @@ class Readout:
         Number("s", 0, 1, "of the instant, plus and minus"), None, "1 us by hardware, 1 ms by software"
     )
     mains: float | None = given(
-        Number("Hz", 10, 1000, "of the mains: the samples are spread over a whole period of it"),
+        Number("Hz", 10, 1000, "of the mains: the samples are spread over a whole period"),
         None,
         "not asked: samples follow each other at readout.sample_rate",
     )

@@ -1,5 +1,5 @@
-"""A board's files: KiCad's board and netlist, the bill of what stands on it, places, outline, Gerber files
-and drills; read back and compared with the board before they leave."""
+"""A board's files: KiCad's board and netlist, the bill of what stands on it, places, solid, outline,
+Gerber files and drills; read back and compared with the board before they leave."""
 
 from __future__ import annotations
 
@@ -17,21 +17,27 @@ from tactcad.design.messages import CheckFailure
 from tactcad.design.tree import CommonTables
 from tactcad.parts.bought.supply import Supply
 
+from .board_step import board_step
 from .circuit_files import Nets, check_nets, kicad_file
+from .shapes import Shapes
+from .step_text import Header
 
 PAD = re.compile(r'\(pad "(\w+)" .*?\(net \d+ "/(\w+)"\)')
 
 
-ENDS = (".kicad_pcb", ".net", "-bill.csv", "-places.csv")
+ENDS = (".kicad_pcb", ".net", "-bill.csv", "-places.csv", ".step")
 BARE = (*(f"gerber/{layer}.gbr" for layer in FUNCTIONS), "gerber/PTH.drl", "gerber/NPTH.drl", "outline.dxf")
 
 
-def files_of(board: BoardCopper, design: CommonTables, supplies: Iterable[Supply]) -> tuple[bytes, ...]:
-    """The files of a board as it is fitted, in the order of ENDS."""
+def files_of(
+    board: BoardCopper, design: CommonTables, supplies: Iterable[Supply], shapes: Shapes, header: Header
+) -> tuple[bytes, ...]:
+    """The files of a board as it is fitted, in the order of ENDS; `header` of its STEP file."""
     d = design.design
     kicad = board_bytes(board, printed_name(design), d.title, d.date, d.revision)
     check_nets("KiCad's board", nets_in_board(kicad), board.netlist)
-    return kicad, kicad_file(design, board.netlist), bill_csv(board, supplies), places_csv(board)
+    tables = kicad_file(design, board.netlist), bill_csv(board, supplies), places_csv(board)
+    return kicad, *tables, board_step(board, kicad, shapes, header)
 
 
 def bare_files(board: BoardCopper, design: CommonTables) -> list[bytes]:

@@ -236,7 +236,8 @@ def board_files(plan: Plan) -> Iterator[Batch]:
         return Batch(tuple(outputs), make, FILES, 10)
 
     for board in made:
-        make = partial(files.files_of, board, design, supplies)
+        head = plan.header(board.netlist.name, f"{design.design.title}: {board.netlist.name}")
+        make = partial(files.files_of, board, design, supplies, plan.shapes, head)
         yield batch(f"{board.netlist.name}_{plan.revision}", files.ENDS, make)
     yield batch("", files.BARE, partial(files.bare_files, made[0], design))
 

@@ -71,7 +71,7 @@ def looked_at(directory: str | Path, schema: str, others: str = REFUSE) -> Conte
         raise InputError(
             str(directory),
             f"holds what is not as tactcad wrote it: {named(seen.foreign)}; nothing was changed",
-            legal="--keep, which moves the folder beside, --discard, which removes it, or another folder",
+            legal="--keep, which moves the folder aside, --discard, which removes it, or another folder",
         )
     return seen
 
@@ -162,7 +162,7 @@ class Work:
         os.rename(folder, kept)
         if new:
             what = "what appeared in the earlier one meanwhile is kept as"
-            raise CheckFailure(f"{self.out}: the new folder stands; {what} {kept} for {named(new)}")
+            raise CheckFailure(f"{self.out}: the new folder is in place; {what} {kept} for {named(new)}")
         why = named(seen.foreign) or "what could not be removed"
         self.say(f"{self.out}: the earlier folder is kept as {kept} for {why}")
 

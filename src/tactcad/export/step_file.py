@@ -160,11 +160,12 @@ class Instance:
 
 @dataclass(frozen=True)
 class Assembly:
-    """A STEP file as read. solids: product name -> volumes (mm3) of its solids, and whether they are
-    valid."""
+    """A STEP file as read. shapes: by product name, and whether they are valid; solids: volumes (mm3) of each
+    one's solids."""
 
     name: str
     instances: tuple[Instance, ...]
+    shapes: Mapping[str, TopoDS_Shape]
     solids: Mapping[str, tuple[float, ...]]
     valid: bool
 
@@ -213,6 +214,7 @@ def assembly_in(document: TDocStd_Document) -> Assembly:
     return Assembly(
         _name_of(top),
         tuple(instances),
+        shapes,
         {name: tuple(map(volume, _solids(shape))) for name, shape in shapes.items()},
         all(BRepCheck_Analyzer(shape).IsValid() for shape in shapes.values()),
     )

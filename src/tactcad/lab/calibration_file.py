@@ -256,7 +256,7 @@ def _from_json(path: str) -> Sensitivity:
         raise _no_sensitivity(path)
     number = values[:, 0].astype(int)
     if len(set(number.tolist())) != len(number):
-        raise InputError(path, "an element stands twice", value=number.tolist(), legal="each once")
+        raise InputError(path, "an element is listed twice", value=number.tolist(), legal="each once")
     return _sensitivity(list(values.T), path)
 
 

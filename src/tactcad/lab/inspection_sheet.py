@@ -86,9 +86,7 @@ def read_sheet(path: str | Path, layout: Layout) -> list[Reading]:
     for row in rows:
         key = _identified(row, layout, known)
         if key in readings:
-            raise row.refusal(
-                "characteristic", f"stands already on line {readings[key].line}", legal="each once"
-            )
+            raise row.refusal("characteristic", f"is already on line {readings[key].line}", legal="each once")
         number, part_no, dimension = known[key]
         _check_unchanged(row, part_no, dimension, commas)
         readings[key] = _reading(row, number, dimension, commas)

@@ -58,7 +58,7 @@ class LogTable:
         Number("Hz", 1e-6, 1e9, "rows a second, of a log without time"), None, "not used"
     )
     mains: float | None = given(
-        Number("Hz", 1, 1000, "of the mains: the mean is over whole periods of it"), None, "over all samples"
+        Number("Hz", 1, 1000, "of the mains: the mean is over whole periods"), None, "over all samples"
     )
 
 

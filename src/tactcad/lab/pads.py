@@ -73,7 +73,7 @@ def refuse_strangers(source: str, readings: GraspReadings) -> None:
         if n not in number:
             raise InputError(
                 f"{readings.path}: sample {readings.sample}, element",
-                f"design {source} has no such element, so nobody knows where its pad stands",
+                f"design {source} has no such element, so the place of its pad is unknown",
                 value=int(n),
                 legal=f"{number.tolist()}, another --design, or --coupling 0",
             )

@@ -134,7 +134,7 @@ def supported(s: Table2Study) -> list[str]:
     if outside and K < printed and near.sum() >= len(R) / 2:
         return [
             head,
-            f"The plainest sign stands in the first row: against K_m = {s.measuring[stiffest]:g} N/mm, R "
+            f"The plainest sign is in the first row: against K_m = {s.measuring[stiffest]:g} N/mm, R "
             f"is near 1 for {near.sum()} of {len(R)} samples ({interval(R.min(), R.max())}). R near 1 "
             "means equal stiffness, whatever the object.",
         ]

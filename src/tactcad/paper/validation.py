@@ -70,7 +70,7 @@ def validate(data: Published, array: ArrayModel) -> ValidationReport:
         for h in by_key[key].headline
     )
     return ValidationReport(
-        "Held against the paper: a spring-based tactile array",
+        "Compared with the paper: a spring-based tactile array",
         "Tables 1 and 2 of “Spring-based tactile array for assistive robotic surgical applications”, "
         f"the lumped pair, and the beam model of the design {array.name}.",
         summary,

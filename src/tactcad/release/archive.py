@@ -118,7 +118,7 @@ def looked_at(places: Sequence[Path], others: str) -> dict[str, Foreign]:
     if odd or (foreign and others == REFUSE):
         differing = named({name: why for name, (why, *_) in foreign.items()})
         what = f"holds what is not as tactcad wrote it: {differing}; nothing was changed"
-        ways = "" if odd else "--keep, which moves it beside, --discard, which removes it, or "
+        ways = "" if odd else "--keep, which moves it aside, --discard, which removes it, or "
         raise InputError(str(out), what, legal=ways + "another folder")
     return foreign
 
@@ -167,7 +167,9 @@ def replacing(places: Sequence[Path], seen: Mapping[str, Foreign], others: str, 
                 new.replace(place)
             flush_entry(out)
     if appeared:
-        raise CheckFailure(f"{out}: the new zips stand; what appeared is kept as {', '.join(appeared)}")
+        raise CheckFailure(
+            f"{out}: the new zips are in place; what appeared is kept as {', '.join(appeared)}"
+        )
 
 
 def _kept_beside(place: Path) -> Path:

@@ -131,9 +131,9 @@ def _to_make(contents: ReleaseContents) -> list[str]:
     lines += paragraph(f"Quantities are for {SETS[contents.sets]}.")
     lines += paragraph(SPARES)
     return lines + paragraph(
-        "Bought parts (screws, pins, bearings, gauges) stand in the bills of materials with make_buy = buy; "
-        "they need no quotation unless we ask for one. The zips beside this one hold the same order by way "
-        "of making, each with its own files alone."
+        "Bought parts (screws, pins, bearings, gauges) are in the bills of materials with make_buy = buy; "
+        "they need no quotation unless we ask for one. The other zips split the same order by way of "
+        "making, each with only its own files."
     )
 
 
@@ -265,7 +265,8 @@ BOARDS = (
     "All bare boards are alike: make them by the files in gerber/ (Gerber X2, drills in millimetres; layers "
     "by their file function) and outline.dxf; 4 layers, FR-4 1.6 mm, copper 35 um, tracks and gaps of 0.2 mm "
     "or more, vias of 0.3 mm. To fit them, NAME-bill.csv says what stands where, and what is left off; "
-    "NAME-places.csv has the places of what a machine fits. NAME.kicad_pcb is the same board for KiCad 6."
+    "NAME-places.csv has the places of what a machine fits. NAME.kicad_pcb is the same board for KiCad 6, "
+    "NAME.step its solid."
 )
 
 

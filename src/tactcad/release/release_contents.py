@@ -69,7 +69,7 @@ SETS: Mapping[Sets, str] = {
 SPARES = (
     "Spares come on top. Of elements: one of every ten of a kind, and one of every kind (of the ten "
     "published ones no. 5 did not work). Of gauges, terminals and wire: one of every five, and at least one; "
-    "of boards and what stands on them: one of every ten, and at least one. Of screws and pins: one or two "
+    "of boards and their parts: one of every ten, and at least one. Of screws and pins: one or two "
     "of every size. Of plates and spacers: none."
 )
 

@@ -145,7 +145,9 @@ class _Revision:
         try:
             side = self._told(table, _record(folder, folder / TREE / self.path))
         except _NotBuilt as why:
-            told = f"geometry of {self.name}, which was not built ({why}): its golden file stands for it"
+            told = (
+                f"geometry of {self.name}, which was not built ({why}): its golden file is compared instead"
+            )
             return replace(self._told(table, self._golden(table, folder, why)), untold=(told,))
         if other is None:
             return side

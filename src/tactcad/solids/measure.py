@@ -9,9 +9,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 from OCP.Bnd import Bnd_Box
 from OCP.BRep import BRep_Builder
+from OCP.BRepAdaptor import BRepAdaptor_Surface
 from OCP.BRepBndLib import BRepBndLib
 from OCP.BRepExtrema import BRepExtrema_DistShapeShape
 from OCP.BRepGProp import BRepGProp
+from OCP.GeomAbs import GeomAbs_Cylinder
 from OCP.GProp import GProp_GProps
 from OCP.TopAbs import TopAbs_FACE
 from OCP.TopoDS import TopoDS_Compound, TopoDS_Shape
@@ -19,7 +21,7 @@ from OCP.TopoDS import TopoDS_Compound, TopoDS_Shape
 from tactcad.parts.language.description import Vector
 from tactcad.scenes.scene import Placement
 
-from .occt import location, subshapes
+from .occt import as_face, location, subshapes
 
 
 def measure(shape: TopoDS_Shape) -> dict:
@@ -65,6 +67,20 @@ def bounding_box(shape: TopoDS_Shape) -> list[list[float]]:
     BRepBndLib.AddOptimal_s(shape, box, False, False)
     low, high, gap = box.CornerMin(), box.CornerMax(), box.GetGap()
     return [[low.X() + gap, low.Y() + gap, low.Z() + gap], [high.X() - gap, high.Y() - gap, high.Z() - gap]]
+
+
+def holes_through(shape: TopoDS_Shape) -> list[tuple[float, float, float]]:
+    """Of every round hole along z, each once: x, y and diameter, mm."""
+    found = set()
+    for face in subshapes(shape, TopAbs_FACE):
+        surface = BRepAdaptor_Surface(as_face(face))
+        if surface.GetType() == GeomAbs_Cylinder:
+            cylinder = surface.Cylinder()
+            axis = cylinder.Axis()
+            if abs(axis.Direction().Z()) > 1 - 1e-9:
+                at = axis.Location()
+                found.add((round(at.X(), 6), round(at.Y(), 6), round(2 * cylinder.Radius(), 6)))
+    return sorted(found)
 
 
 class Faces:

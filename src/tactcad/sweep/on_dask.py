@@ -50,7 +50,7 @@ ENVIRONMENT = {
 LOGS = ("distributed", "distributed.client", "tornado.application", "asyncio")
 QUIET = {"logging": dict.fromkeys(LOGS, "critical")}
 
-NO_HELPERS = "may start no processes, which an export needs; it wants DASK_DISTRIBUTED__WORKER__DAEMON=False"
+NO_HELPERS = "may start no processes, which an export needs; it needs DASK_DISTRIBUTED__WORKER__DAEMON=False"
 
 # One task at a time in a process, whatever threads its worker has: the CAD kernel holds the interpreter's
 # lock, and is not made for threads.
@@ -239,7 +239,10 @@ def _connected(client: type[Client], address: str) -> Client:
         return client(address, timeout=ANSWER)
     except (OSError, ValueError) as error:  # a timeout is an OSError
         raise InputError(
-            "--scheduler", "nobody answers there", value=address, legal="a Dask scheduler, as tcp://HOST:8786"
+            "--scheduler",
+            "no scheduler answers there",
+            value=address,
+            legal="a Dask scheduler, as tcp://HOST:8786",
         ) from error
 
 

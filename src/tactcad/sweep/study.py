@@ -227,7 +227,7 @@ def _varied(table: dict[str, Any], base: dict[str, Any]) -> dict[str, Varied]:
         spec = spec_at(design, path)
         nested = spec is None and isinstance(how, dict) and any(isinstance(v, dict) for v in how.values())
         if not isinstance(how, dict) or not how or nested:
-            legal = '[vary."element.hinge_thickness"] with values, range or normal; the path stands in quotes'
+            legal = '[vary."element.hinge_thickness"] with values, range or normal; with the path in quotes'
             raise InputError(where, "not a table of values", value=how, legal=legal)
         if spec is None:
             raise unknown_field(path, list(paths(design)))

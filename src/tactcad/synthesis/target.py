@@ -326,7 +326,7 @@ def _refuse_contradictions(target: Target) -> None:
     if (o.stiffness is None) == (o.modulus is None):
         raise InputError("object", "needs one of stiffness and modulus", legal="stiffness = [2, 10] (N/mm)")
     if o.angle[1] > 0 and not target.on_layer:
-        legal = "a modulus, or a thickness beside the stiffness"
+        legal = "a modulus, or a thickness with the stiffness"
         raise InputError(
             "object.angle", "needs a body that can be inclined", value=list(o.angle), legal=legal
         )

@@ -346,8 +346,8 @@ def _interval_part(got: Synthesis, r: dict[str, Any]) -> str:
                 ls=("--", ":", "-.")[i % 3],
                 label=f"one pair, elements {pair['measuring']} and {pair['reference']}",
             )
-        ax.axhline(100 * r["wanted_half_width"], color=GREY, lw=1, label="held against")
-        ax.set(xscale="log", xlabel="object's stiffness, N/mm", ylabel="95 % interval, % of it")
+        ax.axhline(100 * r["wanted_half_width"], color=GREY, lw=1, label="half-width to keep")
+        ax.set(xscale="log", xlabel="object's stiffness, N/mm", ylabel="95 % interval, % of K_obj")
         log_ticks(ax.xaxis, _ticks(float(x[0]), float(x[-1])))
         ax.legend()
         picture = svg(figure, "interval")

@@ -87,7 +87,7 @@ def _tight(
             )
             yield from at_least("mill-corner", part.part_no, 0.0, least, what, (*s.end, 0.0))
         if isinstance(s, Arc) and s.ccw == inside:
-            what = f"{name}: inside radius {s.radius:.3g} mm, {depth:g} deep, wants {least:.3g} mm or more"
+            what = f"{name}: inside radius {s.radius:.3g} mm, {depth:g} deep, needs {least:.3g} mm or more"
             yield from at_least("mill-corner", part.part_no, s.radius, least, what, (*s.at(0.5), 0.0))
 
 
@@ -98,7 +98,7 @@ def _narrow_pockets(part: Part, limit: Machining) -> Iterator[Finding]:
         for island in pocket.island:
             wide = min(distance(a, b) for a in pocket.contour for b in island)
             what = (
-                f"groove {pocket.name}: {wide:.3g} mm wide and {pocket.depth:g} deep, wants "
+                f"groove {pocket.name}: {wide:.3g} mm wide and {pocket.depth:g} deep, needs "
                 f"{least:.3g} mm or more"
             )
             yield from at_least("mill-groove", part.part_no, wide, least, what, pocket.at)

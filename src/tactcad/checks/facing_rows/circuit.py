@@ -8,17 +8,19 @@ written.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from tactcad.checks.check import Check
 from tactcad.circuit.bridges import netlist
-from tactcad.circuit.element_signals import element_signals
+from tactcad.circuit.digital_readout import DigitalReadout, digital_readout
+from tactcad.circuit.element_signals import ElementSignal, element_signals
 from tactcad.circuit.netlist import GROUND, Component, Kind, Netlist
 from tactcad.design.tree import Design
 from tactcad.parts.array.hinge_section import design_readout
 from tactcad.parts.array.layout import Layout
-from tactcad.parts.bought.electronic_parts import LINK, WIRE_LINK
+from tactcad.parts.bought.electronic_parts import LINK, WIRE_LINK, converter_of, unread
 from tactcad.parts.language.finding import Finding
+from tactcad.parts.rules.converter_rules import converter_has_reference, converter_reads_within_period
 from tactcad.parts.rules.gauge_rules import leads_have_room
 from tactcad.parts.rules.readout_rules import (
     boards_have_inputs,
@@ -42,6 +44,8 @@ def check_circuit(design: Design) -> Iterator[Finding]:
         ("common-mode", inputs_within_common_mode),
         ("gauge-power", gauge_bears_power),
         ("settling", switching_settles),
+        ("converter-reference", converter_has_reference),
+        ("converter-time", converter_reads_within_period),
         ("lead-room", leads_have_room),
         ("strain-relief", leads_are_relieved),
     ):
@@ -149,24 +153,55 @@ def _gauges_of_bridge(arms: Arms, pairs: set[frozenset[str]], supply: str, foot:
 
 def check_signals(design: Design) -> Iterator[Finding]:
     """Failures by element. Raises CheckFailure where one is out of the estimator's range."""
-    layout, chain, wish = Layout(design), design_readout(design), design.readout.force_resolution
-    for signal in element_signals(layout):
+    layout, wish = Layout(design), design.readout.force_resolution
+    signals, converter = element_signals(layout), converter_of(design)
+    if converter:
+        found = digital_readout(layout, converter.name)
+        yield from _beyond_converter(found, signals, unread(design, ("converter", "completion")))
+        told = [1e3 * float(least) for least in found.resolution]
+    else:
+        yield from _beyond_range(design, signals)
+        told = [signal.resolution * 1e3 for signal in signals]
+    stands_on = ("converter", "amplifier", "multiplexer", "switch", "completion")
+    for signal, least in zip(signals, told):
+        if wish is not None and least > wish:
+            message = (
+                f"tells no less than {least:.3g} mN from none (noise, quantisation, drift); "
+                f"readout.force_resolution asks for {wish:g} mN{unread(design, stands_on)}"
+            )
+            who = signal.place.designator
+            yield Finding("force-resolution", "fail", who, (), least, wish, message)
+
+
+def _beyond_converter(
+    found: DigitalReadout, signals: Sequence[ElementSignal], said: str
+) -> Iterator[Finding]:
+    """Where a bridge, out of balance by all its tolerances and under overload, is more than the converter's
+    input takes at its gain."""
+    most = found.excitation / found.gain
+    for signal, reach in zip(signals, found.largest):
+        if reach > most:
+            message = (
+                f"at the overload its bridge reaches {reach * 1e3:.3g} mV, tolerances at their worst; the "
+                f"{found.converter.name} takes {most * 1e3:.3g} at a gain of {found.gain:g}{said}"
+            )
+            yield Finding("signal-range", "fail", signal.place.designator, (), reach, most, message)
+
+
+def _beyond_range(design: Design, signals: Sequence[ElementSignal]) -> Iterator[Finding]:
+    """Where an output is beyond what amplifier and card take."""
+    chain = design_readout(design)
+    said = unread(design, ("amplifier", "multiplexer", "switch", "completion"))
+    for signal in signals:
         who = signal.place.designator
         for load, (low, high) in (("rated force", signal.rated), ("overload", signal.overload)):
             if low < chain.lowest or high > chain.highest:
                 message = (
                     f"at the {load} its output reaches {low:.3g} or {high:.3g} V, tolerances at their worst; "
-                    f"amplifier and converter take {chain.lowest:.3g} to {chain.highest:.3g}"
+                    f"amplifier and converter take {chain.lowest:.3g} to {chain.highest:.3g}{said}"
                 )
                 yield Finding("signal-range", "fail", who, (), max(-low, high), chain.highest, message)
                 break
-        told = signal.resolution * 1e3
-        if wish is not None and told > wish:
-            message = (
-                f"tells no less than {told:.3g} mN from none (noise, quantisation, drift); "
-                f"readout.force_resolution asks for {wish:g} mN"
-            )
-            yield Finding("force-resolution", "fail", who, (), told, wish, message)
 
 
 CHECKS = (

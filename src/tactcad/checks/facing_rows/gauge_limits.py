@@ -11,9 +11,10 @@ from collections.abc import Iterator
 from tactcad.checks.check import Check
 from tactcad.circuit.element_signals import ElementSignal, element_signals
 from tactcad.design.messages import CheckFailure
-from tactcad.design.sensing import AMPLIFIERS, COMPLETIONS, FOILS, MULTIPLEXERS, SWITCHES, Bought
+from tactcad.design.sensing import FOILS
 from tactcad.design.tree import Design
 from tactcad.parts.array.layout import Layout
+from tactcad.parts.bought.electronic_parts import parts_used
 from tactcad.parts.language.finding import Finding
 
 # What stands on the figures of each kind of part.
@@ -21,21 +22,10 @@ STAND_ON = {
     "amplifier": "range, common mode, settling, noise, drift",
     "multiplexer": "supplies, settling, noise",
     "switch": "signal, the bridges' supply",
+    "converter": "range, noise, time, drift",
     "completion": "imbalance, drift",
     "foil": "strain and fatigue of the gauge",
 }
-
-
-def parts_used(design: Design) -> dict[str, Bought]:
-    """The electronic parts whose figures decide checks, by what they are."""
-    r = design.readout
-    return {
-        "amplifier": AMPLIFIERS[r.amplifier],
-        "multiplexer": MULTIPLEXERS[r.multiplexer],
-        "switch": SWITCHES[r.switch],
-        "completion": COMPLETIONS[r.completion],
-        "foil": FOILS[design.gauge.foil],
-    }
 
 
 def check_gauges(design: Design) -> Iterator[Finding]:

@@ -88,11 +88,13 @@ class _Trial:
 
     def _mesh(self, p: Placement) -> manifold3d.Manifold:
         """Turned, not moved."""
-        key = ("steps", p.part.part_no, p.rotation)
-        if key not in self.known:
-            points, corners = triangles(self.shapes[p.part.part_no], CHORD, TURN)
-            self.known[key] = closed((points @ np.array(p.rotation).T, corners))
-        return self.known[key]
+        key = ("steps", p.part.part_no)
+        if (*key, p.rotation) not in self.known:
+            if key not in self.known:
+                self.known[key] = closed(triangles(self.shapes[p.part.part_no], CHORD, TURN))
+            turn = np.column_stack([np.array(p.rotation), np.zeros(3)])
+            self.known[*key, p.rotation] = self.known[key].transform(turn)
+        return self.known[*key, p.rotation]
 
     def _box(self, p: Placement) -> np.ndarray:
         if p.designator not in self.boxes:

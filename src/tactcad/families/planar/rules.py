@@ -144,9 +144,7 @@ def island_lands_on_base(layout: PlanarLayout) -> Iterator[Finding]:
 def chips_fit(layout: PlanarLayout) -> Iterator[Finding]:
     d, chip = layout.design, layout.chip
     widest = max(chip.length, chip.width) + 2.0 * CHIP_ROOM
-    yield from at_least(
-        "planar.pitch", f"chips {chip.name} do not fit beside each other", d.planar.pitch, widest
-    )
+    yield from at_least("planar.pitch", f"chips {chip.name} do not fit side by side", d.planar.pitch, widest)
     web = layout.base_thickness - chip.height - CHIP_ROOM
     yield from at_least(
         "hall.gap", "too little of the base is left over the chips", d.hall.gap, d.hall.gap + WEB - web

@@ -15,6 +15,7 @@ from math import ceil, dist
 
 from tactcad.design.sensing import MULTIPLEXERS, WIRES
 
+from ..bought.electronic_parts import converter_of
 from ..language.description import Vector
 from .layout import ElementPlace, Layout
 
@@ -93,9 +94,15 @@ class ReadBoard:
     places: tuple[ElementPlace, ...]
 
 
+def channels_of(layout: Layout) -> int:
+    """Of a board: of its multiplexer, or of the converter that takes the bridges themselves."""
+    converter = converter_of(layout.design)
+    return converter.inputs if converter else MULTIPLEXERS[layout.design.readout.multiplexer].channels
+
+
 def boards(layout: Layout) -> tuple[ReadBoard, ...]:
     """Every board of the array."""
-    channels = MULTIPLEXERS[layout.design.readout.multiplexer].channels
+    channels = channels_of(layout)
     taken = []
     for row in (1, 2):
         own = [p for p in layout.elements if p.row == row]

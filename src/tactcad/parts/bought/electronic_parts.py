@@ -2,9 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from math import floor, log10
 
-from tactcad.design.sensing import AMPLIFIERS, COMPLETIONS
+from tactcad.design.sensing import (
+    AMPLIFIERS,
+    COMPLETIONS,
+    CONVERTERS,
+    FOILS,
+    MULTIPLEXERS,
+    SWITCHES,
+    Bought,
+    Converter,
+)
 from tactcad.design.tree import Design
 
 GAUGE, COMPLETION, TERMINAL = "STRAIN-GAUGE", "BRIDGE-RESISTOR", "TERMINAL"
@@ -28,6 +38,33 @@ CARD_SIGNALS = 8  # of the connector to the card beside the address: supplies, g
 def lead_part(colour: str) -> str:
     """Lead wire of a colour (code of IEC 60757)."""
     return f"LEAD-WIRE-{colour}"
+
+
+def converter_of(design: Design) -> Converter | None:
+    """The sigma-delta converter that reads the bridges; None where amplifier and card do."""
+    return CONVERTERS.get(design.readout.converter)
+
+
+def parts_used(design: Design) -> dict[str, Bought]:
+    """The electronic parts whose figures decide rules and checks, by what they are."""
+    r, converter = design.readout, converter_of(design)
+    both: dict[str, Bought] = {"completion": COMPLETIONS[r.completion], "foil": FOILS[design.gauge.foil]}
+    if converter:
+        return {"converter": converter, **both}
+    card = {
+        "amplifier": AMPLIFIERS[r.amplifier],
+        "multiplexer": MULTIPLEXERS[r.multiplexer],
+        "switch": SWITCHES[r.switch],
+    }
+    return {**card, **both}
+
+
+def unread(design: Design, kinds: Iterable[str]) -> str:
+    """What a finding that stands on figures of these kinds of parts has to add: whose were not all read in
+    the maker's own sheet; "" if all were."""
+    used = parts_used(design)
+    names = [used[kind].name for kind in kinds if kind in used and not used[kind].verified]
+    return f"; unread: {', '.join(names)}" if names else ""
 
 
 def completion_resistance(design: Design) -> float:

@@ -26,6 +26,7 @@ FIRST = (
     "clamp_rules",
     "pressed_rules",
     "readout_rules",
+    "converter_rules",
     "cart_rules",
     "calibration_rules",
 )

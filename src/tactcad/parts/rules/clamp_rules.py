@@ -175,7 +175,7 @@ def stop_plate_can_be_held(layout: Layout) -> Iterator[Finding]:
     )
     yield from at_least(
         "element.seat_length",
-        "the set screws press beside the ledge of the longest arm",
+        "the set screws miss the ledge of the longest arm",
         d.element.seat_length,
         layout.clamp_edge - layout.hold_down_x,
     )

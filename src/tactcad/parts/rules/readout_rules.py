@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
+from functools import wraps
 from math import ceil, floor, log10
 from typing import Any
 
@@ -19,6 +20,7 @@ from ..bought.electronic_parts import (
     REFERENCE_MOST_VOLTS,
     completion_resistance,
     completion_tolerance,
+    converter_of,
 )
 from ..language.finding import SAME, Finding
 from .gauge_rules import lead
@@ -64,7 +66,18 @@ def _borne(fits: Callable[[float], bool]) -> float:
     return least
 
 
+def by_card(find: Callable[[Layout], Iterator[Finding]]) -> Callable[[Layout], Iterable[Finding]]:
+    """A rule's function that finds nothing where a sigma-delta converter reads the bridges."""
+
+    @wraps(find)
+    def found(layout: Layout) -> Iterable[Finding]:
+        return () if converter_of(layout.design) else find(layout)
+
+    return found
+
+
 @rule()
+@by_card
 def reading_within_period(layout: Layout) -> Iterator[Finding]:
     r = layout.design.readout
     if r.on_time > r.period:
@@ -74,7 +87,8 @@ def reading_within_period(layout: Layout) -> Iterator[Finding]:
         yield wrong(f"readout.{name}", what, getattr(r, name), legal[name])
 
 
-@rule()
+@rule(stands_on=("amplifier",))
+@by_card
 def amplifier_has_gain(layout: Layout) -> Iterator[Finding]:
     r = layout.design.readout
     amplifier = AMPLIFIERS[r.amplifier]
@@ -82,7 +96,8 @@ def amplifier_has_gain(layout: Layout) -> Iterator[Finding]:
         yield wrong("readout.gain", f"no gain of the {r.amplifier}", r.gain, amplifier.legal_gains)
 
 
-@rule()
+@rule(stands_on=("amplifier", "multiplexer", "switch"))
+@by_card
 def supplies_suit_parts(layout: Layout) -> Iterator[Finding]:
     r = layout.design.readout
     parts = (AMPLIFIERS[r.amplifier], MULTIPLEXERS[r.multiplexer])
@@ -116,7 +131,8 @@ def supplies_suit_parts(layout: Layout) -> Iterator[Finding]:
     )
 
 
-@rule(after="override_names_element")
+@rule(after="override_names_element", stands_on=("multiplexer",))
+@by_card
 def boards_have_inputs(layout: Layout) -> Iterator[Finding]:
     r = layout.design.readout
     needed, channels = len(boards(layout)), MULTIPLEXERS[r.multiplexer].channels
@@ -134,6 +150,7 @@ def boards_have_inputs(layout: Layout) -> Iterator[Finding]:
 
 
 @rule(after="reading_within_period")
+@by_card
 def gauge_bears_power(layout: Layout) -> Iterator[Finding]:
     d = layout.design
     r, hot = d.readout, heating(layout)
@@ -165,7 +182,8 @@ def gauge_bears_power(layout: Layout) -> Iterator[Finding]:
     )
 
 
-@rule(after="override_names_element")
+@rule(after="override_names_element", stands_on=("amplifier", "multiplexer", "switch", "completion"))
+@by_card
 def bridge_stays_in_range(layout: Layout) -> Iterator[Finding]:
     """With no load, every tolerance at its worst."""
     d, chain, lead = layout.design, design_readout(layout.design), longest_lead_resistance(layout)
@@ -306,7 +324,8 @@ def _inward(bound: float, upper: bool) -> str:
     return f"{steps * step:g}"
 
 
-@rule(after="override_names_element")
+@rule(after="override_names_element", stands_on=("amplifier", "multiplexer", "switch"))
+@by_card
 def inputs_within_common_mode(layout: Layout) -> Iterator[Finding]:
     """Both outputs of a bridge lie where amplifier and multiplexer take them: while it is read, and at its
     supply while its switch is open."""
@@ -337,7 +356,8 @@ def inputs_within_common_mode(layout: Layout) -> Iterator[Finding]:
         )
 
 
-@rule()
+@rule(stands_on=("amplifier", "multiplexer"))
+@by_card
 def switching_settles(layout: Layout) -> Iterator[Finding]:
     r = layout.design.readout
     settling, sampling = settling_time(layout.design), r.samples * sample_spacing(r)

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from ..array.layout import Layout
+from ..bought.electronic_parts import unread
 from ..language.finding import SAME, Finding
 
 Find = Callable[[Any], Iterable[Finding]]  # of a family's layout
@@ -18,11 +19,13 @@ class Rule:
 
     after   name of an earlier rule: this one is tried only where that one and all before it are kept, because
             it would only repeat their findings, or could not be computed
+    stands_on   kinds of electronic parts whose figures decide it: a finding names those that nobody read
     fit     a rig needs it to take the array: a design that breaks it loses the rig's scene and is not refused
     """
 
     find: Find
     after: str = ""
+    stands_on: tuple[str, ...] = ()
     fit: bool = False
 
     @property
@@ -32,12 +35,15 @@ class Rule:
     def __call__(self, layout: Layout) -> list[Finding]:
         """The first finding; empty where the rule is kept."""
         first = next(iter(self.find(layout)), None)
-        return [replace(first, check=self.name)] if first else []
+        if first is None:
+            return []
+        said = unread(layout.design, self.stands_on) if self.stands_on else ""
+        return [replace(first, check=self.name, message=f"{first.message}{said}")]
 
 
-def rule(after: str = "") -> Callable[[Find], Rule]:
-    """Makes a function a rule that every design must keep; `after` as in `Rule`."""
-    return lambda find: Rule(find, after)
+def rule(after: str = "", stands_on: tuple[str, ...] = ()) -> Callable[[Find], Rule]:
+    """Makes a function a rule that every design must keep; `after` and `stands_on` as in `Rule`."""
+    return lambda find: Rule(find, after, stands_on)
 
 
 def fits(find: Find) -> Rule:

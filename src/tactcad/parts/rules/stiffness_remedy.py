@@ -49,11 +49,7 @@ def remedy(design: CommonTables, line: Deflection, lines: Lines) -> tuple[str, o
                     f"{words} {_nearest(design, line, lines, path, value, end):.10g} {spec.unit}".rstrip(),
                 )
     path = line.fields[0]
-    return (
-        path,
-        attrgetter(path)(design),
-        f"no value alone; the most is had of {', '.join(line.fields)} together",
-    )
+    return (path, attrgetter(path)(design), f"no value alone; change {', '.join(line.fields)} together")
 
 
 def _nearest(design: CommonTables, line: Deflection, lines: Lines, path: str, far: V, near: V) -> V:
