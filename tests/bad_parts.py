@@ -149,7 +149,8 @@ def brep(shape: Callable, part=None) -> list[Finding]:
 
     from tactcad.checks.on_solids.soundness import check_brep
 
-    return check_brep(part or BLOCK, shape().wrapped)
+    made = shape()  # of build123d, or the kernel's own
+    return check_brep(part or BLOCK, getattr(made, "wrapped", made))
 
 
 def two_boxes():
