@@ -159,6 +159,11 @@ def _stages(b: Builder, rig: StandLayout, dx: float, dy: float) -> str:
         bench=True,
         at=BESIDE,
         later=on_base,
+        sets=(f"{upper[0]} to {x_moving}: all, by {' '.join(on_x)}",),
+        leaves=(
+            f"{x_moving} on {x_fixed}: along x, by {x_micrometer}",
+            f"{upper[1]} on {upper[0]}: along y, by {upper[2]}",
+        ),
         order=[stages[0], upper, *driven((upper[1],), fixings[1], (0.0, 1.0, 0.0), stage.travel, dy, BESIDE)],
     )
     b.step(
