@@ -99,8 +99,8 @@ def calibration(design: Design, pose: Pose = REST) -> Scene:
         (0, 0, 0),
         f"Above a pad, set x by the edge of the pad to {c.load_point:g} mm; {c.step * 1e3:g} um steps to "
         f"{c.travel * 1e3:g} um. {_limits(design)} Afterwards take the array off its mount, set it in the "
-        "setting fixture as in the step Coplanar pads of the array's own guide, its clamping screws "
-        "tight, and take the carrier off it there (hex key of its screws). Read the pads' heights on the "
+        "setting fixture as in the step Coplanar pads of the array's own guide, still clamped, "
+        "and take the carrier off it there (hex key of its screws). Read the pads' heights on the "
         "surface plate again and go on in that guide with the step Stop plate. Zero every signal anew.",
         tools=(*flatness_tools(rig.array), *carrier_tools(design)),
         elements=True,
