@@ -134,6 +134,7 @@ def element(designator: str, repeats: int, files: dict[str, str]) -> dict:
     volume (mm3) of the one solid in each file."""
     from tactcad.export.step_file import part_step
     from tactcad.solids.build import build
+    from tactcad.solids.measure import volume
     from tactcad.solids.step import model_file
 
     part = placed_part(designator)
@@ -141,12 +142,12 @@ def element(designator: str, repeats: int, files: dict[str, str]) -> dict:
     for _ in range(repeats):
         clock = Clock()
         solid = clock("build", lambda: build(part))
-        data = clock("write", partial(part_step, part, solid.wrapped, HEADER))
+        data = clock("write", partial(part_step, part, solid, HEADER))
         for name, seconds in clock.seconds.items():
             times[name].append(seconds)
     Path(files["tactcad"]).write_bytes(data)
     read = {name: model_file(path).volume for name, path in files.items()}
-    return times | {"volume": solid.volume, "read": read}
+    return times | {"volume": volume(solid), "read": read}
 
 
 TASKS = {task.__name__: task for task in (kernel, assembly, step, stages, element)}
@@ -155,7 +156,7 @@ TASKS = {task.__name__: task for task in (kernel, assembly, step, stages, elemen
 def _shapes(scene: Scene) -> dict[str, TopoDS_Shape]:
     from tactcad.solids.build import build
 
-    return {part.part_no: build(part).wrapped for part in scene.parts}
+    return {part.part_no: build(part) for part in scene.parts}
 
 
 def _step(scene: Scene, shapes: dict) -> bytes:

@@ -50,7 +50,7 @@ def tessellation(plan: RunPlan) -> dict:
 
     scene = make_scene(published(), "array")
     plan.say(f"{len(scene.parts)} parts built")
-    shapes = [build(part).wrapped for part in scene.parts]
+    shapes = [build(part) for part in scene.parts]
     exact = np.array([part.volume for part in scene.parts])
     pairs = [(LINEAR, a) for a in plan.of((0.5, 0.2), ANGULAR[:5], ANGULAR)]
     pairs += plan.of((), OTHER_LINEAR[1:2], OTHER_LINEAR)
@@ -168,7 +168,7 @@ def near(scene: Scene) -> list[Placed]:
     from tactcad.solids.build import build
     from tactcad.solids.measure import bounding_box
 
-    local = {part.part_no: bounding_box(build(part).wrapped) for part in scene.parts}
+    local = {part.part_no: bounding_box(build(part)) for part in scene.parts}
     boxes = np.array([placed_box(p, local[p.part.part_no]) for p in scene.placements])
     return [(scene.placements[i], scene.placements[j]) for i, j in near_pairs(boxes)]
 
@@ -200,7 +200,7 @@ class Prepared:
         number = part.part_no
         if number in self.shapes:
             return
-        shape = self.shapes[number] = build(part).wrapped
+        shape = self.shapes[number] = build(part)
         self.boxes[number], self.faces[number] = bounding_box(shape), Faces(shape)
         for a in angular:
             self.meshes[number, a] = _timed(meshing.setdefault(a, []), partial(_closed_mesh, shape, a))
@@ -295,7 +295,7 @@ def _situations(plan: RunPlan) -> list[dict]:
     rows = []
     for elements in plan.of((2,), (10,), (10, 100, 1000)):
         scene = replace(make_scene(array_of(elements), "array"), contacts=())
-        shapes = {part.part_no: build(part).wrapped for part in scene.parts}
+        shapes = {part.part_no: build(part) for part in scene.parts}
         seconds: list[float] = []
         plan.say(f"{elements} elements: each situation once")
         mine = _timed(seconds, partial(check_interference, scene, shapes))

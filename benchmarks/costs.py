@@ -99,7 +99,7 @@ def starts() -> dict[str, Any]:
     run = tactcad("estimate", "soft-tissue")
     numpy = min(child_seconds(run) for _ in range(5))
     elements = min(child_seconds([*run, "--model", "fem-plane"]) for _ in range(3)) - numpy
-    kernel = min(child_seconds(python("-c", "import build123d")) for _ in range(3))
+    kernel = min(child_seconds(python("-c", "import tactcad.solids.build")) for _ in range(3))
     return {"start": {"numpy": numpy, "elements": elements, "kernel": kernel}}
 
 
@@ -134,7 +134,7 @@ def meshes() -> dict[str, Any]:
     }
     shares, rows = [], {angular: [] for angular in ANGULAR}
     for part in parts.values():
-        shape = build(part).wrapped
+        shape = build(part)
         exact = measure(shape)["volume"]
         for angular in ANGULAR:
             start = time.process_time()

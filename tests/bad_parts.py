@@ -209,7 +209,7 @@ def step_file(spoil: str) -> list[Finding]:
     kept = soundness.write_step
     soundness.write_step = lambda shape: getattr(t, spoil)(kept(shape))
     try:
-        return soundness.check_step(t.BLOCK, build(t.BLOCK).wrapped)
+        return soundness.check_step(t.BLOCK, build(t.BLOCK))
     finally:
         soundness.write_step = kept
 
@@ -227,7 +227,7 @@ def triangles(spoil: Callable) -> list[Finding]:
     from tactcad.checks.on_solids.soundness import check_triangles
     from tactcad.solids.build import build
 
-    vertices, faces = soup(build(BLOCK).wrapped)
+    vertices, faces = soup(build(BLOCK))
     return check_triangles("BLOCK", trimesh.Trimesh(vertices, spoil(faces), process=False))
 
 
@@ -240,7 +240,7 @@ def scaled() -> list[Finding]:
     kept = soundness.triangles
     soundness.triangles = lambda s, a, b: (soup(s)[0] * 1.02, soup(s)[1])
     try:
-        return soundness.check_mesh(BLOCK, build(BLOCK).wrapped)
+        return soundness.check_mesh(BLOCK, build(BLOCK))
     finally:
         soundness.triangles = kept
 

@@ -17,7 +17,7 @@ def shape_of(part: Part) -> TopoDS_Shape:
     """In the part's own frame."""
     from tactcad.solids.build import build
 
-    return build(part).wrapped
+    return build(part)
 
 
 def shapes_of(scene: Scene) -> dict[str, TopoDS_Shape]:

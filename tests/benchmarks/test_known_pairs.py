@@ -139,5 +139,5 @@ def test_the_volume_of_triangles_is_the_mesh_librarys():
     from tactcad.solids.triangles import triangles
 
     for pair in PAIRS[:9]:
-        mesh = triangles(build(pair.placements[1].part).wrapped, 0.05, 0.5)
+        mesh = triangles(build(pair.placements[1].part), 0.05, 0.5)
         assert volume(mesh) == pytest.approx(trimesh.Trimesh(*mesh, process=False).volume, rel=1e-12)

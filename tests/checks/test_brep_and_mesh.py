@@ -32,7 +32,7 @@ BLOCK = Part("BLOCK", "block", "milled", STEEL, Extrusion(rectangle(0, 0, 10, 8)
 
 @pytest.fixture(scope="module")
 def shape():
-    return builder.build(BLOCK).wrapped
+    return builder.build(BLOCK)
 
 
 def test_a_good_part_has_no_findings(shape):
@@ -72,7 +72,7 @@ def _solid_of(shell):
 def test_tiny_edges_are_seen_where_they_are(step, expected):
     contour = chain([(0, 0), (10, 0), (10, 4), (10 + step, 4), (10 + step, 8), (0, 8)])
     part = replace(BLOCK, body=Extrusion(contour, 5.0))
-    found = check_brep(part, builder.build(part).wrapped)
+    found = check_brep(part, builder.build(part))
     assert {f.check for f in found} == expected
     assert all(f.place[:2] == pytest.approx((10, 4), abs=1e-3) for f in found)
 
@@ -80,7 +80,7 @@ def test_tiny_edges_are_seen_where_they_are(step, expected):
 def test_a_tiny_face_is_seen():
     contour = chain([(0, 0), (10, 0), (10, 4), (10.0009, 4), (10.0009, 8), (0, 8)])
     part = replace(BLOCK, body=Extrusion(contour, 0.001))
-    assert "tiny-face" in {f.check for f in check_brep(part, builder.build(part).wrapped)}
+    assert "tiny-face" in {f.check for f in check_brep(part, builder.build(part))}
 
 
 def test_a_solid_that_passes_through_itself_is_seen():

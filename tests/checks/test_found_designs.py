@@ -167,7 +167,7 @@ def test_an_edge_at_the_limit_is_the_same_to_rule_and_check(short, sides):
     refused = [b.check for b in broken_rules(design) if b.check == "no_slivers"]
     layout = Layout(design)
     part = element(layout, layout.elements[0])
-    tiny = [f for f in check_brep(part, build(part).wrapped) if f.check == "tiny-edge"]
+    tiny = [f for f in check_brep(part, build(part)) if f.check == "tiny-edge"]
     assert bool(refused) == bool(tiny) == (short < 0.001)
 
 
@@ -250,7 +250,7 @@ def test_no_piece_near_the_limit_passes_the_rule_and_fails_the_check():
         judged["accepted"] += 1
         layout = Layout(design)
         part = element(layout, layout.elements[0])
-        assert [f for f in check_brep(part, build(part).wrapped) if f.check == "tiny-edge"] == [], move
+        assert [f for f in check_brep(part, build(part)) if f.check == "tiny-edge"] == [], move
 
     each()
     assert judged["accepted"] >= 5 and judged["slivers"] >= 5, judged

@@ -70,7 +70,7 @@ def test_many_places_along_a_part_against_each_alone(bar, seed):
 
     random = np.random.default_rng(seed)
     cube = made("CUBE", Extrusion(rectangle(0, 0, 1.5, 1.5), 1.5))
-    shapes = {part.part_no: build(part).wrapped for part in (bar, cube)}
+    shapes = {part.part_no: build(part) for part in (bar, cube)}
     if bar is STEPPED:
         along = random.uniform(-3, 102, 60)
         others = random.choice([[1.0, 6.0], [1.0, 5.5], [5.0, 2.0], [5.05, 2.0], [8.0, 2.0], [1.0, 4.5]], 60)

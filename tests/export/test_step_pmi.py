@@ -211,7 +211,7 @@ def model(part: Part) -> bytes:
     from tactcad.solids.build import build
     from tactcad.solids.step import to_bytes
 
-    return step_pmi.part_step_pmi(part, to_bytes(build(part).wrapped), HEADER)
+    return step_pmi.part_step_pmi(part, to_bytes(build(part)), HEADER)
 
 
 def of_scene(scene, ending: str) -> Part:
@@ -379,7 +379,7 @@ def test_a_crash_of_the_kernel_is_reported_with_the_file(monkeypatch):
 
     class Built:
         def of(self, part):
-            return build(part).wrapped
+            return build(part)
 
     monkeypatch.setattr(step_pmi, "part_step_pmi", crash)
     (form,) = (f for f in part_formats() if f.kind == "step-pmi")

@@ -78,7 +78,7 @@ def test_every_part_keeps_the_promise_against_the_kernels_volume(macro_shapes, a
 def test_a_mesh_too_coarse_for_the_promise_is_refused(macro):
     pin = next(p for p in make_scene(macro, "array").parts if "pin" in p.part_no)
     with pytest.raises(CheckFailure, match="off the solid's volume; allowed are 0.01%"):
-        part_stl(pin.part_no, build(pin).wrapped, Meshing(0.5, 1e-4))
+        part_stl(pin.part_no, build(pin), Meshing(0.5, 1e-4))
 
 
 def test_an_export_within_an_error_holds_the_meshes_and_one_without_none(tmp_path, capsys):

@@ -156,7 +156,7 @@ def test_volumes_and_centres_against_the_kernel(macro_scene, macro_shapes):
         threaded_rod("M4", 60),
         standard_parts.dowel("2.5", 8),
     ]
-    shapes = {**macro_shapes, **{p.part_no: build(p).wrapped for p in extra}}
+    shapes = {**macro_shapes, **{p.part_no: build(p) for p in extra}}
     for part in (*macro_scene.parts, *extra):
         got = measure(shapes[part.part_no])
         assert got["volume"] == pytest.approx(part.volume, rel=1e-9)
@@ -182,7 +182,7 @@ def test_every_kind_of_feature_against_the_kernel():
         Pocket("wall", (40, 14, 12), (-1, 0, 0), (0, 1, 0), rectangle(0, 0, 3, 2), 4),
     )
     part = Part("X", "x", "milled", Material("m", 1000), Extrusion(rectangle(0, 0, 40, 30), 20), features)
-    got = measure(build(part).wrapped)
+    got = measure(build(part))
     assert got["volume"] == pytest.approx(part.volume, rel=1e-10)
     assert got["centre"] == pytest.approx(part.centre, abs=1e-9)
     assert part.mass == pytest.approx(part.volume * 1e-3)

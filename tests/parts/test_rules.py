@@ -411,7 +411,7 @@ def checked(design: Design) -> list[str]:
     from tactcad.solids.build import build
 
     scene, shop = make_scene(design, "array"), load_shop()
-    shapes = {part.part_no: build(part).wrapped for part in scene.parts}
+    shapes = {part.part_no: build(part) for part in scene.parts}
     found = check_interference(scene, shapes)
     for part in scene.parts:
         found += check_brep(part, shapes[part.part_no]) + check_mesh(part, shapes[part.part_no])

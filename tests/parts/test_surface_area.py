@@ -81,4 +81,4 @@ def test_the_kernel_measures_the_same_on_every_part(name):
     design = load(name)
     for scene in scene_names(design):
         for p in make_scene(design, scene).parts:
-            assert surface_area(p) == pytest.approx(measure(build(p).wrapped)["area"], rel=1e-8), p.part_no
+            assert surface_area(p) == pytest.approx(measure(build(p))["area"], rel=1e-8), p.part_no

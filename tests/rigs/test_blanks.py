@@ -18,6 +18,7 @@ from tactcad.parts.language.part_materials import STAINLESS_PLATE, plate_materia
 from tactcad.parts.language.stock import cut_section, stock_of
 from tactcad.scenes import make_scene, scene_names
 from tactcad.solids.build import build
+from tactcad.solids.measure import bounding_box
 
 DESIGNS = [p.stem for p in sorted(Path("hardware").glob("*.toml")) if "row_arms" in p.read_text()]
 # mm, plus and minus: of rolled plate, written down again from EN 485-3 and EN 10051 as issued to a shop
@@ -72,9 +73,9 @@ def test_a_hole_is_dropped_for_what_it_is_and_not_for_its_text():
 @pytest.mark.cad
 def test_the_solid_lies_in_its_blank():
     part = parts_of("macro-array")["macro-array-carrier"]
-    low, high = build(part).bounding_box().min, build(part).bounding_box().max
+    low, high = bounding_box(build(part))
     x0, y0, x1, y1 = cut_section(part).outer.box
-    assert (x0, y0) < (low.X - 1.9, low.Y - 1.9) and (x1, y1) > (high.X + 1.9, high.Y + 1.9)
+    assert (x0, y0) < (low[0] - 1.9, low[1] - 1.9) and (x1, y1) > (high[0] + 1.9, high[1] + 1.9)
 
 
 def test_wire_cut_sheet_is_picked_and_other_wire_cut_parts_are_ground_to_size():

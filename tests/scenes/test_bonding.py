@@ -102,7 +102,7 @@ def test_the_tongue_stands_in_the_slot_on_the_leaf():
 def test_the_clamps_weight_acts_over_the_gauge_and_presses_as_wished():
     scene = make_scene(variant(), "bonding")
     bar = placement(scene, "CB1")
-    solid = measure(build(bar.part).wrapped)
+    solid = measure(build(bar.part))
     x, y, _ = placed(bar, solid["centre"])
     gauge = variant().gauge
     assert x == pytest.approx((gauge.carrier_body_side - gauge.carrier_arm_side) / 2, abs=1e-6)
@@ -126,7 +126,7 @@ def test_a_bar_is_aluminium_where_steel_would_be_too_thin():
 @pytest.mark.parametrize("name", ["macro-array", "better-array"])
 def test_nothing_overlaps_in_the_fixture(name):
     scene = make_scene(load(name), "bonding")
-    shapes = {part.part_no: build(part).wrapped for part in scene.parts}
+    shapes = {part.part_no: build(part) for part in scene.parts}
     assert check_interference(scene, shapes) == []
 
 
@@ -148,7 +148,7 @@ def test_hinges_of_other_sizes_have_a_fixture_in_which_nothing_overlaps(hinge):
     assert [b for b in broken_rules(design) if b.check != "stop_gap_above_tolerance"] == []
     assert left_out(design) == []
     scene = make_scene(design, "bonding")
-    shapes = {part.part_no: build(part).wrapped for part in scene.parts}
+    shapes = {part.part_no: build(part) for part in scene.parts}
     assert check_interference(scene, shapes) == []
     shop = load_shop(DEFAULT)
     for part in (p for p in scene.parts if "-bonding-" in p.part_no):

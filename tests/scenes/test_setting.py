@@ -34,7 +34,7 @@ FAST = ("one row", "two rows")
 def test_the_stack_stands_in_it_and_its_screws_are_reached(rows):
     design = variant(ROWS[rows])
     scene = make_scene(design, "setting")
-    shapes = {p.part_no: build(p).wrapped for p in scene.parts}
+    shapes = {p.part_no: build(p) for p in scene.parts}
     for check in (check_interference, check_steps, check_tools):
         assert check(scene, shapes) == []
     met = {frozenset((c.first, c.second)) for c in scene.contacts}

@@ -45,7 +45,7 @@ STACK = Path(__file__).parents[2] / "docs" / "stack.md"
 def exported(design, name: str, folder: Path) -> tuple[Path, dict]:
     scene = make_scene(design, name)
     path = folder / f"{name}.step"
-    shapes = {part.part_no: build(part).wrapped for part in scene.parts}
+    shapes = {part.part_no: build(part) for part in scene.parts}
     path.write_bytes(scene_step(scene, shapes, Header(name, name, "A", "2026-01-01", "", "")))
     return path, json.loads(guide_json(scene))
 

@@ -10,6 +10,7 @@ import pytest
 
 from tactcad.parts.array.clamp import OVER_EDGE, SQUARE, lean
 from tactcad.parts.designs import load
+from tactcad.parts.rigs.setting_fixture import SettingLayout
 from tactcad.stacks.mechanic import PAD, Assembled
 from tactcad.stacks.variables import STEPS, made
 from tactcad.stacks.virtual_build import sensor
@@ -38,10 +39,26 @@ class ByHand:
         bores, sizes = m["end plate, head: dowel hole diameter"], m["dowel pin: diameter"]
         slack = (bores - sizes).min(axis=1) / 2
         self.turn, self.corner = np.empty((n, len(self.y))), np.empty((n, len(self.y)))
+        half = SettingLayout(d).half
+        steps = m["setting fixture: steps over the floor"]
+        rise = m["setting fixture: steps' lean"] / half  # of a straight step, rad
+        leans_by = m["element: pad's lean"] / (layout.design.element.pad_length / 2)
         for i, (side, y) in enumerate(zip(self.side, self.y)):
             k = pins[side]
-            back = step + m[STEPS][:, 1] + height + m[f"end plate, tapped: {OVER_EDGE}"][:, k]
-            front = step + m[STEPS][:, 0] + height + m[f"end plate, head: {OVER_EDGE}"][:, k]
+            back = (
+                step
+                + steps[:, 1]
+                + rise[:, 1] * side * xd
+                + height
+                + m[f"end plate, tapped: {OVER_EDGE}"][:, k]
+            )
+            front = (
+                step
+                + steps[:, 0]
+                + rise[:, 0] * side * xd
+                + height
+                + m[f"end plate, head: {OVER_EDGE}"][:, k]
+            )
             leans = (
                 m["end plate, tapped: dowel holes' squareness along z"][:, k] / (SQUARE / 2) * lean(layout)
             )
@@ -53,9 +70,11 @@ class ByHand:
             centre = pin - (hole - size) / 2  # the hole hangs on its pin
             deep = d.holes.height + d.element.pad_height + m[PAD][:, i]
             low, high = np.full(n, -0.02), np.full(n, 0.02)
-            for _ in range(50):  # the lower corner of the pad comes down to the floor
+            for _ in range(30):  # the lower corner of the pad comes down to the floor
                 mid = (low + high) / 2
-                lowest = np.min([self._z(centre, x - xd, -deep, mid) for x in self._corners], axis=0)
+                ends = [(x, -deep - leans_by[:, i] * (x - sum(self._corners) / 2)) for x in self._corners]
+                over = [self._z(centre, x - xd, z, mid) for x, z in ends]
+                lowest = np.min(over, axis=0) - m["setting fixture: floor's flatness"][:, i]
                 high, low = np.where(lowest < 0, mid, high), np.where(lowest < 0, low, mid)
             self.turn[:, i] = (low + high) / 2
             self.corner[:, i] = centre
@@ -123,8 +142,8 @@ def test_pads_turns_and_ledges_are_those_of_rigid_bodies(macro):
 def test_yields_are_those_of_rigid_bodies(macro):
     """Limits moved to where half, 90 and 99 % of arrays keep them: within a point, from other parts; the
     spread of the pads and of the gaps within 5 %."""
-    a = Assembled(macro.layout, made(macro.variables, COUNT, "normal", np.random.default_rng(5)))
-    hand = ByHand(macro.layout, made(macro.variables, COUNT, "normal", np.random.default_rng(6)))
+    a = Assembled(macro.layout, made(macro.variables, COUNT, "normal", np.random.default_rng(7)))
+    hand = ByHand(macro.layout, made(macro.variables, COUNT, "normal", np.random.default_rng(8)))
     drawn = a.gaps - a.made["element: stop gap"] - a.lifts
     for ours, theirs in (
         (np.ptp(a.pads, axis=1), np.ptp(hand.pads(), axis=1)),
@@ -135,6 +154,19 @@ def test_yields_are_those_of_rigid_bodies(macro):
             limit = np.quantile(ours, share)
             assert np.mean(theirs <= limit) == pytest.approx(share, abs=0.01)
             assert np.quantile(theirs, share) == pytest.approx(limit, rel=0.05)
+
+
+def test_a_floor_that_is_not_flat_carries_its_pad_lower(macro):
+    """2 um under one pad: it goes down by its inner edge, 19.5 mm from its dowel, its middle 18.5. A pad that
+    leans by 2 um at its edges stands on the outer one, 17.5 mm from its dowel."""
+    zero = {n: np.zeros((2, v.pieces)) for n, v in macro.variables.items()}
+    zero[STEPS] = np.full((2, 2), 0.006)
+    zero["setting fixture: floor's flatness"][0, 3] = -0.002
+    zero["element: pad's lean"][1, 3] = 0.002
+    a = Assembled(macro.layout, zero)
+    down, up = np.zeros(10), np.zeros(10)
+    down[3], up[3] = -0.002 * 18.5 / 19.5, 0.002 * 18.5 / 17.5
+    assert a.pads == pytest.approx(np.array([down, up]), abs=1e-9)
 
 
 def test_an_unset_plate_is_no_level_one(macro):

@@ -2,7 +2,10 @@
 
 import numpy as np
 import pytest
+from parallel_curve import offset
 
+from tactcad.parts.array.element import WIRE, element
+from tactcad.parts.array.layout import Layout
 from tactcad.scenes.requirement import DimensionLimits, variable
 from tactcad.stacks.variables import OFFSET_SHARE, made
 
@@ -46,3 +49,53 @@ def test_pieces_of_one_array_share_the_machines_offset():
 def test_only_what_is_asked_for_differs():
     out = made(WIDE, 10, "uniform", np.random.default_rng(5), only=("b",))
     assert (out["a"] == -0.005).all() and np.ptp(out["b"][:, 1]) > 0.1
+
+
+def sizes_of(outer, hole):
+    """Of an element's contour and dowel hole, by limit: from its lines and arcs."""
+    at = {s.name: s for s in reversed(outer.segments)}
+    z = {name: s.start[1] for name, s in at.items()}
+    x = {name: s.start[0] for name, s in at.items()}
+    (xd, zd), r = hole.as_circle()
+    return {
+        "hinge thickness": z["slot_floor"] - z["flat_face"],
+        "pad height over the dowel hole's centre": zd - z["pad_face"],
+        "stop gap": z["ledge"] - z["stop_land"],
+        "ledge over the pad face": z["ledge"] - z["pad_face"],
+        "slot length": x["slot_body_wall"] - x["slot_arm_wall"],
+        "arm length": (x["slot_body_wall"] + x["slot_arm_wall"]) / 2 - x["tip"],
+        "pad length": x["pad_side"] - x["tip"],
+        "arm height": z["arm_back"] - z["flat_face"],
+        "fillet radius": at["slot_arm_fillet"].radius,
+        "tip from dowel hole": xd - x["tip"],
+        "dowel hole diameter": 2 * r,
+    }
+
+
+def test_one_offset_of_the_wire_moves_every_size_as_a_parallel_curve_does(macro):
+    """Contour 2 um out, holes 2 um in."""
+    layout = Layout(macro)
+    body = element(layout, layout.elements[0]).extrusion
+    hole = next(o for o in body.openings if o.segments[0].name == "dowel_hole")
+    drawn, moved = sizes_of(body.outer, hole), sizes_of(offset(body.outer, 0.002), offset(hole, -0.002))
+    for name, size in drawn.items():
+        assert (moved[name] - size) / 0.002 == pytest.approx(WIRE.get(name, 0), abs=1e-6), name
+
+
+def test_sizes_of_a_piece_share_the_wires_offset_in_mm():
+    """Of b, twice as wide, a quarter of the variance is the wire's, the other way; c is not cut by it. What
+    pieces share stays."""
+
+    def limits(name, half, wire):
+        return DimensionLimits(name, np.full(2, -half), np.full(2, half), wire=wire)
+
+    v = {v.name: v for v in (limits("a", 0.004, 2), limits("b", 0.004, -1), limits("c", 0.004, 0))}
+    x = made(v, 100_000, "normal", np.random.default_rng(4))
+    one = np.corrcoef(np.hstack([x["a"], x["b"], x["c"]]).T)
+    assert one[0, 2] == pytest.approx(-0.5 * 0.5, abs=0.02)
+    assert one[0, 3] == pytest.approx(-0.5 * 0.5 * OFFSET_SHARE, abs=0.02)
+    assert [one[0, 1], one[2, 3]] == pytest.approx([OFFSET_SHARE, OFFSET_SHARE], abs=0.03)
+    assert np.abs(one[4:, :4]).max() < 0.02
+    assert [x[name].std() for name in v] == pytest.approx([0.87963 * 0.002] * 3, rel=0.01)
+    apart = made(v, 100_000, "normal", np.random.default_rng(4), alike=False)
+    assert abs(np.corrcoef(apart["a"][:, 0], apart["b"][:, 0])[0, 1]) < 0.02

@@ -95,7 +95,7 @@ def _stale(design: CommonTables) -> list[Finding]:
 def _built(part: Part, job: Job) -> list[Finding]:
     """Build the part into the job's shapes; a part that cannot be built is a finding."""
     try:
-        job.shapes[part.part_no] = build(part).wrapped
+        job.shapes[part.part_no] = build(part)
     except SolidError as error:
         return [Finding("build", "fail", part.part_no, (), 0, 0, str(error))]
     return []

@@ -61,7 +61,7 @@ def _shape_bytes(part: Part) -> bytes:
     from tactcad.solids.build import build
     from tactcad.solids.step import to_bytes
 
-    return to_bytes(build(part).wrapped)
+    return to_bytes(build(part))
 
 
 def picture_bytes(

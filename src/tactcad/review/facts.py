@@ -288,7 +288,8 @@ def _feature(name: str, piece: Piece) -> FeatureFact:
 
 def _of_element(v: DimensionLimits, part: Part) -> tuple[tuple[str, str], ...]:
     """The limit of an element that a variable is of: it names no part, being the same of every length."""
-    found = part.kind == "element" and v.element in {c.name for c in part.characteristics}
+    own = {c.name for c in part.characteristics} | {g.name for g in part.geometric}
+    found = part.kind == "element" and v.element in own
     return ((part.part_no, v.element),) if found else ()
 
 

@@ -102,7 +102,7 @@ class Panel {
       list([
         ['Part number', el('span', {id: 'part-number'}, part.part_no)], ['Material', part.material], ['Made by', part.process],
         ['Mass', `${figures(part.mass_g)} g`], ['Volume', `${figures(part.volume_mm3)} mm\u00b3`], ['Finish', part.finish],
-        ['Ordered as', part.designation], ['Stands in', placed.under.join(', ')],
+        ['Ordered as', part.designation], ['Belongs to', placed.under.join(', ')],
       ]),
       this.buttons(placed),
       ...this.element(placed, part),

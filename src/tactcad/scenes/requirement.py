@@ -35,6 +35,7 @@ class DimensionLimits:
     element       the limit of an element that it is; empty where it is of another part
     matters       to what: to the pads on the surface plate and all that stands on them, to the stop plate on
                   the ledges, to neither, or to a screwed joint alone
+    wire          how it grows where the wire leaves every face of its piece further out, mm a mm
     """
 
     name: str
@@ -44,6 +45,7 @@ class DimensionLimits:
     apart: bool = False
     element: str = ""
     matters: Matters = "neither"
+    wire: int = 0
 
     @property
     def pieces(self) -> int:

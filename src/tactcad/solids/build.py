@@ -1,12 +1,35 @@
-"""From a part's description to one solid of the CAD kernel (build123d), checked against its closed form."""
+"""From a part's description to one solid of the CAD kernel, checked against its closed form.
+
+The kernel's own binding makes it, with build123d's steps in build123d's order: loading build123d takes longer
+than making the parts of an array.
+"""
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Sequence
+from math import tau
 
-from build123d import Axis, Edge, Face, Plane, Solid, Vector, Wire
-from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge, BRepBuilderAPI_MakeVertex, BRepBuilderAPI_MakeWire
-from OCP.gp import gp_Ax2, gp_Circ, gp_Pnt
+from OCP.BRepAlgoAPI import BRepAlgoAPI_Cut
+from OCP.BRepBuilderAPI import (
+    BRepBuilderAPI_MakeEdge,
+    BRepBuilderAPI_MakeFace,
+    BRepBuilderAPI_MakeVertex,
+    BRepBuilderAPI_MakeWire,
+)
+from OCP.BRepCheck import BRepCheck_Analyzer
+from OCP.BRepGProp import BRepGProp_Face
+from OCP.BRepPrimAPI import (
+    BRepPrimAPI_MakeCone,
+    BRepPrimAPI_MakeCylinder,
+    BRepPrimAPI_MakePrism,
+    BRepPrimAPI_MakeRevol,
+)
+from OCP.BRepTools import BRepTools
+from OCP.gp import gp_Ax1, gp_Ax2, gp_Ax3, gp_Circ, gp_Dir, gp_Pnt, gp_Trsf, gp_Vec
+from OCP.ShapeFix import ShapeFix_Face, ShapeFix_Shape
+from OCP.ShapeUpgrade import ShapeUpgrade_UnifySameDomain
+from OCP.TopAbs import TopAbs_SOLID
+from OCP.TopoDS import TopoDS_Face, TopoDS_Shape, TopoDS_Wire
 
 from tactcad.contour import Contour, Line, Point
 from tactcad.parts.language.description import (
@@ -16,10 +39,13 @@ from tactcad.parts.language.description import (
     ModelFile,
     Part,
     Revolution,
+    Vector,
     drill_point_height,
 )
 from tactcad.profiling import making
 
+from .measure import volume
+from .occt import TopTools_ListOfShape, as_face, as_wire, subshapes
 from .step import read_step_solid
 
 # The kernel's volume agrees with the closed form within this share, or the build is refused.
@@ -32,7 +58,7 @@ class SolidError(RuntimeError):
     """The kernel made something other than the description says."""
 
 
-def build(part: Part) -> Solid:
+def build(part: Part) -> TopoDS_Shape:
     """The part's solid in its own frame, mm.
 
     Raises
@@ -44,88 +70,140 @@ def build(part: Part) -> Solid:
         return _built(part)
 
 
-def _built(part: Part) -> Solid:
+def _built(part: Part) -> TopoDS_Shape:
     if isinstance(part.body, ModelFile):
         return read_step_solid(part.body)
     stock = _extruded(part.body) if isinstance(part.body, Extrusion) else _revolved(part.body)
     tools = [tool for feature in part.features for tool in _tools(feature)]
-    solid = _only_solid(stock.cut(*tools) if tools else stock, part)
-    if not solid.is_valid:
+    solids = subshapes(_cut(stock, tools) if tools else stock, TopAbs_SOLID)
+    if len(solids) != 1:
+        raise SolidError(f"{part.part_no}: the description makes {len(solids)} solids")
+    (solid,) = solids
+    if not BRepCheck_Analyzer(solid).IsValid():
         raise SolidError(f"{part.part_no}: the kernel calls the solid invalid")
-    if abs(solid.volume - part.volume) > VOLUME_AGREES * part.volume:
+    found = volume(solid)
+    if abs(found - part.volume) > VOLUME_AGREES * part.volume:
         raise SolidError(
-            f"{part.part_no}: the solid has {solid.volume:.9g} mm3, its description {part.volume:.9g} mm3"
+            f"{part.part_no}: the solid has {found:.9g} mm3, its description {part.volume:.9g} mm3"
         )
     return solid
 
 
-def _only_solid(shape: Any, part: Part) -> Solid:
-    pieces = [shape] if hasattr(shape, "solids") else shape
-    solids = [solid for piece in pieces for solid in piece.solids()]
-    if len(solids) != 1:
-        raise SolidError(f"{part.part_no}: the description makes {len(solids)} solids")
-    return solids[0]
+def _cut(stock: TopoDS_Shape, tools: Sequence[TopoDS_Shape]) -> TopoDS_Shape:
+    """Stock less all tools; what is left of one surface is one face."""
+    operation, first, others = BRepAlgoAPI_Cut(), TopTools_ListOfShape(), TopTools_ListOfShape()
+    first.Append(stock)
+    for tool in tools:
+        others.Append(tool)
+    operation.SetArguments(first)
+    operation.SetTools(others)
+    operation.SetRunParallel(True)
+    operation.Build()
+    joined = ShapeUpgrade_UnifySameDomain(operation.Shape(), True, True, True)
+    joined.AllowInternalEdges(False)
+    joined.Build()
+    return joined.Shape()
 
 
-def wire(contour: Contour, plane: Plane = Plane.XY) -> Wire:
+def _axes(at: Vector, axis: Vector, x_axis: Vector | None = None) -> gp_Ax3:
+    origin, z = gp_Pnt(*at), gp_Dir(*axis)
+    return gp_Ax3(origin, z, gp_Dir(*x_axis)) if x_axis else gp_Ax3(origin, z)
+
+
+FLAT = _axes((0.0, 0.0, 0.0), (0.0, 0.0, 1.0), (1.0, 0.0, 0.0))
+UPRIGHT = _axes((0.0, 0.0, 0.0), (0.0, -1.0, 0.0), (1.0, 0.0, 0.0))  # its y is the part's z
+
+
+def wire(contour: Contour, plane: gp_Ax3 = FLAT) -> TopoDS_Wire:
     """The contour as a closed wire in a plane.
 
     Neighbours share one vertex at the contour's own point. (build123d's Wire(edges) picks either edge's end
     by memory address, and files then differ in their last digits from run to run.)
     """
+    there = gp_Trsf()
+    there.SetTransformation(plane, gp_Ax3())
 
     def in_space(point: Point) -> gp_Pnt:
-        return plane.from_local_coords(Vector(*point, 0)).to_pnt()
+        return gp_Pnt(*point, 0.0).Transformed(there)
 
+    maker = BRepBuilderAPI_MakeWire()
     circle = contour.as_circle()
     if circle:
         centre, radius = circle
-        axes = gp_Ax2(in_space(centre), plane.z_dir.to_dir(), plane.x_dir.to_dir())
-        return Wire([Edge(BRepBuilderAPI_MakeEdge(gp_Circ(axes, radius)).Edge())])
+        axes = gp_Ax2(in_space(centre), plane.Direction(), plane.XDirection())
+        maker.Add(BRepBuilderAPI_MakeEdge(gp_Circ(axes, radius)).Edge())
+        return maker.Wire()
     corners = [BRepBuilderAPI_MakeVertex(in_space(s.start)).Vertex() for s in contour]
-    maker = BRepBuilderAPI_MakeWire()
     for s, first, last in zip(contour, corners, corners[1:] + corners[:1]):
         if isinstance(s, Line):
             edge = BRepBuilderAPI_MakeEdge(first, last)
         else:
-            up = plane.z_dir.to_dir() if s.ccw else (-plane.z_dir).to_dir()
+            up = plane.Direction() if s.ccw else plane.Direction().Reversed()
             edge = BRepBuilderAPI_MakeEdge(gp_Circ(gp_Ax2(in_space(s.centre), up), s.radius), first, last)
         maker.Add(edge.Edge())
-    return Wire(maker.Wire())
+    return maker.Wire()
 
 
-def _extruded(body: Extrusion) -> Solid:
-    face = Face(wire(body.outer), [wire(opening) for opening in body.openings])
-    return Solid.extrude(face if face.normal_at().Z > 0 else -face, Vector(0, 0, body.thickness))
+def _face(plane: gp_Ax3, outer: Contour, openings: Sequence[Contour] = ()) -> TopoDS_Face:
+    """Flat, with openings; it looks along the plane's normal."""
+    maker = BRepBuilderAPI_MakeFace(_sound(wire(outer, plane)), True)
+    for opening in openings:
+        maker.Add(_sound(wire(opening, plane)))
+    maker.Build()
+    fix = ShapeFix_Face(maker.Face())
+    fix.FixOrientation()
+    fix.Perform()
+    face = as_face(fix.Result())
+    at, normal = gp_Pnt(), gp_Vec()
+    low_u, high_u, low_v, high_v = BRepTools.UVBounds_s(face)
+    BRepGProp_Face(face).Normal((low_u + high_u) / 2, (low_v + high_v) / 2, at, normal)
+    looks_along = normal.Dot(gp_Vec(plane.Direction())) > 0
+    return face if looks_along else as_face(face.Complemented())
 
 
-def _revolved(body: Revolution) -> Solid:
-    profile = Face(wire(body.profile, Plane.XZ))
-    return Solid.revolve(profile, 360, Axis.Z)
+def _sound(wire: TopoDS_Wire) -> TopoDS_Wire:
+    fix = ShapeFix_Shape(wire)
+    fix.Perform()
+    return as_wire(fix.Shape())
 
 
-def _tools(feature: Feature) -> list[Solid]:
+def _along(face: TopoDS_Face, way: gp_Vec) -> TopoDS_Shape:
+    return BRepPrimAPI_MakePrism(face, way).Shape()
+
+
+def _extruded(body: Extrusion) -> TopoDS_Shape:
+    return _along(_face(FLAT, body.outer, body.openings), gp_Vec(0, 0, body.thickness))
+
+
+def _revolved(body: Revolution) -> TopoDS_Shape:
+    axis = gp_Ax1(gp_Pnt(0, 0, 0), gp_Dir(0, 0, 1))
+    return BRepPrimAPI_MakeRevol(_face(UPRIGHT, body.profile), axis, tau, True).Shape()
+
+
+def _tools(feature: Feature) -> list[TopoDS_Shape]:
     """Solids to cut away. They reach OUTSIDE the face they start from, and a through hole beyond its end."""
     if isinstance(feature, Hole):
         return _hole_tools(feature)
-    axis = Vector(*feature.axis)
-    start = Plane(Vector(*feature.at) - axis * OUTSIDE, x_dir=Vector(*feature.x_axis), z_dir=axis)
-    face = Face(wire(feature.contour, start), [wire(island, start) for island in feature.island])
-    if face.normal_at().dot(axis) < 0:
-        face = -face
-    return [Solid.extrude(face, axis * (OUTSIDE + feature.depth))]
+    start = _axes(_on(feature.at, feature.axis, -OUTSIDE), feature.axis, feature.x_axis)
+    face = _face(start, feature.contour, feature.island)
+    return [_along(face, gp_Vec(*feature.axis) * (OUTSIDE + feature.depth))]
 
 
-def _hole_tools(hole: Hole) -> list[Solid]:
-    at, axis = Vector(*hole.at), Vector(*hole.axis)
-    start = Plane(at - axis * OUTSIDE, z_dir=axis)
+def _hole_tools(hole: Hole) -> list[TopoDS_Shape]:
+    start = _axes(_on(hole.at, hole.axis, -OUTSIDE), hole.axis).Ax2()
     r = hole.diameter / 2
     beyond = OUTSIDE if hole.through else 0.0
-    tools = [Solid.make_cylinder(r, OUTSIDE + hole.depth + beyond, start)]
+    tools = [BRepPrimAPI_MakeCylinder(start, r, OUTSIDE + hole.depth + beyond).Shape()]
     if hole.drill_point:
-        tip = Plane(at + axis * hole.depth, z_dir=axis)
-        tools.append(Solid.make_cone(r, 0, drill_point_height(hole.diameter), tip))
+        tip = _axes(_on(hole.at, hole.axis, hole.depth), hole.axis).Ax2()
+        tools.append(BRepPrimAPI_MakeCone(tip, r, 0, drill_point_height(hole.diameter)).Shape())
     if hole.counterbore:
         diameter, depth = hole.counterbore
-        tools.append(Solid.make_cylinder(diameter / 2, OUTSIDE + depth, start))
+        tools.append(BRepPrimAPI_MakeCylinder(start, diameter / 2, OUTSIDE + depth).Shape())
     return tools
+
+
+def _on(at: Vector, axis: Vector, way: float) -> Vector:
+    """The point that far along the axis (mm)."""
+    x, y, z = (a + way * b for a, b in zip(at, axis))
+    return x, y, z

@@ -24,12 +24,12 @@ from .occt import location
 
 def workplane(part: Part) -> cq.Workplane:
     """The part's solid in its own frame (mm), on CadQuery's stack."""
-    return cq.Workplane("XY").newObject([cq.Shape.cast(build(part).wrapped)])
+    return cq.Workplane("XY").newObject([cq.Shape.cast(build(part))])
 
 
 def assembly(scene: Scene) -> cq.Assembly:
     """The scene with the same designators, colours and places; equal parts share one solid."""
-    solids = {part.part_no: cq.Shape.cast(build(part).wrapped) for part in scene.parts}
+    solids = {part.part_no: cq.Shape.cast(build(part)) for part in scene.parts}
     whole = cq.Assembly(name=scene.name)
     for p in scene.placements:
         r, g, b = (int(p.part.colour[i : i + 2], 16) / 255 for i in (1, 3, 5))

@@ -20,12 +20,21 @@ from tactcad.scenes.scene import Rotation
 
 try:
     from OCP.collections import IndexedMap_TopoDS_Shape_TopTools_ShapeMapHasher as TopTools_IndexedMapOfShape
+    from OCP.collections import List_TopoDS_Shape as TopTools_ListOfShape
     from OCP.collections import Sequence_TDF_Label as TDF_LabelSequence
 except ImportError:  # OCP 7.9
     from OCP.TDF import TDF_LabelSequence
-    from OCP.TopTools import TopTools_IndexedMapOfShape
+    from OCP.TopTools import TopTools_IndexedMapOfShape, TopTools_ListOfShape
 
-__all__ = ["TDF_LabelSequence", "TopTools_IndexedMapOfShape", "as_edge", "as_face", "as_vertex", "as_wire"]
+__all__ = [
+    "TDF_LabelSequence",
+    "TopTools_IndexedMapOfShape",
+    "TopTools_ListOfShape",
+    "as_edge",
+    "as_face",
+    "as_vertex",
+    "as_wire",
+]
 
 # OCP 7.9 marks static functions by _s where OCP 8 does not.
 as_edge, as_face, as_vertex, as_wire = (

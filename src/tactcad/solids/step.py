@@ -12,7 +12,6 @@ from io import BytesIO
 from pathlib import Path
 from typing import Any
 
-from build123d import Solid, export_step, import_step
 from OCP.BRep import BRep_Builder
 from OCP.BRepBuilderAPI import BRepBuilderAPI_Transform
 from OCP.BRepTools import BRepTools
@@ -20,6 +19,7 @@ from OCP.IFSelect import IFSelect_RetDone
 from OCP.Interface import Interface_Static
 from OCP.Message import Message
 from OCP.STEPControl import STEPControl_AsIs, STEPControl_Reader, STEPControl_Writer
+from OCP.TopAbs import TopAbs_SOLID
 from OCP.TopLoc import TopLoc_Location
 from OCP.TopoDS import TopoDS_Shape
 
@@ -27,6 +27,7 @@ from tactcad.design.messages import InputError
 from tactcad.parts.language.description import ModelFile
 
 from .measure import measure
+from .occt import subshapes
 
 
 def write_step(shape: TopoDS_Shape) -> bytes:
@@ -69,7 +70,7 @@ def silence() -> None:
         messenger.RemovePrinter(printer)
 
 
-def read_step_solid(model: ModelFile) -> Solid:
+def read_step_solid(model: ModelFile) -> TopoDS_Shape:
     """The one solid of a STEP file. Raises InputError where file, hash or solid are not as described."""
     if _sha256(model.path) != model.sha256:
         raise InputError(
@@ -84,7 +85,7 @@ def model_file(path: str | Path) -> ModelFile:
     Raises InputError where there is no such file, or not one solid in it.
     """
     sha256 = _sha256(str(path))
-    facts = measure(_only_solid(str(path)).wrapped)
+    facts = measure(_only_solid(str(path)))
     low, high = facts["box"]
     return ModelFile(str(path), sha256, facts["volume"], (tuple(low), tuple(high)))
 
@@ -94,6 +95,8 @@ def kept_model(shape: Any, folder: Path) -> ModelFile:
 
     Raises InputError where it is not one solid.
     """
+    from build123d import export_step
+
     solids = list(shape.solids())
     if len(solids) != 1:
         raise InputError("part", "not one solid", value=len(solids), legal="a shape of one solid")
@@ -112,16 +115,16 @@ def _sha256(path: str) -> str:
     return hashlib.sha256(Path(path).read_bytes()).hexdigest()
 
 
-def _only_solid(path: str) -> Solid:
+def _only_solid(path: str) -> TopoDS_Shape:
     try:
-        solids = list(import_step(path).solids())
-    except Exception as error:  # the importer raises many kinds of exceptions
+        solids = subshapes(read_step(Path(path).read_bytes()), TopAbs_SOLID)
+    except (OSError, ValueError) as error:
         raise InputError(path, f"cannot be read as STEP: {error}") from None
     if len(solids) != 1:
         raise InputError(path, "not one solid", value=len(solids), legal="a STEP file with one solid")
-    shape = solids[0].wrapped  # its place becomes its geometry: a located solid is written as an assembly
+    (shape,) = solids  # its place becomes its geometry: a located solid is written as an assembly
     base, place = shape.Located(TopLoc_Location()), shape.Location().Transformation()
-    return Solid(BRepBuilderAPI_Transform(base, place, True).Shape())
+    return BRepBuilderAPI_Transform(base, place, True).Shape()
 
 
 def to_bytes(shape: TopoDS_Shape) -> bytes:

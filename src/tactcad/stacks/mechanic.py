@@ -33,16 +33,20 @@ from tactcad.parts.array.hinge_section import hinge_section
 from tactcad.parts.array.layout import Layout
 from tactcad.parts.array.measurements import WAYS
 from tactcad.parts.array.stop_gap import stop_gap
+from tactcad.parts.rigs.setting_fixture import SettingLayout
 from tactcad.scenes.requirement import Deviations, DimensionLimits
 
 from .variables import (
     BLANK_LEDGE,
     FLATNESS,
+    FLOOR_FLAT,
     IN_PLAY,
     MODULUS,
+    PAD_LEAN,
     PIN,
     SHEET,
     STEPS,
+    STEPS_LEAN,
     Axis,
     Plate,
     bore_in,
@@ -79,7 +83,7 @@ class Assembled:
         anew."""
         changed = Assembled(self.layout, {**self.made, of.name: deviations})
         if of.matters != "pads":
-            changed.__dict__["turn"] = self.turn
+            changed.__dict__.update(high=self.high, turn=self.turn)
             if of.matters != "plate":
                 changed.__dict__["plate"] = self.plate
         return changed
@@ -124,7 +128,9 @@ class Assembled:
     def over_floor(self, which: Plate) -> Array:
         """How much higher than drawn the first holes of both rows stand in a plate on the fixture,
         (arrays, 2)."""
-        step = self.made[STEPS][:, [1 if which == "tapped" else 0]]
+        at = [1 if which == "tapped" else 0]
+        reach = self.dowel_x / SettingLayout(self.layout.design).half  # of a step's half length
+        step = self.made[STEPS][:, at] + self.made[STEPS_LEAN][:, at] * reach * np.array([1.0, -1.0])
         return step + self.made[over_edge(which)][:, self.first_pins]
 
     def pin(self, axis: Axis, y: Array | float) -> Array:
@@ -158,19 +164,25 @@ class Assembled:
         )
 
     @cached_property
+    def high(self) -> Array:
+        """How much higher than drawn over the floor a level element hangs on its pin."""
+        return self._pin_at_elements("z") - self.play / 2 - self.made[PAD]
+
+    @cached_property
     def turn(self) -> Array:
-        """How far each element is turned about its dowel, rad, its rear end up: its pad stands on the floor
-        by the edge that the turn leaves it, its hole hangs on its pin."""
-        high = self._pin_at_elements("z") - self.play / 2 - self.made[PAD]
-        return high / (self.dowel_x - np.where(high > 0.0, self.layout.pad_inner, self.layout.pad_outer))
+        """How far each element is turned about its dowel, rad, its rear end up: its hole hangs on its pin, an
+        edge of its pad, which may lean, stands on the floor, which may lie lower there."""
+        layout, high = self.layout, self.high - self.made[FLOOR_FLAT]
+        inner = (high + self.made[PAD_LEAN]) / (self.dowel_x - layout.pad_inner)
+        return np.minimum(inner, (high - self.made[PAD_LEAN]) / (self.dowel_x - layout.pad_outer))
 
     def raised(self, x: float) -> Array:
-        """What the turn adds to the height of an element at so far from the middle line."""
-        return self.turn * (x - np.where(self.turn > 0.0, self.layout.pad_inner, self.layout.pad_outer))
+        """What hole and turn add to the height of an element at so far from the middle line."""
+        return self.high - self.turn * (self.dowel_x - x)
 
     @cached_property
     def pads(self) -> Array:
-        """Height of each pad's middle over the floor."""
+        """Height of each pad's middle over the floor's plane."""
         return self.raised((self.layout.pad_inner + self.layout.pad_outer) / 2)
 
     @property

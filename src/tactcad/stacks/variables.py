@@ -12,7 +12,17 @@ from scipy.special import ndtr, ndtri
 from tactcad.design.fields import present
 from tactcad.mechanics.section import Array
 from tactcad.parts.array.clamp import OVER_EDGE, STACK, end_plate, stop_plate
-from tactcad.parts.array.element import DOWEL_HOLE, LEDGE, PAD_HEIGHT, blank, element, spacer
+from tactcad.parts.array.element import (
+    DOWEL_HOLE,
+    LEAN,
+    LEDGE,
+    PAD_HEIGHT,
+    SEAT_LEAN,
+    WIRE,
+    blank,
+    element,
+    spacer,
+)
 from tactcad.parts.array.layout import Layout
 from tactcad.parts.bought.standard_parts import dowel_limits
 from tactcad.parts.language.description import Part
@@ -23,6 +33,8 @@ from tactcad.scenes.requirement import SHEET, Deviations, DimensionLimits, Matte
 STACK_LENGTH = "stack: length, spacers to suit"
 IN_PLAY, MODULUS = "element: place in its dowel hole's play, share", "sheet: Young's modulus, relative"
 STEPS = "setting fixture: steps over the floor"
+FLOOR_FLAT, STEPS_LEAN = "setting fixture: floor's flatness", "setting fixture: steps' lean"
+PAD_LEAN = of_element("pad's lean")
 PIN, BLANK_LEDGE = "dowel pin: diameter", "blank: ledge over the dowel hole"
 SPACER, STOP_PLATE, FLATNESS = "spacer: thickness", "stop plate: thickness", "stop plate: flatness"
 Plate = Literal["tapped", "head"]
@@ -79,7 +91,10 @@ def _array(layout: Layout) -> Iterable[DimensionLimits]:
         else:
             lower, upper = np.array(own).T
             matters = OF_ELEMENT.get(name, "neither")
-            yield DimensionLimits(of_element(name), lower, upper, element=name, matters=matters)
+            wire = WIRE.get(name, 0)
+            yield DimensionLimits(of_element(name), lower, upper, element=name, matters=matters, wire=wire)
+    lean = np.full(len(places), LEAN / 2)
+    yield DimensionLimits(PAD_LEAN, -lean, lean, element=SEAT_LEAN, matters="pads")
     yield variable(IN_PLAY, -1.0, 1.0, len(places))
     modulus = present(d.tolerance.youngs_modulus)
     yield variable(MODULUS, -modulus, modulus)
@@ -111,6 +126,8 @@ def _array(layout: Layout) -> Iterable[DimensionLimits]:
     steps = [c for c in fixture.characteristics if c.name.startswith(FLOOR)]
     low, high = (limit - steps[0].nominal for limit in (steps[0].lower, steps[0].upper))
     yield variable(STEPS, low, high, 2, tuple((fixture.part_no, c.name) for c in steps), "pads")
+    yield _zone(STEPS_LEAN, "steps", 2, "pads", fixture)
+    yield _below(FLOOR_FLAT, "floor", len(places), "pads", fixture)
     plate = stop_plate(layout)
     flat = next(g for g in plate.geometric if g.name == "flatness")
     of = ((plate.part_no, flat.name),)
@@ -122,6 +139,12 @@ def _zone(name: str, limit: str, pieces: int, matters: Matters, *parts: Part) ->
     """Deviations within a zone that every one of these parts states."""
     half = next(g.zone for g in parts[0].geometric if g.name == limit) / 2
     return variable(name, -half, half, pieces, tuple((p.part_no, limit) for p in parts), matters)
+
+
+def _below(name: str, limit: str, pieces: int, matters: Matters, part: Part) -> DimensionLimits:
+    """A flat datum face's own depths: its plane lies on the highest points (ISO 5459)."""
+    zone = next(g.zone for g in part.geometric if g.name == limit)
+    return variable(name, -zone, 0.0, pieces, ((part.part_no, limit),), matters)
 
 
 def _characteristic(variable_name: str, part: Part, name: str, pieces: int = 1) -> DimensionLimits:
@@ -136,6 +159,9 @@ SIGMAS = 2.0
 # Share of a dimension's variance that one machine's offset gives all pieces of a batch alike; chosen: as much
 # as each piece has of its own.
 OFFSET_SHARE = 0.5
+# Share of the variance of a wire-cut piece's tightest size that the wire's offset gives it; the others move
+# with it as far as it takes them. Chosen: the rest is the machine's way and what the skimming cuts leave.
+WIRE_SHARE = 0.5
 
 
 def made(
@@ -162,26 +188,48 @@ def made(
     only
         Names of variables that differ at all; the others are at the middle of their limits.
     alike
-        Whether pieces of one array share their machine's offset.
+        Whether pieces of one array share their machine's offset, and sizes of a piece their wire's.
 
     Returns
     -------
     dict of str to Array
         By variable, of shape (count, pieces). Pieces of one array share an offset: a Gaussian copula with a
-        correlation of OFFSET_SHARE, so that each piece's own distribution is just the one asked for.
+        correlation of OFFSET_SHARE, so that each piece's own distribution is just the one asked for. Sizes of
+        a wire-cut piece share the wire's offset likewise, as many mm as each grows with it.
     """
     out = {}
-    own_chance = rng.spawn(1)[0]  # which draws nothing from rng itself
+    own_chance, wire_chance = rng.spawn(2)  # which draw nothing from rng itself
+    by_wire = _by_wire(variables.values()) if alike else {}
+    wire = _alike(wire_chance, count, max((v.pieces for v in variables.values() if v.wire), default=0))
     for name, v in variables.items():
         chance = own_chance if v.apart else rng
         middle, half = (v.upper + v.lower) / 2, (v.upper - v.lower) / 2
         if only is not None and name not in only:
             out[name] = np.broadcast_to(middle, (count, v.pieces))
             continue
-        shared, own = chance.standard_normal((count, 1)), chance.standard_normal((count, v.pieces))
-        z = np.sqrt(OFFSET_SHARE) * shared + np.sqrt(1.0 - OFFSET_SHARE) * own if alike else own
+        z = _alike(chance, count, v.pieces, OFFSET_SHARE if alike else 0.0)
+        if name in by_wire:
+            z = by_wire[name] * wire + np.sqrt(1.0 - by_wire[name] ** 2) * z
         out[name] = middle + half * within_limits(z, distribution)
     return out
+
+
+def _alike(chance: np.random.Generator, count: int, pieces: int, share: float = OFFSET_SHARE) -> Array:
+    """Standard normal numbers of which the pieces of an array share so much of the variance."""
+    shared, own = chance.standard_normal((count, 1)), chance.standard_normal((count, pieces))
+    return np.sqrt(share) * shared + np.sqrt(1.0 - share) * own
+
+
+def _by_wire(variables: Collection[DimensionLimits]) -> dict[str, Array]:
+    """Correlation of each size of a wire-cut piece with the wire's offset, by variable and piece."""
+    reach = {v.name: (v.upper - v.lower) / 2 / abs(v.wire) for v in variables if v.wire}
+    least = min((float(r[r > 0.0].min(initial=np.inf)) for r in reach.values()), default=np.inf)
+    ways = {v.name: np.sign(v.wire) for v in variables}
+    share = np.sqrt(WIRE_SHARE)
+    return {
+        name: ways[name] * share * np.divide(least, r, out=np.zeros(len(r)), where=r > 0.0)
+        for name, r in reach.items()
+    }
 
 
 def within_limits(z: Array, distribution: Distribution) -> Array:

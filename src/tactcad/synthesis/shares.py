@@ -8,7 +8,7 @@ all numbers of one cause drawn anew together; their standard errors are the boot
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -63,7 +63,8 @@ def variance_shares(sensor: MadeSensor, count: int = COUNT, seed: int = SEED) ->
     """Every cause that matters, largest first, at the middle of the object's range."""
     rng = np.random.default_rng(seed)
     others = sensor.parts.variables
-    variables = {k: v for k, v in others.items() if v.element or k in (IN_PLAY, SHEET, MODULUS)}
+    some = {k: v for k, v in others.items() if v.element or k in (IN_PLAY, SHEET, MODULUS)}
+    variables = {k: replace(v, wire=0) for k, v in some.items()}  # shares are of causes that are independent
     n = len(sensor.drawn.stiffness)
 
     def draw() -> dict[str, Array]:

@@ -172,7 +172,7 @@ def _with_envelopes(scene: Scene, job: Job) -> list[Finding]:
         if part.part_no not in job.envelopes:
             outside = replace(envelope(part), part_no=f"{part.part_no}, envelope")
             own = outside.body == part.body and not part.features
-            job.envelopes[part.part_no] = job.shapes[part.part_no] if own else build(outside).wrapped
+            job.envelopes[part.part_no] = job.shapes[part.part_no] if own else build(outside)
     return check_motions(scene, job.shapes, job.envelopes)
 
 

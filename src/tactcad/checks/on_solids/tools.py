@@ -86,7 +86,7 @@ def _screwed(nut: Placement, other: Placement) -> bool:
 
 @cache
 def _cylinder(part: Part) -> tuple[Faces, list[list[float]]]:
-    shape = build(part).wrapped
+    shape = build(part)
     return Faces(shape), bounding_box(shape)
 
 

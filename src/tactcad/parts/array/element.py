@@ -70,10 +70,7 @@ def element(layout: Layout, place: ElementPlace, gap: float | None = None) -> Pa
             *unrated,
         ),
         characteristics=_limits(layout, place, gap, edges),
-        geometric=(
-            screw_places("B", "A"),
-            Geometric("pad's and ledge's lean", "parallelism", LEAN, (pad, ledge), ("A",)),
-        ),
+        geometric=(screw_places("B", "A"), Geometric(SEAT_LEAN, "parallelism", LEAN, (pad, ledge), ("A",))),
         datums=(DatumFeature("A", "flat_face"), DatumFeature("B", "dowel_hole")),
         spares=spare_elements(sum(element_number(design, p) == number for p in layout.elements)),
         kind="element",
@@ -90,9 +87,24 @@ LEAN = 0.005  # mm, of pad and ledge against the flat face; chosen: one contour,
 ARM_SHARE, PAD_SHARE = 0.8, 0.4
 PAD_HEIGHT = "pad height over the dowel hole's centre"
 LEDGE = "ledge over the pad face"
-DOWEL_HOLE = "dowel hole diameter"
+DOWEL_HOLE, SEAT_LEAN = "dowel hole diameter", "pad's and ledge's lean"
 STOP_GAP, SLOT, ARM_LENGTH, PAD_LENGTH = "stop gap", "slot length", "arm length", "pad length"
-TIP_PLACE = "tip from dowel hole"
+TIP_PLACE, HINGE_THICKNESS = "tip from dowel hole", "hinge thickness"
+ARM_HEIGHT, FILLET = "arm height", "fillet radius"
+# How each size grows where the wire leaves every face so much further out, mm a mm: one offset of the wire
+# moves all faces of a piece. Between faces that look the same way nothing changes.
+WIRE: dict[str, int] = {
+    HINGE_THICKNESS: 2,
+    PAD_HEIGHT: 1,
+    LEDGE: 2,
+    SLOT: -2,
+    ARM_LENGTH: 1,
+    PAD_LENGTH: 2,
+    ARM_HEIGHT: 2,
+    FILLET: -1,
+    TIP_PLACE: 1,
+    DOWEL_HOLE: -2,
+}
 
 
 def _limits(
@@ -106,15 +118,15 @@ def _limits(
     fillets = ("slot_arm_fillet", "slot_body_fillet")
     # mm, to the dowel hole next to the clamp edge.
     stated: tuple[Characteristic, ...] = (
-        within("hinge thickness", e.t, t.hinge_thickness, True, floor),
+        within(HINGE_THICKNESS, e.t, t.hinge_thickness, True, floor),
         within(PAD_HEIGHT, d.holes.height + over, t.pad_height, True, ("pad_face", "dowel_hole")),
         within(STOP_GAP, gap, d.stop.tolerance, True, ("stop_land", "ledge")),
         within(LEDGE, round(layout.ledge + over, 9), t.ledge, True, ("pad_face", "ledge")),
         within(SLOT, e.l, t.hinge_length, between=walls),
         within(ARM_LENGTH, place.arm, round(ARM_SHARE * t.load_arm, 9), between=("tip", *walls)),
         within(PAD_LENGTH, cut.pad_length, round(PAD_SHARE * t.load_arm, 9), between=("tip", "pad_side")),
-        within("arm height", e.h, t.arm_height, between=("flat_face", "arm_back")),
-        within("fillet radius", e.r, t.fillet_radius, between=fillets),
+        within(ARM_HEIGHT, e.h, t.arm_height, between=("flat_face", "arm_back")),
+        within(FILLET, e.r, t.fillet_radius, between=fillets),
         within(
             TIP_PLACE, round(min(layout.dowel_x) - layout.pad_inner, 9), t.tip, between=("tip", "dowel_hole")
         ),
@@ -122,7 +134,7 @@ def _limits(
         dowel_hole_limits(d),
     )
     if "slot_floor" not in edges:  # a full round's width defines it
-        stated = tuple(c for c in stated if c.name != "fillet radius")
+        stated = tuple(c for c in stated if c.name != FILLET)
     return tuple(replace(c, between=tuple(_standing(f, edges) for f in c.between)) for c in stated)
 
 
