@@ -129,20 +129,19 @@ def _named(action: argparse.Action) -> str:
 
 
 def add_allowance(parser: argparse.ArgumentParser, of: str, chosen: str) -> None:
-    """The two options; `of` says whose error P is, `chosen` what is chosen by it."""
+    """The two budgets; `of` says whose error P is, `chosen` what --within chooses."""
     of = of.replace("%", "%%")  # argparse formats help
     parser.add_argument(
         "--within",
         metavar="P",
-        help=f"largest {of} that may be left, as 1%% or 0.01; takes the {chosen} of least work that keeps "
-        "it, or refuses; says what a step more or less would cost (docs/accuracy.md)",
+        help=f"largest {of} that you accept, as 1%% or 0.01; picks the quickest {chosen} that keeps it, or "
+        "refuses, and prints what a step more or less would cost (docs/accuracy.md)",
     )
     parser.add_argument(
         "--in",
         dest="seconds",
         metavar="SECONDS",
-        help=f"time it may take: the {chosen} of least error in it; with --within both must hold; a time too "
-        "short is refused before anything is begun, with the time needed: no check is left out for it",
+        help="time budget in seconds: picks the most accurate setting that fits; no check is left out for it",
     )
 
 
