@@ -21,7 +21,7 @@ EXAMPLES = """\
 
 FILE is CSV with the columns load, element, signal (N and V, or load_mN, signal_mV), and where there are
 several, run and sample: every element at every load. With a column time_s a load may be read any number of
-times, and where it returns later drift is told from it. The calibration is what `tactcad calibrate` wrote
+times, and where it returns later the drift is estimated. The calibration is the file of `tactcad calibrate`
 (--out, or --json)."""
 
 

@@ -68,19 +68,22 @@ def arrangement(
         "plan": Viewpoint("plan", (0.0, 0.0, 1.0), (0.0, 1.0, 0.0)),
         "left": Viewpoint("left", (-1.0, 0.0, 0.0), (0.0, 0.0, 1.0)),
     }
-    face = array_of(scene) is scene
+    array = array_of(scene) is scene
+    face = array and bool(in_stack(scene))  # two rows that it numbers
     if face:
         views["below"] = Viewpoint("below", FACE_EYE, FACE_UP)
     boxes = {name: projected_box(scene.placements, v.right, v.eye) for name, v in views.items()}
     extents = {name: (b[2] - b[0], b[3] - b[1]) for name, b in boxes.items()}
     wide = extents["front"][0] + extents["left"][0]
     high = sum(extents[name][1] for name in views if name != "left")
-    spare = APART + AROUND, 2 * APART + OVER_FACE + UNDER_PLAN if face else APART + AROUND
+    family = family_of(design)
+    own_plan = family.plans.get(ARRAY) if array else None
+    under = UNDER_PLAN if own_plan else 0.0
+    spare = APART + AROUND, under + (2 * APART + OVER_FACE if face else APART + AROUND)
     scale, paper, items, (x0, y0, x1, y1) = _largest(wide, high, spare, notes_of(design, scene), block)
     f = factor(scale)
     west, south = (x0 + x1 - f * wide - spare[0]) / 2 + AROUND, (y0 + y1 - f * high - spare[1]) / 2
-    if face:
-        south += UNDER_PLAN
+    south += under
     north = south + f * extents["plan"][1] + APART
     places = {
         "plan": (west, south),
@@ -101,8 +104,6 @@ def arrangement(
         if face
         else {"front": ("top", "left"), "plan": ("right",)}
     )
-    family = family_of(design)
-    own_plan = family.plans.get(ARRAY) if face else None
     inner = {"plan": own_plan(family.layout(design), boxes["plan"])} if own_plan else {}
     for name, sides in dimensioned.items():
         w, h = extents[name]

@@ -14,7 +14,7 @@ from itertools import pairwise
 from tactcad.contour import Line
 from tactcad.parts.language.description import Part, drill_point_height
 
-from ..engine.boxes import Box, Chord, Point, clipped
+from ..engine.boxes import Box, Chord, Point, bounds, clipped
 from ..engine.ink import THIN, Curve, DrawnArc, Hatch, Stroke
 from .measures import Owner, Round, contours, widest
 from .sheet_plan import Breaks, SheetPlan, View
@@ -216,6 +216,9 @@ def windowed(curves: Sequence[Stroke | DrawnArc], window: Box) -> list[Curve]:
     ends: list[Point] = []  # of cut edges
     for curve in curves:
         points = [p for chord in curve.chords() for p in chord]
+        u0, v0, u1, v1 = bounds(points)
+        if u1 < x0 or u0 > x1 or v1 < y0 or v0 > y1:  # of 40 cells a detail shows one
+            continue
         if isinstance(curve, DrawnArc) and all(x0 <= x <= x1 and y0 <= y <= y1 for x, y in points):
             shown.append(curve)
             continue

@@ -21,7 +21,7 @@ import numpy as np
 
 from tactcad.contour import Arc, Contour, Line
 from tactcad.contour.necks import direction
-from tactcad.parts.language.description import Hole, Part, Pocket, Vector
+from tactcad.parts.language.description import Extrusion, Hole, Part, Pocket, Revolution, Vector
 
 
 class Quantity(StrEnum):
@@ -92,13 +92,15 @@ class Variable:
         return self.of.contour if isinstance(self.of, Spot) else self.of
 
 
-OUTER = Owner("outer")
+OUTER, PROFILE = Owner("outer"), Owner("profile")
 THICKNESS = Owner("").size(Quantity.THICKNESS)
 Values = Mapping[Variable, float]
 
 
 def contours(part: Part) -> list[tuple[Owner, Contour]]:
-    """Every contour of the part by what its variables belong to."""
+    """Every contour of the part by what its variables belong to; of a turned part its profile (radius, z)."""
+    if isinstance(part.body, Revolution):
+        return [(PROFILE, part.body.profile)]
     body = part.extrusion
     named = [(OUTER, body.outer), *((Owner("opening", i), c) for i, c in enumerate(body.openings))]
     for k, f in enumerate(part.features):
@@ -144,8 +146,8 @@ def xy(point: Spot) -> tuple[Variable, Variable]:
 
 
 def variables(part: Part) -> dict[Variable, float]:
-    """Every variable of an extruded part with its value (mm)."""
-    values = {THICKNESS: part.extrusion.thickness}
+    """Every variable of an extruded or turned part with its value (mm)."""
+    values = {THICKNESS: part.body.thickness} if isinstance(part.body, Extrusion) else {}
     for owner, contour in contours(part):
         if circle := contour.as_circle():
             (x, y), r = circle
@@ -184,6 +186,8 @@ class Round:
 
 def rounds(part: Part) -> list[Round]:
     """Round openings and holes of an extruded part."""
+    if isinstance(part.body, Revolution):
+        return []
     body = part.extrusion
     holes = []
     for i, opening in enumerate(body.openings):

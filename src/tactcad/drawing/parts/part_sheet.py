@@ -14,7 +14,7 @@ from tactcad.design.family import family_of
 from tactcad.design.materials import ELECTROLYSIS, family
 from tactcad.design.messages import CheckFailure
 from tactcad.design.tree import CommonTables
-from tactcad.parts.language.description import Characteristic, Extrusion, Part, Vector
+from tactcad.parts.language.description import Characteristic, ModelFile, Part, Revolution, Vector
 from tactcad.parts.language.stock import stock_of
 
 from ..engine.ink import Curve, DrawnSheet, preliminary
@@ -26,6 +26,7 @@ from .compose import NoPlace, compose
 from .prism import prism_plan
 from .sheet_plan import SectionPlane, SheetPlan, View
 from .tolerances import frame_of, times
+from .turned import turned_plan
 
 LEAST_WHOLE = 1 / 2  # scale: below it a long part is drawn broken rather than smaller
 SAME = 1e-9  # mm
@@ -68,11 +69,13 @@ def part_plan(
     for broken views; None where these would leave out too little. Raises CheckFailure where the part cannot
     be drawn, or not fully dimensioned.
     """
-    if not isinstance(part.body, Extrusion):
-        raise CheckFailure(f"drawings: {part.part_no} is no extrusion; no drawing was written")
+    if isinstance(part.body, ModelFile):
+        raise CheckFailure(f"drawings: {part.part_no} is a model file; no drawing was written")
     notes = notes_of(part, files)
     if plan := plans.get(part.kind):
         return None if shortened else plan(part, notes, spare)
+    if isinstance(part.body, Revolution):
+        return None if shortened else turned_plan(part, notes)
     return prism_plan(part, notes, not spare, shortened)
 
 
@@ -85,16 +88,16 @@ def part_sheet(order: Order) -> DrawnSheet:
     shape = from_bytes(order.shape)
 
     @cache
-    def curves(eye: Vector, up: Vector, section: SectionPlane | None) -> list[Curve]:
+    def curves(eye: Vector, up: Vector, section: SectionPlane | None, hidden: bool) -> list[Curve]:
         view = View("", eye, up, (0.0, 0.0, 0.0, 0.0), section=section)
         if section is None:
-            return [*projected(shape, eye, view.right)]
+            return [*projected(shape, eye, view.right, hidden)]
         half, face = cut(shape, view, section)
         return [face, *projected(half, eye, view.right)]
 
     title = title_of(order.design, order.part, order.draft, order.sample)
     for plan, papers, scales in _attempts(order):
-        drawn = {v.name: curves(v.eye, v.up, v.section) for v in plan.views}
+        drawn = {v.name: curves(v.eye, v.up, v.section, v.hidden) for v in plan.views}
         try:
             sheet = compose(*broken(plan, drawn), title, papers, scales)
         except NoPlace as error:

@@ -8,11 +8,11 @@ from dataclasses import dataclass, replace
 from itertools import count, product
 
 from tactcad.design.messages import CheckFailure
-from tactcad.parts.language.description import Part, Vector
+from tactcad.parts.language.description import Part, Revolution, Vector
 from tactcad.parts.language.limits import FACES
 
 from ..engine.boxes import bounds
-from .measures import Determined, Level, Measure, Owner, Quantity, Spot, Variable, level, variables
+from .measures import THICKNESS, Determined, Level, Measure, Owner, Quantity, Spot, Variable, level, variables
 from .sheet_plan import Dimension, View, seen
 from .tolerances import places, times
 
@@ -62,7 +62,7 @@ class Sketch:
         self.known: dict[int, list[Coordinate]] = {0: [], 1: [], 2: []}
         self.unstated = {c.name: c for c in part.characteristics}
         # (axis, coordinate) of datums, of what has a position tolerance, and what of it is not located
-        faces = {FACES[0]: 0.0, FACES[1]: part.extrusion.thickness}
+        faces = dict(zip(FACES, (0.0, self.values.get(THICKNESS, 0.0))))
         self.bases = {(2, faces[d.feature]) for d in part.datums if d.feature in faces}
         self.bases |= self._spots(d.feature for d in part.datums)
         self.exact = self._spots(f for g in part.geometric if g.symbol == "position" for f in g.features)
@@ -124,7 +124,8 @@ def closed(sketch: Sketch, views: Sequence[View]) -> None:
     number = sketch.part.part_no
     if sketch.unstated:
         raise CheckFailure(f"drawings: {number}: no dimension states {', '.join(sketch.unstated)}")
-    missing = len(sketch.values) - 2 - sketch.determined.rank
+    free = 1 if isinstance(sketch.part.body, Revolution) else 2  # a turned part moves along its axis alone
+    missing = len(sketch.values) - free - sketch.determined.rank
     if missing:
         raise CheckFailure(f"drawings: {number}: {missing} dimensions are missing")
     if sketch.unlocated:

@@ -32,14 +32,18 @@ BEYOND = 1.0  # mm: the box that is kept stands out of the part
 KERNEL_TOLERANCE = 1e-7  # mm: the kernel's own tolerance
 
 
-def projected(shape: TopoDS_Shape, eye: Vector, right: Vector) -> list[Stroke | DrawnArc]:
-    """Edges in the view's plane (mm of the part), sorted: visible ones, then hidden ones that no visible one
-    covers.
+def projected(
+    shape: TopoDS_Shape, eye: Vector, right: Vector, hidden: bool = True
+) -> list[Stroke | DrawnArc]:
+    """Edges in the view's plane (mm of the part), sorted: visible ones, then, where asked for, hidden ones
+    that no visible one covers.
 
     Edges between tangent faces are left out, as ISO 128-3 allows.
     """
     result = exact([compound([shape])], projector(eye, right))
     seen = _curves((result.VCompound(), result.OutLineVCompound()), VISIBLE, "outline")
+    if not hidden:
+        return seen
     behind = _curves((result.HCompound(), result.OutLineHCompound()), HIDDEN, "hidden")
     return seen + [piece for curve in behind for piece in _uncovered(curve, seen)]
 

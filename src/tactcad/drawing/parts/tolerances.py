@@ -104,7 +104,7 @@ def places(part: Part, features: Sequence[str]) -> Iterator[tuple[int, Variable]
     for r in rounds(part):
         if r.hole.name in features:
             yield from ((k, r.owner.place(k)) for k in range(3) if not r.axis[k])
-    for i, s in enumerate(part.extrusion.outer):
+    for i, s in enumerate(part.extrusion.outer if features else ()):
         if s.name in features and isinstance(s, Line):
             yield from ((k, Spot(OUTER, i).place(k)) for k in (0, 1) if abs(s.start[k] - s.end[k]) < 1e-9)
 

@@ -23,7 +23,11 @@ FAMILY = Family(
         strength=Late(f"{HERE}.sensor:strength"),
         strain=None,
     ),
-    plans={},
+    plans={
+        "element": Late(f"{HERE}.cell_plan:cell_plan"),
+        "cells": Late(f"{HERE}.cell_plan:cell_plan"),
+        "array": Late(f"{HERE}.cell_plan:pad_places"),
+    },
     stack=FamilyStack(
         limits=Late(f"{HERE}.cell_array:limits"),
         built=Late(f"{HERE}.cell_array:Stacked"),

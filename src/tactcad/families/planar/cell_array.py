@@ -9,10 +9,11 @@ from math import inf
 import numpy as np
 
 from tactcad.parts.array.stiffness_table import Deflection
-from tactcad.parts.bought.standard_parts import dowel
+from tactcad.parts.bought.standard_parts import dowel, dowel_diameter, dowel_limits
 from tactcad.parts.bought.supply import MECHANICAL, Supply
+from tactcad.parts.language.description import Part
 from tactcad.scenes.builder import Builder
-from tactcad.scenes.requirement import Deviations, DimensionLimits, Requirement, summed, variable
+from tactcad.scenes.requirement import LEAST_PRESS, Deviations, DimensionLimits, Requirement, summed, variable
 from tactcad.scenes.rig import ARRAY, Rig, none
 from tactcad.scenes.scene import Scene
 
@@ -109,6 +110,10 @@ def scene(design: PlanarDesign, _pose: object = None) -> Scene:
     return b.scene(ARRAY, cover=(cover,))
 
 
+SPIGOT, PLACES = "spigot diameter", "places of dowel holes"
+POST_LENGTH = f"post: {parts.POST_LENGTH}"
+
+
 @dataclass(frozen=True)
 class Stacked:
     """Arrays as made."""
@@ -128,7 +133,7 @@ def figures(arrays: Stacked) -> dict[str, np.ndarray]:
 
     at = np.array([row.stiffness for row in rows(arrays.layout, "", None)])
     t = arrays.layout.design.planar.thickness
-    post = arrays.made["post: length over the shoulder"]
+    post = arrays.made[POST_LENGTH]
     return {
         "stiffness": at * (1.0 + arrays.made["foil: thickness"] / t) ** 3,
         "pad_height_um": 1e3 * (post.max(axis=1, keepdims=True) - post),
@@ -145,6 +150,7 @@ def limits(
     known = {
         v.name: v
         for v in (
+            *_fits(layout),
             variable("foil: thickness", -foil, foil, stated=((f"{name}-foil", "thickness"),)),
             variable(
                 "lower spacer: thickness",
@@ -155,14 +161,20 @@ def limits(
             variable("upper spacer: thickness", -0.03, 0.03, stated=((f"{name}-upper-spacer", "thickness"),)),
             variable("cover: thickness", -0.02, 0.02, stated=((f"{name}-cover", "thickness"),)),
             variable("base: thickness", -0.02, 0.02, stated=((f"{name}-base", "thickness"),)),
-            variable("post: length over the shoulder", -0.01, 0.01, n),
+            variable(
+                POST_LENGTH,
+                -parts.POST_TOLERANCE,
+                parts.POST_TOLERANCE,
+                n,
+                stated=((f"{name}-post", parts.POST_LENGTH),),
+            ),
             variable("magnet: along x", -tol.magnet_place, tol.magnet_place, n),
             variable("magnet: along y", -tol.magnet_place, tol.magnet_place, n),
         )
     }
 
     def pads(a: Stacked) -> np.ndarray:
-        return np.ptp(a.made["post: length over the shoulder"], axis=1, keepdims=True)
+        return np.ptp(a.made[POST_LENGTH], axis=1, keepdims=True)
 
     def stiffness(a: Stacked) -> np.ndarray:
         return (1.0 + a.made["foil: thickness"] / t) ** 3 - 1.0
@@ -176,6 +188,7 @@ def limits(
 
     lift = d.housing.lift
     return known, [
+        *_slips(layout),
         Requirement("pads in one plane", "mm", -inf, 0.04, pads, fields=("post.stand_out",)),
         Requirement("K as drawn", "", -0.2, 0.2, stiffness, fields=("tolerance.thickness",)),
         Requirement("magnets clear of their wells", "mm", 0.02, inf, well, fields=("housing.well",)),
@@ -195,6 +208,72 @@ def limits(
             (("base: thickness", 1.0), ("lower spacer: thickness", 1.0)),
         ),
     ]
+
+
+def _deviations(part: Part, limit: str, who: str, pieces: int = 1) -> DimensionLimits:
+    """The variable of a part's limit."""
+    c = next(c for c in part.characteristics if c.name == limit)
+    lower, upper = c.lower - c.nominal, c.upper - c.nominal
+    return variable(f"{who}: {limit}", lower, upper, pieces, ((part.part_no, limit),))
+
+
+def _layers(layout: PlanarLayout) -> dict[str, Part]:
+    """Layers that slip over the dowels, by the names of their variables; none of bonded ones."""
+    if not layout.screwed:
+        return {}
+    return {
+        "foil": parts.foil(layout),
+        "lower spacer": parts.lower_spacer(layout),
+        "upper spacer": parts.upper_spacer(layout),
+        "cover": parts.cover(layout),
+    }
+
+
+def _fits(layout: PlanarLayout) -> Iterator[DimensionLimits]:
+    """Holes and spigots, holes and dowels; how far the two dowel holes of a layer stand off their places,
+    along the line between them."""
+    n = len(layout.elements)
+    yield _deviations(parts.foil(layout), SPIGOT, "foil", n)
+    yield _deviations(parts.post(layout), SPIGOT, "post", n)
+    for kind in layout.used:
+        yield _deviations(parts.foot(layout, kind), SPIGOT, f"foot, {kind.name}", n)
+    layers = _layers(layout)
+    if layers:
+        low, high = (limit - dowel_diameter(parts.DOWEL) for limit in dowel_limits(parts.DOWEL))
+        yield variable("dowel: diameter", low, high)
+        layers["base"] = parts.base(layout)
+    for who, part in layers.items():
+        yield _deviations(part, parts.DOWEL_HOLE, who)
+        place = next(g for g in part.geometric if g.features == ("dowel_hole",))
+        stated = ((part.part_no, place.name),)
+        yield variable(f"{who}: {PLACES}", -place.zone / 2.0, place.zone / 2.0, 2, stated)
+
+
+def _slips(layout: PlanarLayout) -> Iterator[Requirement]:
+    """Spigots enter foil and feet, layers slip over the dowels, the base holds them."""
+    spigot = layout.design.post.spigot
+    sheets = {"foil": parts.foil(layout)}
+    sheets |= {f"foot, {kind.name}": parts.foot(layout, kind) for kind in layout.used}
+    for who, part in sheets.items():
+        play = _nominal(part, SPIGOT) - spigot
+
+        def entered(a: Stacked, play: float = play, who: str = who) -> np.ndarray:
+            return play + a.made[f"{who}: {SPIGOT}"] - a.made[f"post: {SPIGOT}"]
+
+        yield Requirement(f"spigots enter the {who}", "mm", 0.0, inf, entered, fields=("post.spigot",))
+    for who, part in _layers(layout).items():
+        play = _nominal(part, parts.DOWEL_HOLE) - dowel_diameter(parts.DOWEL)
+        terms = ((f"{who}: {parts.DOWEL_HOLE}", 1.0), ("dowel: diameter", -1.0))
+        places = ((f"{who}: {PLACES}", 1.0), (f"base: {PLACES}", 1.0))
+        yield summed(f"{who} slips over the dowels", 0.0, inf, play, (*terms, *places))
+    if layout.screwed:
+        terms = (("dowel: diameter", 1.0), (f"base: {parts.DOWEL_HOLE}", -1.0))
+        pin = dowel_diameter(parts.DOWEL) - float(parts.DOWEL)
+        yield summed("base holds the dowels", LEAST_PRESS, inf, pin, terms)
+
+
+def _nominal(part: Part, limit: str) -> float:
+    return next(c.nominal for c in part.characteristics if c.name == limit)
 
 
 def nothing_bends(_layout: PlanarLayout) -> Iterator[Deflection]:

@@ -93,7 +93,8 @@ def _neighbours(numbers: dict[tuple[int, int], int], e: CellPlace) -> tuple[int,
 def _parted(layout: PlanarLayout, foil: Placement) -> tuple[dict[str, Part], Placement]:
     """By kind what of the foil moves, about its island's middle, and the foil without: parted where the
     beams' middles are."""
-    part, t = foil.part, layout.design.planar.thickness
+    t = layout.design.planar.thickness
+    part = replace(foil.part, characteristics=(), geometric=(), datums=())  # its pieces are not made
     spigots = [f for f in part.features if f.name == "spigot"]
     standing = tuple(f for f in part.features if f.name != "spigot")
     frame = tuple(e.kind.parted(layout.corner, (e.x, e.y))[1] for e in layout.elements)

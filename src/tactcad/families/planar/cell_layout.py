@@ -6,7 +6,7 @@ face, + towards the object. Lengths in mm.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from math import ceil
@@ -19,6 +19,10 @@ from .cell_tables import CHIPS, PROCESSES, CellKind, Chip, FoilProcess, PlanarDe
 from .field import Magnet
 
 Point = tuple[tuple[float, float], float]  # of a polygon, with the radius that rounds it
+# Edges of a slot from its first corner on: the frame; beside the beam that it comes from ("b") and that it
+# goes to ("a"); island or ear across a beam's root; the rest of a pinwheel's island and ear.
+STRAIGHT_EDGES = ("frame", "frame", "beam b", "root", "root", "beam a")
+PINWHEEL_EDGES = ("frame", "frame", "beam b", "root", "island", "ear", "root", "beam a")
 
 
 @dataclass(frozen=True)
@@ -94,9 +98,18 @@ class Kind:
             ]
         return [((o, w), r), ((o, o), corner), ((w, o), r), ((w, a), r), ((a, a), corner), ((a, w), r)]
 
+    @property
+    def edges(self) -> tuple[str, ...]:
+        """Names of a slot's edges, in the order of its corners."""
+        return self.named(*(PINWHEEL_EDGES if self.pinwheel else STRAIGHT_EDGES))
+
+    def named(self, *edges: str) -> tuple[str, ...]:
+        """Edges of this kind of cell by their names in the foil's outline."""
+        return tuple(f"{self.name} {edge}" for edge in edges)
+
     def slots(self, corner: float, at: tuple[float, float]) -> tuple[Contour, ...]:
         """The four openings of the cell at `at`, with fillets at the roots and radius `corner` elsewhere."""
-        return tuple(_turned(self._slot(corner), (quarter,), at) for quarter in range(4))
+        return tuple(_turned(self._slot(corner), (quarter,), at, self.edges) for quarter in range(4))
 
     def parted(self, corner: float, at: tuple[float, float]) -> tuple[Contour, Contour]:
         """The island with its half of every beam, at the origin, and the frame's edge around it, at `at`."""
@@ -108,17 +121,16 @@ class Kind:
         return _turned(island, every, (0.0, 0.0)), _turned([first, *points[:3], second], every, at)
 
     def island_outline(self, corner: float, inset: float = 0.0) -> Contour:
-        """The island with its ears, `inset` inside its edge: the foot plate's outline."""
+        """The island with its ears, `inset` inside its edge: the foot plate's outline; `corner` rounds its
+        inside corners."""
         t, a = self.table, self.table.island / 2.0
         if not self.pinwheel:
             return rectangle(-a + inset, -a + inset, a - inset, a - inset)
         top = self.reach
-        ear = [(-a + t.ear, a), (-a + t.ear, top), (-a, top)]
-        points: list[tuple[float, float]] = []
-        for quarter in range(4):
-            points += [_turn(p, quarter) for p in ear]
-        inner = [_inset(points, i, inset) for i in range(len(points))]
-        return rounded_polygon([Corner(p, corner) for p in inner])
+        ear = [((-a + t.ear, a), corner), ((-a + t.ear, top), 0.0), ((-a, top), 0.0)]
+        points = [(_turn(p, quarter), radius) for quarter in range(4) for p, radius in ear]
+        places = [p for p, _ in points]
+        return rounded_polygon([Corner(_inset(places, i, inset), r) for i, (_, r) in enumerate(points)])
 
 
 def _turn(p: tuple[float, float], quarter: int) -> tuple[float, float]:
@@ -128,13 +140,17 @@ def _turn(p: tuple[float, float], quarter: int) -> tuple[float, float]:
     return x, y
 
 
-def _turned(points: list[Point], quarters: Iterable[int], at: tuple[float, float]) -> Contour:
-    """The polygon of these points, turned by each of these quarters one after another."""
+def _turned(
+    points: list[Point], quarters: Iterable[int], at: tuple[float, float], edges: Sequence[str] = ()
+) -> Contour:
+    """The polygon of these points, turned by each of these quarters one after another; its edges' names."""
     corners = []
     for quarter in quarters:
-        for point, radius in points:
+        for n, (point, radius) in enumerate(points):
             x, y = _turn(point, quarter)
-            corners.append(Corner((round(x + at[0], 9), round(y + at[1], 9)), radius))
+            corners.append(
+                Corner((round(x + at[0], 9), round(y + at[1], 9)), radius, edges[n] if edges else "")
+            )
     return rounded_polygon(corners)
 
 
@@ -212,10 +228,18 @@ class PlanarLayout:
     def process(self) -> FoilProcess:
         return PROCESSES[self.design.planar.process]
 
+    def sheet_process(self, thickness: float) -> FoilProcess:
+        """How a steel sheet of that thickness is cut: as the foil, or by wire where too thick for that."""
+        return self.process if thickness <= self.process.thickest else PROCESSES["wire-cut"]
+
     @property
     def corner(self) -> float:
-        """Radius of the foil's other inside corners, mm: the least that the process leaves, to 0.01."""
-        return ceil(100.0 * self.process.inside_radius(self.design.planar.thickness) - 1e-6) / 100.0
+        """Radius of the foil's other inside corners, mm."""
+        return self.sheet_corner(self.design.planar.thickness)
+
+    def sheet_corner(self, thickness: float) -> float:
+        """Of a steel sheet's inside corners, mm: the least that its process leaves, to 0.01."""
+        return ceil(100.0 * self.sheet_process(thickness).inside_radius(thickness) - 1e-6) / 100.0
 
     @property
     def half(self) -> tuple[float, float]:

@@ -30,6 +30,9 @@ class Chip:
     source: str
 
 
+PLACE_LENGTH = 25.0  # mm up to which an etched place is held: as the row "etched" of the processes names it
+
+
 @dataclass(frozen=True)
 class FoilProcess:
     """How thin a foil may be cut, mm and shares of its thickness: data/processes.csv."""
@@ -59,6 +62,11 @@ class FoilProcess:
     def tolerance(self, thickness: float) -> float:
         """Plus and minus on a width."""
         return max(self.tolerance_share * thickness, self.tolerance_least)
+
+    def place(self, length: float) -> float:
+        """Diameter of the zone in which a hole stands, mm, on a sheet of that length: its least tolerance
+        holds up to PLACE_LENGTH, beyond in proportion (chosen)."""
+        return round(self.tolerance_least * max(1.0, length / PLACE_LENGTH), 3)
 
 
 def _table(kind: type, name: str) -> dict[str, Any]:

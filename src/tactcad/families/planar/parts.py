@@ -12,15 +12,16 @@ chips.
 
 from __future__ import annotations
 
-from dataclasses import replace
+from collections.abc import Mapping, Sequence
 from math import ceil
-from typing import cast
+from typing import Any, cast
 
 from tactcad.contour import Contour, Corner, circle, rectangle, rounded_polygon
 from tactcad.design.materials import ALLOYS
+from tactcad.parts.array.clamp import PRESS_FIT, pressed
 from tactcad.parts.array.element import sheet_material
 from tactcad.parts.bought.screws import CAP_SCREW_LENGTHS
-from tactcad.parts.bought.standard_parts import dowel_diameter, dowel_lengths
+from tactcad.parts.bought.standard_parts import LEAST_PLAY, dowel_diameter, dowel_lengths, dowel_limits
 from tactcad.parts.language.description import (
     Extrusion,
     Feature,
@@ -31,15 +32,23 @@ from tactcad.parts.language.description import (
     Purchase,
     Revolution,
 )
-from tactcad.parts.language.limits import FACES, within
+from tactcad.parts.language.limits import FACES, Characteristic, Geometric, within
 from tactcad.parts.language.metric import METRIC, tapped_through
-from tactcad.parts.language.plate import BREAK_EDGES
+from tactcad.parts.language.plate import BREAK_EDGES, FRAME, FRAME_DATUMS, PLACE
 
 from .cell_layout import Kind, PlanarLayout
+from .cell_tables import FoilProcess
 
 SCREW, DOWEL = "M2", "2"
 LARGEST_STEP = 20.0  # mm between screws along an edge; chosen: what keeps 1 mm of base flat under them
-SLIDING = 0.02  # mm of play of dowels in foil, spacers and cover, and of posts in their plates; chosen
+POST_LENGTH, POST_TOLERANCE = "length over the shoulder", 0.01  # mm, plus and minus; chosen: a small lathe's
+SPIGOT = 0.01  # mm by which a post's spigot may be thinner than drawn; chosen, likewise
+SPIGOT_SHORT = 0.02  # mm that a spigot ends inside the foil; chosen
+FOOT_THICKNESS = 0.02  # mm, plus and minus; chosen: precision strip
+DOWEL_HOLE = "dowel hole diameter"
+# Zone of dowel holes and flatness of the stop face, mm: chosen, what a jig borer and a fine mill hold in one
+# clamping; field of a reamed hole: ISO 286, H8 of 1 to 3 mm; depth of the sunk lands, plus and minus: chosen.
+PLATE_ZONE, STOP_FLAT, REAMED, LAND_DEPTH = 0.02, 0.01, 0.014, 0.01
 FOOT_INSET = (
     0.03  # mm that a foot plate stays inside the island's edge all round; chosen: the etching's tolerance
 )
@@ -60,7 +69,7 @@ def screw_places(layout: PlanarLayout) -> tuple[tuple[float, float], ...]:
     nx, ny = (max(1, ceil(2.0 * h / LARGEST_STEP)) for h in (x, y))
     along = [(-x + 2.0 * x * i / nx, s * y) for i in range(nx + 1) for s in (-1.0, 1.0)]
     up = [(s * x, -y + 2.0 * y * j / ny) for j in range(1, ny) for s in (-1.0, 1.0)]
-    return tuple((round(u, 9), round(v, 9)) for u, v in along + up)
+    return tuple((round(u, 2), round(v, 2)) for u, v in along + up)
 
 
 def dowel_places(layout: PlanarLayout) -> tuple[tuple[float, float], ...]:
@@ -70,7 +79,8 @@ def dowel_places(layout: PlanarLayout) -> tuple[tuple[float, float], ...]:
         return ()
     x, y = (h - border / 2.0 for h, border in zip(layout.half, layout.borders))
     beside = x / max(1, ceil(2.0 * x / LARGEST_STEP))
-    return ((round(-x + beside, 9), round(-y, 9)), (round(x - beside, 9), round(y, 9)))
+    u, v = round(x - beside, 2), round(y, 2)
+    return ((-u, -v), (u, v))
 
 
 def stack_height(layout: PlanarLayout) -> float:
@@ -101,10 +111,40 @@ def _outline(layout: PlanarLayout) -> Contour:
     return rectangle(-x, -y, x, y)
 
 
+def foil_zone(layout: PlanarLayout, process: FoilProcess) -> float:
+    """Zone of the holes of a steel sheet as large as the foil, mm."""
+    return process.place(2.0 * max(layout.half))
+
+
+def dowel_bore(layout: PlanarLayout, process: FoilProcess | None, thickness: float) -> Characteristic:
+    """Limits of the dowels' holes in a steel sheet of that process, None in a milled plate: the pair passes
+    over the pins with its own places and the base's at their worst."""
+    zone = PLATE_ZONE if process is None else foil_zone(layout, process)
+    least = dowel_limits(DOWEL)[1] + LEAST_PLAY + PLATE_ZONE + zone
+    if process is None:
+        low = _up(least)
+        return Characteristic(DOWEL_HOLE, low, round(low + REAMED, 6), low, between=("dowel_hole",))
+    cut = process.tolerance(thickness)
+    return within(DOWEL_HOLE, _up(least + cut), cut, between=("dowel_hole",))
+
+
+def spigot_bore(layout: PlanarLayout, process: FoilProcess, thickness: float) -> Characteristic:
+    """Limits of the hole for a post's spigot in a sheet: the thickest spigot passes the least hole."""
+    cut = process.tolerance(thickness)
+    nominal = _up(layout.design.post.spigot + LEAST_PLAY + cut)
+    return within("spigot diameter", nominal, cut, between=("spigot",))
+
+
+def _up(size: float) -> float:
+    """To the next 0.005 mm."""
+    return ceil(200.0 * size - 1e-6) / 200.0
+
+
 def _through(
-    layout: PlanarLayout, thickness: float, tapped: bool = False, press: bool = False
+    layout: PlanarLayout, thickness: float, bore: Characteristic, tapped: bool = False
 ) -> list[Feature]:
-    """The screws' and dowels' holes of a layer, along +z from its lower face."""
+    """The screws' and dowels' holes of a layer, along +z from its lower face; what a pin is pressed into is
+    modelled as wide as the pin."""
     m = METRIC[SCREW]
     holes: list[Feature] = []
     for x, y in screw_places(layout):
@@ -112,13 +152,34 @@ def _through(
             holes.append(tapped_through("screw", SCREW, (x, y, 0.0), (0, 0, 1), thickness))
         else:
             holes.append(Hole("screw", (x, y, 0.0), (0, 0, 1), m.clearance, thickness, True))
-    bore = dowel_diameter(DOWEL) + (0.0 if press else SLIDING)
+    pressed_in = bore.upper < bore.nominal
+    wide = dowel_diameter(DOWEL) if pressed_in else round((bore.lower + bore.upper) / 2.0, 6)
+    fit = f"{PRESS_FIT}, the pin pressed in" if pressed_in else ""
     for x, y in dowel_places(layout):
-        tolerance = "N7, the pin pressed in" if press else "+0.01/0"
-        holes.append(
-            Hole("dowel_hole", (x, y, 0.0), (0, 0, 1), round(bore, 6), thickness, True, tolerance=tolerance)
-        )
+        holes.append(Hole("dowel_hole", (x, y, 0.0), (0, 0, 1), wide, thickness, True, tolerance=fit))
     return holes
+
+
+def _stated(layout: PlanarLayout, *bores: Characteristic) -> tuple[Characteristic, ...]:
+    """Limits of holes; none of dowels where no layer has them."""
+    return tuple(c for c in bores if c.name != DOWEL_HOLE or layout.screwed)
+
+
+def contour_note(process: FoilProcess, thickness: float) -> str:
+    cut = process.tolerance(thickness)
+    return f"{process.name}; contour within ±{cut:.3g} of the DXF's where no limit stands"
+
+
+def _placed(features: Sequence[Feature], zones: Mapping[str, float]) -> dict[str, Any]:
+    """Geometric tolerances of holes by their names, and the datums that they stand from; no more where there
+    are none."""
+    there = {f.name for f in features}
+    places = tuple(
+        Geometric(f"{name.replace('_', ' ')} holes", "position", zone, (name,), FRAME, True)
+        for name, zone in zones.items()
+        if name in there
+    )
+    return {"geometric": places, "datums": FRAME_DATUMS if places else ()}
 
 
 def _round_holes(layout: PlanarLayout, name: str, diameter: float, thickness: float) -> list[Feature]:
@@ -129,39 +190,55 @@ def foil(layout: PlanarLayout) -> Part:
     """The foil: every cell's four slots, spigot, screw and dowel holes."""
     d, t = layout.design, layout.design.planar.thickness
     slots = tuple(s for e in layout.elements for s in e.kind.slots(layout.corner, (e.x, e.y)))
-    cut = layout.process.tolerance(t)
+    cut, zone = layout.process.tolerance(t), foil_zone(layout, layout.process)
+    bore, spigot = dowel_bore(layout, layout.process, t), spigot_bore(layout, layout.process, t)
+    features = (*_round_holes(layout, "spigot", spigot.nominal, t), *_through(layout, t, bore))
+    beams = [
+        c
+        for kind in layout.used
+        for c in (
+            within(
+                f"beam width, {kind.name}", kind.table.beam_width, cut, True, kind.named("beam a", "beam b")
+            ),
+            within(f"beam length, {kind.name}", kind.beam_length, cut, between=kind.named("root", "frame")),
+        )
+    ]
     return Part(
         part_no=f"{d.name}-foil",
         name="Foil",
         process=cast(Process, layout.design.planar.process),
         material=sheet_material(d),
         body=Extrusion(_outline(layout), t, slots),
-        features=(
-            *_round_holes(layout, "spigot", round(d.post.spigot + SLIDING, 9), t),
-            *_through(layout, t),
-        ),
+        features=features,
         colour="#c9ccd1",
-        notes=(
-            f"{d.planar.process}; every slot width +-{cut:.3g} over the foil's thickness",
-            "do not bend, do not tumble; packed flat between cards",
+        notes=(contour_note(layout.process, t), "do not bend, do not tumble; packed flat between cards"),
+        characteristics=(
+            within("thickness", t, d.foil_tolerance, True, between=FACES),
+            *beams,
+            spigot,
+            *_stated(layout, bore),
         ),
-        characteristics=(within("thickness", t, d.foil_tolerance, True, between=FACES),),
         kind="element",
+        **_placed(features, {"spigot": zone, "dowel_hole": zone, "screw": PLACE}),
     )
 
 
 def foot(layout: PlanarLayout, kind: Kind) -> Part:
     """The plate that keeps an island rigid: its outline, a little inside, with the spigot's hole."""
     d = layout.design
-    hole = round(d.post.spigot + SLIDING, 9)
+    t = d.post.foot
+    process = layout.sheet_process(t)
+    bore = spigot_bore(layout, process, t)
     return Part(
         part_no=f"{d.name}-foot-{kind.name}",
         name=f"Foot plate, {kind.name} cell",
-        process=cast(Process, layout.design.planar.process),
+        process=cast(Process, process.name),
         material=SPRING_STEEL,
-        body=Extrusion(kind.island_outline(layout.corner, FOOT_INSET), d.post.foot),
-        features=(Hole("spigot", (0, 0, 0), (0, 0, 1), hole, d.post.foot, True),),
+        body=Extrusion(kind.island_outline(layout.sheet_corner(t), FOOT_INSET), t),
+        features=(Hole("spigot", (0, 0, 0), (0, 0, 1), bore.nominal, t, True),),
         colour="#8f9aa8" if kind.name == "measuring" else "#5b6673",
+        notes=(contour_note(process, t),),
+        characteristics=(within("thickness", t, FOOT_THICKNESS, between=FACES), bore),
     )
 
 
@@ -170,7 +247,7 @@ def post(layout: PlanarLayout) -> Part:
     shoulder."""
     d = layout.design
     shoulder = layout.design.planar.thickness + d.post.foot
-    up, down = round(layout.pad_z - shoulder, 9), round(-shoulder + SLIDING, 9)
+    up, down = round(layout.pad_z - shoulder, 9), round(-shoulder + SPIGOT_SHORT, 9)
     r, s = d.post.pad / 2.0, d.post.spigot / 2.0
     points = [(0.0, down), (s, down), (s, 0.0), (r, 0.0), (r, up), (0.0, up)]
     names = ("end", "spigot", "shoulder", "pad side", "pad", "axis")
@@ -181,7 +258,13 @@ def post(layout: PlanarLayout) -> Part:
         material=STAINLESS_BAR,
         body=Revolution(_polygon(points, names)),
         colour="#d8d3c4",
-        notes=(BREAK_EDGES.replace("0.2", "0.05"), "pad's edge 0.1 round", f"shoulder to pad {up:g} +-0.01"),
+        notes=(BREAK_EDGES.replace("0.2", "0.05"), "pad's edge 0.1 round", "turned in one clamping"),
+        characteristics=(
+            within(POST_LENGTH, up, POST_TOLERANCE, between=("shoulder", "pad")),
+            Characteristic(
+                "spigot diameter", d.post.spigot, d.post.spigot, d.post.spigot - SPIGOT, between=("spigot",)
+            ),
+        ),
     )
 
 
@@ -213,21 +296,27 @@ def _spacer(layout: PlanarLayout, where: str, thickness: float, limit: float, ke
     openings = tuple(
         rounded_polygon(
             [
-                Corner((round(e.x + sx * half, 9), round(e.y + sy * half, 9)), layout.corner)
+                Corner((round(e.x + sx * half, 9), round(e.y + sy * half, 9)), layout.sheet_corner(thickness))
                 for sx, sy in ((-1, -1), (1, -1), (1, 1), (-1, 1))
             ]
         )
         for e in layout.elements
     )
+    process = layout.sheet_process(thickness)
+    bore, zone = dowel_bore(layout, process, thickness), foil_zone(layout, process)
+    features = tuple(_through(layout, thickness, bore))
     return Part(
         part_no=f"{d.name}-{where}-spacer",
         name=f"{where.capitalize()} spacer",
-        process=cast(Process, layout.design.planar.process),
+        process=cast(Process, process.name),
         material=SPRING_STEEL,
         body=Extrusion(_outline(layout), thickness, openings),
-        features=tuple(_through(layout, thickness)),
+        features=features,
         colour="#aab2bd",
-        characteristics=(within("thickness", thickness, limit, key, between=FACES),),
+        notes=(contour_note(process, thickness), "flat, free of burrs"),
+        characteristics=(within("thickness", thickness, limit, key, between=FACES), *_stated(layout, bore)),
+        kind="cells",
+        **_placed(features, {"dowel_hole": zone, "screw": PLACE}),
     )
 
 
@@ -241,20 +330,33 @@ def upper_spacer(layout: PlanarLayout) -> Part:
     return _spacer(layout, "upper", layout.upper_spacer, 0.03, False)
 
 
-def _milled(layout: PlanarLayout, number: str, name: str, thickness: float, features: list[Feature]) -> Part:
+def _milled(
+    layout: PlanarLayout,
+    number: str,
+    name: str,
+    body: Extrusion,
+    features: Sequence[Feature],
+    zones: Mapping[str, float],
+    notes: tuple[str, ...] = (),
+    bores: tuple[Characteristic, ...] = (),
+    flat: tuple[Geometric, ...] = (),
+) -> Part:
     d = layout.design
     alloy = ALLOYS[d.housing.plate_alloy]
+    marks = _placed(features, zones)
+    marks["geometric"] = (*marks["geometric"], *flat)
     return Part(
         part_no=f"{d.name}-{number}",
         name=name,
         process="milled",
         material=Material(alloy.name, alloy.density, standard=alloy.standard, magnetic=alloy.magnetic or ""),
-        body=Extrusion(_outline(layout), thickness),
+        body=body,
         features=tuple(features),
         colour="#7c8794",
         finish="Ra 1.6, clear anodised after machining; dowel holes masked",
-        notes=(BREAK_EDGES,),
-        characteristics=(within("thickness", thickness, 0.02, between=FACES),),
+        notes=(BREAK_EDGES, *notes),
+        characteristics=(within("thickness", body.thickness, 0.02, between=FACES), *_stated(layout, *bores)),
+        **marks,
     )
 
 
@@ -278,7 +380,20 @@ def base(layout: PlanarLayout) -> Part:
         sunk = (land_diameter(layout), lower) if lower > 0.0 else None
         name = f"well_{e.kind.name}"
         wells.append(Hole(name, (e.x, e.y, t), (0, 0, -1), layout.well, t, True, counterbore=sunk))
-    return _milled(layout, "base", "Base", t, [*_through(layout, t, press=True), *wells])
+    bore = pressed(float(DOWEL))
+    deep = max((kind.table.stop_gap for kind in layout.used), default=0.0) + layout.base_z
+    lands = f"counterbores {deep:.3g} ±{LAND_DEPTH:g} deep, milled in one setting with the upper face"
+    return _milled(
+        layout,
+        "base",
+        "Base",
+        Extrusion(_outline(layout), t),
+        [*_through(layout, t, bore), *wells],
+        {"dowel_hole": PLATE_ZONE, "screw": PLACE, "well_measuring": PLACE, "well_reference": PLACE},
+        (lands,) if deep > 0.0 else (),
+        (bore,),
+        (Geometric("stop face", "flatness", STOP_FLAT, (FACES[1],)),),
+    )
 
 
 def frame(layout: PlanarLayout) -> Part:
@@ -288,8 +403,9 @@ def frame(layout: PlanarLayout) -> Part:
     room = rounded_polygon(
         [Corner((sx * x, sy * y), FRAME_CORNER) for sx, sy in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
     )
-    plate = _milled(layout, "frame", "Board frame", t, [h for h in _through(layout, t) if h.name == "screw"])
-    return replace(plate, body=Extrusion(_outline(layout), t, (room,)))
+    holes = [h for h in _through(layout, t, dowel_bore(layout, None, t)) if h.name == "screw"]
+    body = Extrusion(_outline(layout), t, (room,))
+    return _milled(layout, "frame", "Board frame", body, holes, {"screw": PLACE})
 
 
 def cover(layout: PlanarLayout) -> Part:
@@ -297,12 +413,15 @@ def cover(layout: PlanarLayout) -> Part:
     d = layout.design
     t = d.housing.cover_thickness
     opening = round(d.post.pad + 2.0 * d.housing.side_gap, 9)
+    bore = dowel_bore(layout, None, t)
     return _milled(
         layout,
         "cover",
         "Cover",
-        t,
-        [*_through(layout, t, tapped=True), *_round_holes(layout, "post_opening", opening, t)],
+        Extrusion(_outline(layout), t),
+        [*_through(layout, t, bore, tapped=True), *_round_holes(layout, "post_opening", opening, t)],
+        {"dowel_hole": PLATE_ZONE, "screw": PLACE, "post_opening": PLACE},
+        bores=(bore,),
     )
 
 

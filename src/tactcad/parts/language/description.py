@@ -19,7 +19,7 @@ from .limits import FACES, Characteristic, DatumFeature, Geometric, contradictio
 
 Vector = tuple[float, float, float]
 Process = Literal["wire-cut", "etched", "milled", "turned", "ground", "reference", "bought", "included"]
-Kind = Literal["", "element", "cap screw", "set screw", "nut"]
+Kind = Literal["", "element", "cells", "cap screw", "set screw", "nut"]
 NOT_MADE = ("bought", "included", "reference")
 NOT_ORDERED = ("included", "reference")
 

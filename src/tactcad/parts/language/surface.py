@@ -203,7 +203,10 @@ Piece = Wall | Floor
 
 
 def pieces(part: Part, feature: str) -> list[Piece]:
-    """Every piece of the part's surface that the feature of that name bounds; an extrusion's alone."""
+    """Every piece of the part's surface that the feature of that name bounds, of an extrusion or a turned
+    part."""
+    if isinstance(part.body, Revolution):
+        return [_turned(s) for s in part.body.profile if s.name == feature]
     body = part.extrusion
     if feature in FACES:
         return [Floor(LocalAxes((0.0, 0.0, 0.0 if feature == FACES[0] else body.thickness)))]
@@ -213,6 +216,16 @@ def pieces(part: Part, feature: str) -> list[Piece]:
     for f in part.features:
         found += _hole(f, feature) if isinstance(f, Hole) else _pocket(f, feature)
     return found
+
+
+def _turned(s: Segment) -> Piece:
+    """The cylinder or plane of an edge of a turned part's profile."""
+    (r, z), (r1, z1) = s.start, s.end
+    if z == z1:
+        return Floor(LocalAxes((0.0, 0.0, z)))
+    if r != r1 or not isinstance(s, Line):
+        raise CheckFailure(f"{s.name}: limits stand on a turned part's cylinders and planes alone")
+    return Wall(Arc((r, 0.0), (r, 0.0), (0.0, 0.0), True), abs(z1 - z), LocalAxes((0.0, 0.0, min(z, z1))))
 
 
 def _edges(contour: Contour) -> tuple[Segment, ...]:

@@ -36,7 +36,7 @@ from tactcad.parts.rules.rule import misfit
 
 from ..builder import Builder
 from ..rig import ARRAY, Rig, none
-from ..scene import AGAINST_Y, ALONG_Y, DOWN, UPRIGHT, Placement, Scene, Step
+from ..scene import AGAINST_Y, ALONG_Y, DOWN, UPRIGHT, Held, Placement, Scene, Step
 
 # Local contour plane (x, y) laid into the scene's (x, z) plane, thickness along y: row one's arms
 # run along +x, row two is row one turned by half a turn about z.
@@ -222,9 +222,19 @@ def array_steps(layout: Layout, placed: Mapping[str, Sequence[Placement]]) -> tu
         fan: int = 0,
         elements: bool = False,
         limit: str = "",
+        held: tuple[Held, ...] = (),
     ) -> Step:
         names = tuple(p.designator for p in placed.get(title, ()))
-        return Step(title, names, explode, text, fan=fan, tools=tools, elements=elements, limit=limit)
+        return Step(
+            title, names, explode, text, fan=fan, tools=tools, elements=elements, limit=limit, held=held
+        )
+
+    on_ledge = [p.designator for p in placed[STACK] if p.part.part_no != spacer(layout).part_no]
+    ledges = tuple(sorted(on_ledge, key=lambda name: (len(name), name)))
+
+    def level(title: str, by: tuple[str, ...]) -> tuple[Held, ...]:
+        names = tuple((p.designator,) for p in placed.get(title, ()) if not p.part.bought)
+        return (Held(names, by, ("z", "rx", "ry")),)
 
     return (
         step(
@@ -246,12 +256,13 @@ def array_steps(layout: Layout, placed: Mapping[str, Sequence[Placement]]) -> tu
             elements=True,
             limit=f"All pads in one plane within {2 * d.tolerance.pad_height:g} mm",
         ),
-        step(STOP_PLATE, (0, 0, 0.8 * width), _laying_stop_plate(layout)),
+        step(STOP_PLATE, (0, 0, 0.8 * width), _laying_stop_plate(layout), held=level(STOP_PLATE, ledges)),
         step(
             CARRIER,
             (0, 0, 1.4 * width),
             "Screw the carrier on both end plates, crosswise. Measure the pads' heights on the surface plate "
             "again: they must not have moved.",
+            held=level(CARRIER, ("EP1", "EP2")),
         ),
         step(
             HOLD_DOWN,
