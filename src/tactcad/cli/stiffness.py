@@ -94,13 +94,13 @@ def stiffness_rows(args: argparse.Namespace, design: Design) -> int:
     if args.coupling is not None and (args.thickness or args.nu) is not None:
         raise InputError("--coupling", "takes the object as springs", legal="without --thickness and --nu")
     known = calibration_file.read(args.calibration)
-    layers = pads.layers(design, args.thickness, args.nu) if args.coupling is None else []
     results: list[grasp.Grasp] = []
     with slow_work(sys.stderr) as tell:
         tell(0, 1, f"reading {args.file}")
         samples = (
             log_readings.grasps(from_log(args.file, args.map)) if args.map else readings.grasps(args.file)
         )
+        layers = pads.layers(design, args.thickness, args.nu) if args.coupling is None else []
         for g in samples:
             tell(len(results), len(samples), f"sample {g.sample}")
             shares = pads.coupling(args.design, g, args.coupling or 0.0)
