@@ -90,15 +90,13 @@ def add_json(parser: argparse.ArgumentParser) -> None:
 
 def add_strict(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
-        "--strict",
-        action="store_true",
-        help="exit status 1 where a rig of the design does not take its array",
+        "--strict", action="store_true", help="exit status 1 if a test rig does not fit the array"
     )
 
 
 def add_others(
     parser: argparse.ArgumentParser,
-    where: str = "the folder holds what tactcad did not write there",
+    where: str = "the folder holds files that tactcad did not write",
     kept: str = "DIR-kept-1",
 ) -> None:
     """--keep and --discard, for commands that write a folder (tactcad.export.publication), or zips."""
@@ -109,7 +107,7 @@ def add_others(
         action="store_const",
         const="keep",
         default="refuse",
-        help=f"where {where}: move it aside, as {kept} (default: refuse)",
+        help=f"if {where}: move it aside, as {kept} (default: refuse)",
     )
     others.add_argument(
         "--discard", dest="others", action="store_const", const="discard", help="remove it, unread"

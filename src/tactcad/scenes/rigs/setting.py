@@ -86,7 +86,7 @@ def setting(design: Design, pose: Pose = REST) -> Scene:
         ),
         leaves=(
             f"elements: turn about their dowels, {wedge(layout)}",
-            "the head end plate: along y, until the screws are tight",
+            "EP1: along y, until the clamping is tight",
         ),
     )
     screws = [
