@@ -24,7 +24,7 @@ export: environment ## write the files of every design in hardware/ to exports/<
 test: environment ## every test but the slow and the nightly ones
 	$(BIN)/python -m pytest -m "not slow and not nightly" -n $(WORKERS) --dist worksteal
 
-slow: environment ## tests that start browsers, clusters and installs, or make whole releases and exports again
+slow: environment ## tests that start browsers, clusters and installs, or make whole releases and exports
 	$(BIN)/python -m pytest -m "slow and not nightly" -n $(WORKERS) --dist worksteal
 
 check: environment ## style, types, and every check of every design: all failures are printed, then it fails
@@ -36,19 +36,19 @@ check: environment ## style, types, and every check of every design: all failure
 		failed=$$?; echo "$$said"; exit $$failed' || status=1; \
 	exit $$status
 
-golden: environment ## take up every design's geometry in exports/golden/, where no check fails; prints what changed
+golden: environment ## print what changed in each design's geometry and record it in exports/golden/; refused if a check fails
 	$(BIN)/tactcad golden $(DESIGNS)
 
 EXPORTS = $(DESIGNS:hardware/%.toml=exports/%)
 
-review: export ## open every exported STEP and DXF file in ezdxf and FreeCAD; exports/NAME-review.html to look at
+review: export ## open every exported STEP and DXF file in ezdxf and FreeCAD; write exports/NAME-review.html
 	@status=0; \
 	echo $(EXPORTS) | xargs -n 1 -P $(WORKERS) sh -c '$(BIN)/tactcad review $$0 --out $$0-review.html' || status=1; \
 	$(BIN)/python packaging/review/in_ezdxf.py $(EXPORTS) || status=1; \
 	echo $(EXPORTS) | xargs -n 1 -P $(WORKERS) $(BIN)/python packaging/review/review.py || status=1; \
 	exit $$status
 
-release: environment ## what a shop can quote from, of every design no check of which fails: exports/releases, as samples
+release: environment ## release zips of every design that passes all checks, as samples: exports/releases
 	$(BIN)/tactcad release --sample $(DESIGNS)
 
 bench: environment ## speed against accuracy on this machine, in short: tables, plots and JSON in exports/bench
@@ -62,7 +62,7 @@ reference: environment ## the published benchmarks again, in full, on a quiet ma
 	$(BIN)/python benchmarks/publish.py exports/bench
 	$(BIN)/python benchmarks/interval_tables.py benchmarks/results/intervals.md
 
-nightly: environment ## the long tests, a night by chance, and the kernel's tests on the kernel that comes next
+nightly: environment ## the long tests, a night of random tests, and the kernel's tests on the next kernel
 	@status=0; \
 	$(BIN)/python tests/night.py exports/night --workers $(WORKERS) || status=1; \
 	$(BIN)/python -m pytest -m "nightly and not night" || status=1; \

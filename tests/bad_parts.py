@@ -69,6 +69,7 @@ BAD_STEPS = {
     "insertion": "a pin 16 mm long under a roof 10 mm over its hole's plate",
     "order": "a screw before the part that it goes into",
     "fingers": "a pin to be pulled that stands out 8 mm, a roof 13 mm over it",
+    "freedom": "a plate on a rail of 2.8 mm, said to be level",
 }
 
 
@@ -148,7 +149,8 @@ def brep(shape: Callable, part=None) -> list[Finding]:
 
     from tactcad.checks.on_solids.soundness import check_brep
 
-    return check_brep(part or BLOCK, shape().wrapped)
+    made = shape()  # of build123d, or the kernel's own
+    return check_brep(part or BLOCK, getattr(made, "wrapped", made))
 
 
 def two_boxes():

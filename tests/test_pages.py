@@ -111,11 +111,7 @@ def folder(tmp_path_factory) -> tuple[Path, set[str]]:
 
 
 def typed(folder: Path, command: str) -> subprocess.CompletedProcess:
-    env = {
-        **os.environ,
-        "PATH": f"{Path(sys.executable).parent}:{os.environ['PATH']}",
-        "TACTCAD_CACHE": str(folder.parent / "cache"),
-    }
+    env = os.environ | {"PATH": f"{Path(sys.executable).parent}:{os.environ['PATH']}"}
     done = subprocess.run(
         ["sh", "-e", "-c", command], cwd=folder, env=env, capture_output=True, text=True, check=False
     )

@@ -34,7 +34,7 @@ def follow(commands: str, shown: list[str], folder: Path) -> None:
     done = subprocess.run(
         ["sh", "-e", "-c", commands],
         cwd=folder,
-        env={**os.environ, "PATH": path, "TACTCAD_CACHE": str(folder.parent / "cache")},
+        env=os.environ | {"PATH": path},
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
         text=True,

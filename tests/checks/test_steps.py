@@ -10,7 +10,7 @@ import pytest
 from built import shapes_of
 from test_tools import block
 
-from tactcad.checks.on_solids.steps import check_steps
+from tactcad.checks.on_solids.steps import Trial, check_steps
 from tactcad.parts.bought.screws import cap_screw
 from tactcad.parts.bought.standard_parts import STAGES, dowel
 from tactcad.parts.designs import load
@@ -18,7 +18,7 @@ from tactcad.parts.language.description import Hole
 from tactcad.parts.rigs import stand
 from tactcad.scenes import make_scene, scene_names
 from tactcad.scenes.moves import guide_json, settles, step_moves
-from tactcad.scenes.scene import DOWN, STILL, Contact, Move, Need, Placement, Scene, Step
+from tactcad.scenes.scene import DOWN, STILL, Contact, Held, Move, Need, Placement, Scene, Step
 
 pytestmark = pytest.mark.cad
 
@@ -52,6 +52,14 @@ def found(scene: Scene) -> list:
     return check_steps(scene, shapes_of(scene))
 
 
+def on_rail(wide: float) -> Scene:
+    """A plate of 20 x 20 x 10 on a rail along x, said to be level."""
+    rail, plate = Placement("RA1", block("RAIL", 20, wide, 5)), Placement("P1", HOLED, (0, 0, 5))
+    level = Held((("P1",),), ("RA1",), ("z", "rx", "ry"))
+    steps = (step("RA1"), step("P1", held=(level,)))
+    return Scene("rail", (rail, plate), (Contact("P1", "RA1", "touch"),), steps=steps)
+
+
 IN_T1 = (Contact("SC1", "T1", "thread"),)
 PULL = Move(("DW1",), STILL, ((0.0, 0.0, 12.0), STILL))
 BAD = {
@@ -60,6 +68,7 @@ BAD = {
     "fingers": scene(
         (step("P1", "DW1"), step("RO1"), step(order=(PULL,))), (Contact("DW1", "P1", "press"),), 21.0
     ),
+    "freedom": on_rail(2.8),
 }
 
 
@@ -101,6 +110,35 @@ def test_what_a_step_needs_is_asked_for(steps, said):
 def test_good_steps_are_not_found():
     good = (step("P1"), step("DW1"), step("T1"), step("SC1"), step("RO1"))
     assert found(scene(good, (*IN_T1, Contact("DW1", "P1", "press")))) == []
+
+
+def test_a_rail_levels_a_plate_from_a_tenth_of_its_half_diagonal_on():
+    """That is 15 mm: half a rail of 3 mm. A plate that stands off by 0.1 is free in all it is said to be held
+    in."""
+    assert found(on_rail(3.2)) == []
+    (rocks,) = found(on_rail(2.8))
+    assert "P1 is free to turn about x: its contact with RA1 does not set that" in rocks.message
+    one = on_rail(3.2)
+    off = replace(one, placements=(one.placements[0], Placement("P1", HOLED, (0, 0, 5.1))))
+    assert [f.message.split(":")[1].split("free ")[1] for f in found(off)] == [
+        "along z", "to turn about x", "to turn about y",
+    ]  # fmt: skip
+
+
+def test_what_virtual_arrays_take_as_set_a_step_must_set():
+    """The shipped fixture does; lower by 0.05 it carries nothing, and a step that says nothing is found."""
+    made = make_scene(load("soft-tissue"), "setting")
+
+    def free(scene: Scene) -> list[str]:
+        return [f.message for f in Trial(scene, shapes_of(scene), {}).freedoms()]
+
+    assert free(made) == []
+    said = free(replace(made, steps=tuple(replace(s, held=()) for s in made.steps)))
+    assert len(said) == 2 * 3 + 8 * 2 and any("E7 is free to turn about y: no step sets" in m for m in said)
+    down = [replace(p, origin=(*p.origin[:2], p.origin[2] - 0.05)) for p in made.placements[:1]]
+    low = replace(made, placements=(*down, *made.placements[1:]))
+    said = free(low)
+    assert any("EP1 EP2 is free along z" in m for m in said) and any("E1 is free to turn" in m for m in said)
 
 
 def test_a_drill_point_is_told_from_a_thread():

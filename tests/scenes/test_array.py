@@ -329,6 +329,15 @@ def test_a_screwdriver_reaches_every_screw_when_it_goes_in(case):
             assert apart(room, b) or name.startswith(own), f"{name} bars the way to {p.designator}"
 
 
+def test_a_guide_sends_nobody_to_a_scene_that_is_not_there():
+    """Two rows of twelve are too long for the calibration's stages."""
+    for name, there in (("macro", True), ("tie rods", False)):
+        design = DESIGNS[name]
+        assert ("calibration" in scene_names(design)) == there
+        texts = [s.text for scene in ("array", "setting") for s in make_scene(design, scene).steps]
+        assert any("calibrat" in text for text in texts) == there
+
+
 def test_counts_by_hand():
     for name, screws, rods in (("macro", 8, 0), ("one element", 8, 0), ("tie rods", 4, 4)):
         design = DESIGNS[name]

@@ -36,7 +36,7 @@ def test_a_target_needs_an_object_and_forces_only():
     ("old", "new", "says"),
     [
         ("[object]\nstiffness = [2, 10]\n", "", "object: missing table"),
-        ("[target]", "[sheet]", "sheet: unknown field; legal: see `tactcad schema --target`"),
+        ("[target]", "[sheet]", "sheet: unknown field; legal: see `tactcad schema target`"),
         ("stiffness = [2, 10]", "", "needs one of stiffness and modulus"),
         (
             "stiffness = [2, 10]",

@@ -38,7 +38,7 @@ from .copper import (
     Via,
     rounded,
 )
-from .footprints import footprint
+from .footprints import Pad, footprint
 from .netlist import Component, Netlist
 from .read_board import OUTSIDE
 
@@ -111,15 +111,13 @@ class Routing:
 
 def _cell(sheet: Routing, board: dict[str, Component], c: int, x0: float, pins: Sequence[Point]) -> None:
     """Channel c between its three pins and its three columns."""
-    red, plus, minus, foot = (f"CH{c}_{end}" for end in ("RED", "PLUS", "MINUS", "FOOT"))
     one, two, three, link = (board[f"R{10 * c + k}"] for k in (1, 2, 3, 4))
+    red, plus, minus, foot = (f"CH{c}_RED", f"CH{c}_PLUS", f"CH{c}_MINUS", three.net("1"))
     y = pins[0][1]
     r1 = sheet.place(one, (x0 + ARMS, y + 6.0), 270)
     r3 = sheet.place(three, (x0 + LEG, y + 6.0), 270)
     r2 = sheet.place(two, (x0 + LEG, y + 14.2), 270)
     r4 = sheet.place(link, (x0 + 2.2, y + 11.5))
-    q = sheet.place(board[f"Q{c}"], (x0 + GATE + 0.95, y + 20.2), 90)
-    switch = {p.role: q[p.number] for p in board[f"Q{c}"].pins}
     side, branch = x0 + 0.2, y + 2.0
     sheet.path(red, pins[0], (pins[0][0], branch), r1["1"], width=WIDE)
     sheet.path(red, (pins[0][0], branch), (side, branch), (side, r4["1"][1]), r4["1"])
@@ -128,26 +126,36 @@ def _cell(sheet: Routing, board: dict[str, Component], c: int, x0: float, pins: 
     across = r3["1"][1] - 1.4
     sheet.path(foot, pins[2], (pins[2][0], across), (x0 + LEG, across), width=WIDE)
     sheet.path(foot, (x0 + LEG, across), r3["1"], width=WIDE)
-    low = switch["drain"][1]
-    left = x0 + 4.3
-    sheet.path(foot, (x0 + LEG, across), (left, across), (left, low), switch["drain"], width=WIDE)
     middle = (x0 + LEG, (r3["2"][1] + r2["1"][1]) / 2)
     sheet.path(minus, r3["2"], middle, r2["1"], width=WIDE)
-    down, jog = x0 + 7.1, switch["source"][1] + 2.3
+    if f"Q{c}" in board:
+        jog = _switch(sheet, board[f"Q{c}"], c, (x0, y), (x0 + LEG, across))
+    else:
+        jog = y + 22.5
+        at = sheet.place(board[f"C{10 * c + 1}"], (x0 + (PLUS + MINUS) / 2, y + 20.2))
+        sheet.path(minus, at["2"], (x0 + MINUS, jog))
+    down = x0 + 7.1
     sheet.path(minus, middle, (down, middle[1]), (down, jog), (x0 + MINUS, jog))
     for pads, part in ((r1, one), (r2, two)):
         if part.footprint != "radial":  # a soldered pin is in the plane itself
             (x, y2) = pads["2"]
             sheet.via("EXC", (x, y2), (x, y2 + 1.3))
-    x, y2 = switch["source"]
-    sheet.via("GND", (x, y2), (x, y2 + 1.35))
-    sheet.columns += [
-        BusColumn(plus, x0 + PLUS, r4["2"][1]),
-        BusColumn(f"GATE{c}", x0 + GATE, switch["gate"][1]),
-        BusColumn(minus, x0 + MINUS, jog),
-    ]
-    x, y2 = switch["gate"]
-    sheet.path(f"GATE{c}", (x, y2), (x0 + GATE, y2))
+    sheet.columns += [BusColumn(plus, x0 + PLUS, r4["2"][1]), BusColumn(minus, x0 + MINUS, jog)]
+
+
+def _switch(sheet: Routing, part: Component, c: int, corner: Point, leg: Point) -> float:
+    """A channel's switch, from the leg's track to ground; where the other output goes round it."""
+    x0, y = corner
+    q = sheet.place(part, (x0 + GATE + 0.95, y + 20.2), 90)
+    switch = {p.role: q[p.number] for p in part.pins}
+    left, drain = x0 + 4.3, switch["drain"]
+    sheet.path(f"CH{c}_FOOT", leg, (left, leg[1]), (left, drain[1]), drain, width=WIDE)
+    x, low = switch["source"]
+    sheet.via("GND", (x, low), (x, low + 1.35))
+    x, at = switch["gate"]
+    sheet.path(f"GATE{c}", (x, at), (x0 + GATE, at))
+    sheet.columns.append(BusColumn(f"GATE{c}", x0 + GATE, at))
+    return low + 2.3
 
 
 @dataclass
@@ -247,6 +255,81 @@ class Strip:
                         edge = self._cap(cap, edge, here[1], side)
                     edge = round(edge + side * PITCH, 3)
                 last = here
+
+    def around(self, name: str, caps: Sequence[str]) -> None:
+        """A circuit with pins on four sides; `caps` as above."""
+        self._try(lambda trial, x: trial._around(name, x, list(caps)), 12.0)
+
+    def _around(self, name: str, x: float, caps: list[str]) -> None:
+        """Pins of the upper side rise to columns above it, the outermost turn first; those of a side take
+        columns from the circuit outwards, and beyond them those of the lower side's half. Ground goes to the
+        slug, what is on the other plane to a via below."""
+        part = self.board[name]
+        at = self.sheet.place(part, (x, self.y))
+        net = {p.number: p.net for p in part.pins}
+        *pads, slug = self.sheet.placed[-1].footprint.pads
+        reach = max(p.x + p.w / 2 for p in pads)
+        for dx in (-1.0, 1.0):
+            for dy in (-1.0, 1.0):
+                self.sheet.vias.append(Via(net[slug.number], rounded((x + dx, self.y + dy))))
+        for side in (-1, 1):
+            upper = sorted(
+                (p for p in pads if p.y < -reach + p.h and p.x * side > 0), key=lambda p: p.x * side
+            )
+            beside = sorted((p for p in pads if p.x * side > reach - p.w), key=lambda p: p.y)
+            lower = sorted(
+                (p for p in pads if p.y > reach - p.h and p.x * side > 0), key=lambda p: -p.x * side
+            )
+            edge = self._above([p for p in upper if net[p.number]], net, at, x + side * 0.375, side, caps)
+            edge = side * max(side * edge, side * x + reach + 1.35)
+            turn = self.y + reach + 0.3
+            for pad in (*beside, *lower):
+                own, here = net[pad.number], at[pad.number]
+                if own == net[slug.number]:
+                    inside = (here[0], self.y) if pad in lower else (x, here[1])
+                    self.sheet.path(own, here, (here[0], inside[1]), inside)
+                elif own in ON_PLANE:
+                    self.sheet.via(own, here, (here[0], turn), (x, self.y + reach + 1.1), width=TRACK)
+                elif own:
+                    y = here[1] if pad in beside else turn
+                    turn += 0.0 if pad in beside else 0.4
+                    edge = self._side(own, here, y, edge, side, caps)
+
+    def _side(self, own: str, here: Point, y: float, edge: float, side: int, caps: list[str]) -> float:
+        """A pin's way to its column or, where nothing else is on its net, to its capacitor."""
+        cap = next((c for c in caps if self.board[c].net("1") == own), None)
+        if own.startswith("REGCAP"):
+            self.sheet.path(own, here, (edge, y), (edge, y - 1.5))
+            self.closed.append((edge, own))
+        else:
+            edge = self.column(own, round(edge + side * (0.3 if cap else 0.0), 3), y, side * 0.05)
+            self.sheet.path(own, here, (here[0], y), (edge, y))
+        if cap:
+            caps.remove(cap)
+            edge = self._cap(cap, edge, y, side)
+        return round(edge + side * PITCH, 3)
+
+    def _above(
+        self, pads: Sequence[Pad], net: dict[str, str], at: dict[str, Point], edge: float, side: int,
+        caps: list[str],
+    ) -> float:  # fmt: skip
+        """Columns of the upper side's half, from the middle outwards; pins of one net are joined."""
+        before, last = "", (0.0, 0.0)
+        for k, pad in enumerate(pads):
+            own, here = net[pad.number], at[pad.number]
+            if own == before:
+                ends = here[1] - pad.h / 2 - 0.2
+                self.sheet.path(own, last, (last[0], ends), (here[0], ends), here)
+                continue
+            y = here[1] - pad.h / 2 - 0.3 - 0.4 * (len(pads) - k)
+            cap = next((c for c in caps if self.board[c].net("1") == own), None)
+            edge = self.column(own, round(edge + side * (0.3 if cap else 0.0), 3), y, side * 0.05)
+            self.sheet.path(own, here, (here[0], y), (edge, y))
+            if cap:
+                caps.remove(cap)
+                edge = self._cap(cap, edge, y, side)
+            edge, before, last = edge + side * PITCH, own, here
+        return edge
 
     def _cap(self, name: str, x: float, y: float, side: int) -> float:
         """A capacitor beside a column, its other end on its plane; where the next column may stand."""
@@ -353,11 +436,12 @@ def lay_out(circuit: Netlist, outline: BoardOutline) -> BoardCopper:
     whole, lead_pins = Routing(), footprint(board["J2"].footprint).pads
     pins = whole.place(board["J2"], (width / 2, LEADS_FROM_EDGE))
     x0 = width / 2 + lead_pins[0].x - PIN / 2
-    for c in range(1, sum(p.kind == "switch" for p in circuit.components) + 1):
+    for c in range(1, len(lead_pins) // 3 + 1):
         _cell(whole, board, c, x0 + (c - 1) * CELL, [pins[str(3 * c - 2 + i)] for i in range(3)])
     card = Routing()
     _card(card, board, width / 2, 0.0)
-    selecting, reading, passing = _strips(board, width, whole.columns, card.columns)
+    strips = _strips if "U2" in board else _converters_strips
+    selecting, reading, passing = strips(board, width, whole.columns, card.columns)
 
     upper_rows = _rows([*whole.columns, *selecting.columns, *passing])
     first = whole.extent()[1] + ROW / 2
@@ -409,17 +493,39 @@ def _strips(
     return selecting.sheet, reading.sheet, passing
 
 
-def _nets_of_both(board: dict[str, Component]) -> list[str]:
-    upper = {p.net for n in SELECTING for p in board[n].pins}
+def _converters_strips(
+    board: dict[str, Component], width: float, cells: list[BusColumn], card: list[BusColumn]
+) -> tuple[Routing, Routing, list[BusColumn]]:
+    """The converter; both supplies; columns through both buses. As above."""
+    through = Strip(board, [(c.x, c.net) for c in (*cells, *card)], LEFT, 0.0)
+    through.through(_nets_of_both(board, ("U1", "C1", "C2", "C3", "C4")))
+    passing = through.sheet.columns
+    selecting = Strip(board, [(c.x, c.net) for c in (*cells, *passing)], through.x, 0.0)
+    selecting.around("U1", ("C1", "C2", "C3", "C4"))
+    reading = Strip(board, [(width - c.x, c.net) for c in (*card, *passing)], LEFT, 0.0)
+    reading.fan("U4", ("C7",))
+    for name in ("R2", "C5", "C8", "D1"):
+        reading.two(name)
+    reading.fan("U5", ("C10",))
+    for name in ("R3", "C6", "C9"):
+        reading.two(name)
+    for strip, most in ((selecting, width - LEFT), (reading, width - through.x)):
+        if strip.x > most:
+            raise CheckFailure(f"circuit board: too narrow by {strip.x - most:.1f} mm")
+    return selecting.sheet, reading.sheet, passing
+
+
+def _nets_of_both(board: dict[str, Component], selecting: Sequence[str] = SELECTING) -> list[str]:
+    upper = {p.net for n in selecting for p in board[n].pins}
     upper |= {p.net for c in board.values() if c.kind == "switch" for p in c.pins}
     lower = {
         p.net
         for n, c in board.items()
-        if n not in (*SELECTING, "J2") and c.kind != "switch" and not _of_cell(n)
+        if n not in (*selecting, "J2") and c.kind != "switch" and not _of_cell(n)
         for p in c.pins
     }
     return sorted((upper & lower) - ON_PLANE - {""})
 
 
 def _of_cell(name: str) -> bool:
-    return name[0] == "R" and 10 < int(name[1:]) < 90
+    return name[0] in "RC" and 10 < int(name[1:]) < 90

@@ -5,10 +5,21 @@ from __future__ import annotations
 from tactcad.parts.array.board_outline import board_outline
 from tactcad.parts.array.layout import Layout
 from tactcad.parts.array.leads import boards, leads
+from tactcad.parts.bought.electronic_parts import converter_of
 
 from .board_layout import lay_out
 from .copper import BoardCopper
+from .digital_board import digital_netlist
+from .netlist import Netlist
 from .read_board import board_netlist
+
+
+def netlist_of_board(layout: Layout, used: int) -> Netlist:
+    """Of the board that reads so many elements: by amplifier and card, or by a converter."""
+    converter = converter_of(layout.design)
+    if converter:
+        return digital_netlist(layout, converter, used)
+    return board_netlist(layout.design, used, leads(layout))
 
 
 def laid_out(layout: Layout) -> tuple[BoardCopper, ...]:
@@ -16,4 +27,4 @@ def laid_out(layout: Layout) -> tuple[BoardCopper, ...]:
     outline is too small."""
     used = sorted({len(board.places) for board in boards(layout)}, reverse=True)
     outline = board_outline(layout)
-    return tuple(lay_out(board_netlist(layout.design, n, leads(layout)), outline) for n in used)
+    return tuple(lay_out(netlist_of_board(layout, n), outline) for n in used)

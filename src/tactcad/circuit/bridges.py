@@ -4,6 +4,9 @@
   gauge   '--W.2------- PLUS        resistance cancels; W.2 carries no current. Two wires: W.1 and W.2 both
        '-----W.3------- FOOT        lie in the gauge's arm, and RED is joined to PLUS on the board.
 
+That is with amplifier and card; with a converter (digital_board.py) no switch is in the way, and FOOT is
+ground.
+
 With ENABLE the decoder closes the switch of the channel that the address names, and the multiplexer leads
 that bridge to the amplifier: so one gauge of a board is warm at a time, and a switch carries one bridge's
 current.
@@ -18,12 +21,15 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from tactcad.design.sensing import WIRES
+from tactcad.parts.array.converter_figures import bridge_supply
 from tactcad.parts.array.layout import Layout
 from tactcad.parts.array.leads import LeadRoute, ReadBoard, boards, colours, lead_ohm, lead_routes, leads
-from tactcad.parts.bought.electronic_parts import GAUGE, TERMINAL, lead_part
+from tactcad.parts.bought.electronic_parts import GAUGE, TERMINAL, converter_of, lead_part
 
+from .boards import netlist_of_board
+from .digital_board import OUTPUT
 from .netlist import GROUND, Component, Netlist
-from .read_board import LOGIC, NEGATIVE, OUTSIDE, POSITIVE, board_netlist, two
+from .read_board import LOGIC, NEGATIVE, OUTSIDE, POSITIVE, two
 
 COMMON = {GROUND, POSITIVE, NEGATIVE, LOGIC}
 EXCITATION = "EXC"
@@ -31,16 +37,17 @@ EXCITATION = "EXC"
 
 def netlist(layout: Layout) -> Netlist:
     """The whole circuit of the array."""
-    r = layout.design.readout
+    r, converter = layout.design.readout, converter_of(layout.design)
     routes = {route.place.number: route for route in lead_routes(layout)}
     components: list[Component] = []
     for board in boards(layout):
-        own = board_netlist(layout.design, len(board.places), leads(layout))
+        own = netlist_of_board(layout, len(board.places))
         components += (_of_board(board, c) for c in own.components)
         for place in board.places:
             components += _at_array(layout, board, routes[place.number])
     supplies = ((POSITIVE, r.supply_positive), (NEGATIVE, r.supply_negative), (LOGIC, 5.0))
-    return Netlist(layout.design.name, r.excitation, supplies, tuple(components))
+    volts = bridge_supply(layout) if converter else r.excitation
+    return Netlist(layout.design.name, volts, supplies[:1] if converter else supplies, tuple(components))
 
 
 def _of_board(board: ReadBoard, c: Component) -> Component:
@@ -58,7 +65,7 @@ def _channel(c: Component) -> int:
     number = int(c.designator[1:])
     if c.kind == "switch":
         return number
-    return number // 10 if c.kind == "resistor" and 10 < number < 90 else 0
+    return number // 10 if c.kind in ("resistor", "capacitor") and 10 < number < 90 else 0
 
 
 def array_net(board: ReadBoard, net: str) -> str:
@@ -67,13 +74,13 @@ def array_net(board: ReadBoard, net: str) -> str:
         return net
     outside = net.removesuffix(OUTSIDE)
     if outside != net:  # a line of the card: the address is common, each board has its ENABLE
-        return f"{outside}{board.number}" if outside == "ENABLE" else outside
+        return f"{outside}{board.number}" if outside in ("ENABLE", "CS") else outside
     head, _, tail = net.partition("_")
     number = head.removeprefix("CH" if tail else "GATE")
     if number != head and int(number) <= len(board.places):
         element = board.places[int(number) - 1].number
         return f"E{element}_{tail or 'GATE'}"
-    return f"{net}{board.number}" if net in (EXCITATION, "OUT") else f"A{board.number}_{net}"
+    return f"{net}{board.number}" if net in (EXCITATION, "OUT", OUTPUT) else f"A{board.number}_{net}"
 
 
 def _at_array(layout: Layout, board: ReadBoard, route: LeadRoute) -> Iterator[Component]:
@@ -82,12 +89,13 @@ def _at_array(layout: Layout, board: ReadBoard, route: LeadRoute) -> Iterator[Co
     top, bottom = f"E{n}_TOP", f"E{n}_BOTTOM"
     lead, ohm = route.cut * lead_ohm(layout), d.gauge.resistance
     ends = ("RED", "PLUS", "FOOT") if leads(layout) == 3 else ("RED", "FOOT")
+    foot = GROUND if converter_of(d) else f"E{n}_FOOT"
     parts = [
         two(f"B{n}", "gauge", f"{ohm:g} ohm", GAUGE, (top, bottom), ohm=ohm),
         two(f"X{n}", "terminal", "solder terminals", TERMINAL, (top, bottom)),
     ]
     for k, (end, colour) in enumerate(zip(ends, colours(layout), strict=True), start=1):
         value = f"{WIRES[d.wiring.wire].name}, {route.cut:g} mm"
-        nets = (bottom if end == "FOOT" else top, f"E{n}_{end}")
+        nets = (bottom, foot) if end == "FOOT" else (top, f"E{n}_{end}")
         parts.append(two(f"W{10 * n + k}", "lead", value, lead_part(colour), nets, ohm=lead, mm=route.cut))
     return (replace(part, element=n, board=board.number) for part in parts)

@@ -23,9 +23,8 @@ from tactcad.parts.array.converter_figures import RATE, bridge_supply, settling
 from tactcad.parts.array.hinge_section import design_gauge, hinge_section
 from tactcad.parts.array.layout import ElementPlace, Layout
 from tactcad.parts.array.leads import boards, leads, longest_lead_resistance
+from tactcad.parts.array.stop_gap import overloads
 from tactcad.parts.bought.electronic_parts import completion_drift, completion_tolerance
-
-from .element_signals import element_signals
 
 
 @dataclass(frozen=True)
@@ -61,12 +60,14 @@ def digital_readout(layout: Layout, name: str) -> DigitalReadout:
     d, part, gauge = layout.design, CONVERTERS[name], design_gauge(layout.design)
     volts, span = bridge_supply(layout), d.readout.temperature_span
     per_strain = volts * gauge.factor / 4
-    strains = gauge_signal.foil_strain_per_force(hinge_section(layout, layout.elements), gauge)
-    per_force = per_strain * np.broadcast_to(strains, (len(layout.elements),))
+    section, shape = hinge_section(layout, layout.elements), (len(layout.elements),)
+    per_force = per_strain * np.broadcast_to(gauge_signal.foil_strain_per_force(section, gauge), shape)
+    bent = np.broadcast_to(gauge_signal.foil_strain_per_deflection(section, gauge), shape)
+    overload = [float(b) * state.deflection for b, state in zip(bent, overloads(layout), strict=True)]
     two_leads = 2 * longest_lead_resistance(layout) / d.gauge.resistance if leads(layout) == 2 else 0.0
     off = d.gauge.resistance_tolerance + 3 * completion_tolerance(d) + abs(d.readout.bridge_offset)
     unloaded = volts * (off + two_leads) / 4
-    largest = tuple(unloaded + abs(per_strain) * s.overload_strain for s in element_signals(layout))
+    largest = tuple(unloaded + abs(per_strain) * strain for strain in overload)
     gain = max((g for g in part.gains if volts / g >= max(largest)), default=min(part.gains))
     own = part.noise * (part.noise_gain / gain) * (RATE / part.noise_rate) ** 0.5
     thermal = (4 * BOLTZMANN * ROOM * d.gauge.resistance * RATE / 2) ** 0.5

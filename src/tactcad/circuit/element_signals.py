@@ -12,7 +12,9 @@ from tactcad.parts.array.hinge_section import design_gauge, design_readout, hing
 from tactcad.parts.array.layout import ElementPlace, Layout
 from tactcad.parts.array.leads import longest_lead_resistance
 from tactcad.parts.array.stop_gap import overloads
-from tactcad.parts.bought.electronic_parts import completion_tolerance
+from tactcad.parts.bought.electronic_parts import completion_tolerance, converter_of
+
+from .digital_readout import digital_readout
 
 
 @dataclass(frozen=True)
@@ -37,7 +39,13 @@ class ElementSignal:
 
 def smallest_output(layout: Layout) -> float:
     """What the amplifier's output tells from none, V: two standard deviations of a reading, of which the
-    warm-up between its samples' instants is a part, and drift, by the root of their squares."""
+    warm-up between its samples' instants is a part, and drift, by the root of their squares. Where a
+    converter reads the bridges, what an amplifier would have to tell for the same strain."""
+    design = layout.design
+    if converter := converter_of(design):
+        found, factor = digital_readout(layout, converter.name), design.gauge.factor
+        strain = np.hypot(2 * found.noise, found.drift) / (found.excitation * factor / 4)
+        return float(strain * readout.volts_per_strain(factor, design_readout(design)))
     return float(np.hypot(2 * reading_scatter(layout), drift(layout)))
 
 

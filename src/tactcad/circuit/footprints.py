@@ -18,6 +18,8 @@ Span = tuple[float, float]
 BOARD_TOLERANCE = PLACING = 0.1  # mm, IPC-7351B
 TOE, HEEL, SIDE = 0.35, 0.35, 0.03  # mm, gull wings of more than 0.625 mm pitch, level B
 FINE_SIDE = -0.02  # mm, of finer pitch
+# mm, of terminals below a body, level B; chosen: side 0.01, heel 0.03 less, for 0.2 between pads at corners
+NO_LEAD_TOE, NO_LEAD_HEEL, NO_LEAD_SIDE = 0.3, -0.03, -0.05
 CHIP_TOE, CHIP_HEEL, CHIP_SIDE = 0.35, -0.05, 0.0  # mm, chips from 1608 on, level B
 LEAST_GAP = 0.2  # mm between pads
 COURTYARD = 0.25  # mm around pads and body, level B
@@ -111,6 +113,20 @@ def chip(
     return Footprint(name, _rounded(pads), (length[1], width[1]), height, library, source)
 
 
+def no_leads(
+    name: str, side: int, pitch: float, length: Span, terminal: Span, width: Span, slug: float, height: float,
+    library: str, source: str,
+) -> Footprint:  # fmt: skip
+    """Terminals on four sides, so many a side; the last pad is a square below the body, `slug` mm."""
+    at, long, wide = _land(length, terminal, width, NO_LEAD_TOE, NO_LEAD_HEEL, NO_LEAD_SIDE)
+    wide = min(wide, pitch - LEAST_GAP)
+    steps = [(i - (side - 1) / 2) * pitch for i in range(side)]
+    pads = [(-at, y, long, wide) for y in steps] + [(x, at, wide, long) for x in steps]
+    pads += [(at, -y, long, wide) for y in steps] + [(-x, -at, wide, long) for x in steps]
+    numbered = [Pad(str(i), *pad) for i, pad in enumerate([*pads, (0.0, 0.0, slug, slug)], start=1)]
+    return Footprint(name, _rounded(numbered), (length[1], length[1]), height, library, source)
+
+
 def _sot_23() -> Footprint:
     at, long, wide = _land((2.1, 2.64), (0.4, 0.6), (0.3, 0.5), TOE, HEEL, SIDE)
     pads = [Pad("1", -at, -0.95, long, wide), Pad("2", -at, 0.95, long, wide), Pad("3", at, 0.0, long, wide)]
@@ -158,6 +174,10 @@ FOOTPRINTS = {
         gull_wings(
             "MSOP-10-EP", 10, 0.5, (4.75, 5.05), (0.4, 0.7), (0.17, 0.27), (3.0, 3.0), 1.1,
             "Package_SO:MSOP-10-1EP_3x3mm_P0.5mm_EP1.68x1.88mm", "JEDEC MO-187 BA-T", slug=(1.68, 1.88),
+        ),
+        no_leads(
+            "LFCSP-32", 8, 0.5, (4.9, 5.1), (0.3, 0.5), (0.18, 0.30), 3.6, 0.8,
+            "Package_CSP:LFCSP-32-1EP_5x5mm_P0.5mm_EP3.6x3.6mm", "JEDEC MO-220 VHHD",
         ),
         chip(
             "0805", (1.8, 2.2), (0.3, 0.7), (1.1, 1.4), 1.3,

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import csv
 import io
+from collections import Counter
 from collections.abc import Iterator, Sequence
 
 from tactcad.parts.bought.electronic_parts import TO_CARD
@@ -19,7 +20,12 @@ HEAD = ("from", "to", "signal", "wire", "length_mm", "current_mA")
 # LT3042 (2) take, and a decoder that drives nothing.
 OWN = {"VPOS": 7.0, "VNEG": 3.0, "V5": 1.0}
 CABLE = 500.0  # mm, the bill's
-AT_CARD = {"OUT": "analogue input {b} +", "EXC": "analogue input, free, to see the bridges' supply"}
+OUT = "OUT"
+AT_CARD = {
+    OUT: "analogue input {b} +",
+    "EXC": "analogue input, free, to see the bridges' supply",
+    "DOUT": "digital input, all boards' together: CS{b} picks this one",
+}
 Row = tuple[str, str, str, str, float, float]
 
 
@@ -35,10 +41,13 @@ def harness_csv(circuit: Netlist, leads: Sequence[Lead]) -> bytes:
 
 def _rows(circuit: Netlist, leads: Sequence[Lead]) -> Iterator[Row]:
     # a bridge is two halves of twice the resistance beside each other; the gauge's half carries half of it
-    warm = {g.board: 1e3 * circuit.excitation / g.figure("ohm") for g in circuit.of_kind("gauge")}
+    bridge = 1e3 * circuit.excitation / next(circuit.of_kind("gauge")).figure("ohm")
+    digital = any(circuit.of_kind("converter"))  # all bridges are warm, not one of a board
+    read = Counter(g.board for g in circuit.of_kind("gauge"))
+    warm = {board: bridge * (count if digital else 1) for board, count in read.items()}
     for lead in leads:
         signal = circuit.pin_at(lead.end).net
-        current = 0.0 if signal.endswith("PLUS") else warm[lead.bundle] / 2
+        current = 0.0 if signal.endswith("PLUS") else bridge / 2
         wire = f"{lead.designator}: {lead.wire} {lead.colour}"
         yield lead.start, lead.end, signal, wire, lead.length, current
     for connector in circuit.of_kind("connector"):
@@ -69,11 +78,11 @@ def _rows(circuit: Netlist, leads: Sequence[Lead]) -> Iterator[Row]:
 
 
 def _cable(connector: Component, warm: float) -> Iterator[Row]:
-    b, last = connector.board, connector.pins[-1]
+    b, last, nets = connector.board, connector.pins[-1], {p.net.rstrip("0123456789") for p in connector.pins}
     for pin in connector.pins:
         current = OWN.get(pin.net, 0.0) + (warm if pin.net == "VPOS" else 0.0)
         if pin is last:
-            to = f"analogue input {b} -"
+            to = f"analogue input {b} -" if OUT in nets else "0 V of the controller"
         elif pin.net == GROUND:
             to, current = "0 V of the supplies", warm + OWN["VPOS"]
         elif pin.net in OWN:

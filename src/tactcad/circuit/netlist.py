@@ -19,11 +19,13 @@ Kind = Literal[
     "terminal",
     "switch",
     "multiplexer",
+    "converter",
     "decoder",
     "amplifier",
     "capacitor",
     "connector",
     "regulator",
+    "supply",
     "diode",
 ]
 GROUND = "GND"

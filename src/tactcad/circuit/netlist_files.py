@@ -19,7 +19,7 @@ from math import pi
 from uuid import NAMESPACE_OID, uuid5
 
 from tactcad.parts.array.layout import Layout
-from tactcad.parts.array.leads import colours
+from tactcad.parts.array.leads import boards, colours
 
 from .netlist import Component, Netlist
 
@@ -229,12 +229,11 @@ def wiring(layout: Layout, circuit: Netlist) -> tuple[Lead, ...]:
 
 
 def _lead(layout: Layout, circuit: Netlist, c: Component) -> Lead:
-    at_gauge, at_board = c.net("1"), c.net("2")
     return Lead(
         c.designator,
         c.element,
-        _place(circuit, at_gauge, "terminal"),
-        _place(circuit, at_board, "connector"),
+        _terminal(circuit, c.net("1")),
+        _connector_pin(layout, circuit, c),
         colours(layout)[int(c.designator[1:]) % 10 - 1],
         layout.design.wiring.wire,
         c.figure("mm"),
@@ -242,10 +241,24 @@ def _lead(layout: Layout, circuit: Netlist, c: Component) -> Lead:
     )
 
 
-def _place(circuit: Netlist, net: str, kind: str) -> str:
-    """The one terminal or connector pin on a net."""
-    ((component, pin),) = [node for node in circuit.nets[net] if node[0].kind == kind]
+def _terminal(circuit: Netlist, net: str) -> str:
+    """The one terminal's pin on a net."""
+    ((component, pin),) = [node for node in circuit.nets[net] if node[0].kind == "terminal"]
     return f"{component.designator}.{pin.number}"
+
+
+def _connector_pin(layout: Layout, circuit: Netlist, c: Component) -> str:
+    """The connector's pin where a lead ends, by what is printed there: its channel and end."""
+    places = next(board.places for board in boards(layout) if board.number == c.board)
+    channel = next(i for i, place in enumerate(places, start=1) if place.number == c.element)
+    said = f" CH{channel}_{c.net('2').partition('_')[2] or 'FOOT'}"
+    ((name, pin),) = [
+        (other.designator, pin.number)
+        for other in circuit.of_kind("connector")
+        for pin in other.pins
+        if other.board == c.board and pin.role.endswith(said)
+    ]
+    return f"{name}.{pin}"
 
 
 def wiring_csv(leads: Sequence[Lead]) -> bytes:

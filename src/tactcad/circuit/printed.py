@@ -17,7 +17,7 @@ HIGH = 0.8  # mm; board houses print letters from 0.8 on
 AROUND = 0.07  # mm from pads and drills: the mask's opening is 0.05 larger
 CHANNEL_PINS = {"RED": "R", "PLUS": "W", "FOOT": "B"}
 SHORT = {"ENABLE": "EN"}
-MARKED = ("amplifier", "multiplexer", "decoder", "regulator", "diode")
+MARKED = ("amplifier", "multiplexer", "converter", "decoder", "regulator", "supply", "diode")
 Box = tuple[float, float, float, float]
 
 
@@ -97,12 +97,12 @@ def _pins(board: BoardCopper) -> Iterator[tuple[str, Point, bool]]:
         placed = places[name]
         for pad, pin in zip(placed.footprint.pads, placed.component.pins, strict=True):
             x, y = placed.pad_at(pad)
-            channel, _, end = pin.net.partition("_")
+            said = pin.role.partition(" ")[2].removesuffix("_IN")
+            channel, _, end = said.partition("_")
             if channel.startswith("CH"):
                 yield CHANNEL_PINS[end], (x, y - 1.65), False
                 if end == "PLUS":
                     yield channel, (x, y - 3.0), False
                 continue
-            said = pin.role.partition(" ")[2].removesuffix("_IN")
             text = SHORT.get(said, said)
             yield text, (x, y + side * (1.15 + width(text, HIGH) / 2)), True

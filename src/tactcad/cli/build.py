@@ -27,8 +27,8 @@ EXAMPLES = """\
   tactcad build --within 1%                as many as the yield's 95 % interval of plus and minus 1 % needs
   tactcad build my-sensor.toml --seed 7 --json
 
-Every dimension of every part is drawn within its limits, the array is put together as its guide says, and
-what does not go together is counted, with the limit to mend. Exit status 1 where fewer than 99.5 % of the
+Every dimension of every part is drawn at random within its limits, and the array is put together as its guide
+says. Arrays that fail are counted, with the limit to change. Exit status 1 if fewer than 99.5 % of the
 arrays meet all requirements, under normal or uniform parts; corners are for information."""
 
 USUAL, MOST = 1000, 1_000_000
@@ -40,7 +40,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--count", type=int, metavar="N", help=f"arrays of each distribution (default: {USUAL})"
     )
     add_allowance(parser, "half-width of the yield's 95 % interval", "number of arrays")
-    parser.add_argument("--seed", type=int, metavar="S", help="of chance (default: the published one)")
+    parser.add_argument(
+        "--seed", type=int, metavar="S", help="seed of the random numbers (default: the published one)"
+    )
     add_json(parser)
 
 

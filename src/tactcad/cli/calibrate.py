@@ -28,7 +28,7 @@ EXAMPLES = """\
 FILE is CSV with the columns element, run, displacement, force, signal: the stage's displacement, in mm, N
 and V; or with the unit in the name: displacement_um, force_mN, signal_mV. Lines that start with # are
 comments; semicolons or tabs between columns, and decimal commas with them, are read too. With a column
-time_s a displacement may be read any number of times, and where it returns later drift is told from it."""
+time_s a displacement may be read any number of times, and where it returns later the drift is estimated."""
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -52,7 +52,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         type=float,
         metavar="S",
         help="relative standard deviation of an element's slope from run to run, where you know it (0.01 "
-        "for 1 %%); without it the runs tell, and for a single run 0.01 is assumed",
+        "for 1 %%); default: estimated from the runs; 0.01 for a single one",
     )
     parser.add_argument(
         "--level", type=float, default=0.95, metavar="P", help="level of the intervals (default 0.95)"

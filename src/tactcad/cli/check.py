@@ -26,9 +26,9 @@ EXAMPLES = """\
   tactcad check --within 0.1%             parts meshed so that each volume is within 0.1 % of the solid's
   tactcad check --in 60                   meshed as finely as 60 s allow; no check is left out
 
-Every failure is printed in a table at the end, and the exit status is 1 where there is one; what is only
-flagged (such as the hinge, for the quotation, or a rig that does not take the array, which fails with
---strict) is listed. A design in hardware/ is compared with its golden file in exports/golden/ too."""
+Failures are printed in a table at the end and make the exit status 1. Flags (such as the hinge, for the
+quotation, or a rig that does not take the array, which fails with --strict) are listed. A design in
+hardware/ is compared with its golden file in exports/golden/ too."""
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -38,11 +38,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     )
     add_shop(parser)
     add_strict(parser)
-    parser.add_argument(
-        "--all",
-        action="store_true",
-        help="of a design that is refused: every rule that it breaks, a line each",
-    )
+    parser.add_argument("--all", action="store_true", help="list every rule that a refused design breaks")
     parser.add_argument("-o", "--out", metavar="DIR", help="write check.json and junit.xml there")
     parser.add_argument("--report", dest="out", help=UNLISTED)
     add_allowance(parser, "relative error of a part's meshed volume", "mesh")

@@ -61,7 +61,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
     kinds = ("changes", "geometry", "stiffness", "checks", "revision")
     parser.add_argument("old", metavar="A", help="design, export's folder or golden file; or revision")
     parser.add_argument("new", metavar="B", help="the same, what it became")
-    parser.add_argument("design", metavar="DESIGN", nargs="?", help="A and B are git revisions of it")
+    parser.add_argument(
+        "design", metavar="DESIGN", nargs="?", help="the design of which A and B are git revisions"
+    )
     parser.add_argument(
         "--their-code",
         action="store_true",

@@ -11,7 +11,7 @@ EXAMPLES = """\
   tactcad golden                   the golden file of hardware/macro-array.toml
   make golden                      those of every design in hardware/
 
-Runs every check first, prints what changed, and writes exports/golden/<design>.json only where nothing
+Runs every check first, prints what changed, and writes exports/golden/<design>.json only if nothing
 fails. Other geometry under the same revision letter is refused: give the design a new one."""
 
 

@@ -60,7 +60,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         help="model of the object (default: layer, or the cheapest that keeps --within)",
     )
     parser.add_argument(
-        "--within", metavar="P", help="error of the pads' forces that is accepted, of their mean, such as 2%%"
+        "--within", metavar="P", help="largest error of the pads' forces, of their mean, such as 2%%"
     )
     parser.add_argument("-o", "--out", metavar="FILE.svg", help="draw the pressure under the pads")
     add_json(parser)

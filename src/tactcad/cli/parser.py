@@ -90,15 +90,13 @@ def add_json(parser: argparse.ArgumentParser) -> None:
 
 def add_strict(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
-        "--strict",
-        action="store_true",
-        help="exit status 1 where a rig of the design does not take its array",
+        "--strict", action="store_true", help="exit status 1 if a test rig does not fit the array"
     )
 
 
 def add_others(
     parser: argparse.ArgumentParser,
-    where: str = "the folder holds what tactcad did not write there",
+    where: str = "the folder holds files that tactcad did not write",
     kept: str = "DIR-kept-1",
 ) -> None:
     """--keep and --discard, for commands that write a folder (tactcad.export.publication), or zips."""
@@ -109,7 +107,7 @@ def add_others(
         action="store_const",
         const="keep",
         default="refuse",
-        help=f"where {where}: move it aside, as {kept} (default: refuse)",
+        help=f"if {where}: move it aside, as {kept} (default: refuse)",
     )
     others.add_argument(
         "--discard", dest="others", action="store_const", const="discard", help="remove it, unread"
@@ -129,20 +127,19 @@ def _named(action: argparse.Action) -> str:
 
 
 def add_allowance(parser: argparse.ArgumentParser, of: str, chosen: str) -> None:
-    """The two options; `of` says whose error P is, `chosen` what is chosen by it."""
+    """The two budgets; `of` says whose error P is, `chosen` what --within chooses."""
     of = of.replace("%", "%%")  # argparse formats help
     parser.add_argument(
         "--within",
         metavar="P",
-        help=f"largest {of} that may be left, as 1%% or 0.01; takes the {chosen} of least work that keeps "
-        "it, or refuses; says what a step more or less would cost (docs/accuracy.md)",
+        help=f"largest {of} that you accept, as 1%% or 0.01; picks the quickest {chosen} that keeps it, or "
+        "refuses, and prints what a step more or less would cost (docs/accuracy.md)",
     )
     parser.add_argument(
         "--in",
         dest="seconds",
         metavar="SECONDS",
-        help=f"time it may take: the {chosen} of least error in it; with --within both must hold; a time too "
-        "short is refused before anything is begun, with the time needed: no check is left out for it",
+        help="time budget in seconds: picks the most accurate setting that fits; no check is left out for it",
     )
 
 

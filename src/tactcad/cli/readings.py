@@ -40,7 +40,7 @@ MAP says in TOML which column is which element, in what unit, and which rows are
   unit = "N"
   least = 0.05                # less than that is no load
 
-Beside OUT an OUT.svg shows what was taken for what. A channel that is dead or saturated is named and its
+OUT.svg shows how columns and steps were read. A channel that is dead or saturated is named and its
 element left out."""
 
 
@@ -54,7 +54,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         metavar="CSV",
         help="the readings, for `tactcad calibrate` or `stiffness`; a plot of the same name ends in .svg",
     )
-    parser.add_argument("--json", action="store_true", help="print what was taken for what as JSON")
+    parser.add_argument("--json", action="store_true", help="print how columns and steps were read, as JSON")
 
 
 def run(args: argparse.Namespace) -> int:

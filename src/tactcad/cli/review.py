@@ -13,9 +13,9 @@ from .parser import UNLISTED, add_json
 EXAMPLES = """\
   tactcad review                                  review.html of hardware/macro-array.toml, all its scenes
   tactcad review soft-tissue --out soft.html      another design, to a file of your choice
-  tactcad review my/design.toml --scene array     one scene only: sooner made
+  tactcad review my/design.toml --scene array     one scene only, which is faster
   tactcad review macro-array --drawings           with the drawing sheet of every part made
-  tactcad review exports/macro-array              of an export, with the sheets that lie in it
+  tactcad review exports/macro-array              of an export, with its sheets
   tactcad review --out macro-array.FCStd      the same for FreeCAD, made by FreeCAD itself
 
 One file that opens in a browser, without server or network: scenes in three dimensions, with cuts, the

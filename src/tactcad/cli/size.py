@@ -44,7 +44,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         help="what to find: hinge thickness (default) or slot length",
     )
     parser.add_argument(
-        "design", nargs="?", default=DEFAULT_DESIGN, help=f"gives all else (default {DEFAULT_DESIGN})"
+        "design", nargs="?", default=DEFAULT_DESIGN, help=f"gives all other values (default {DEFAULT_DESIGN})"
     )
     parser.add_argument(
         "--with",

@@ -21,7 +21,7 @@ EXAMPLES = """\
 
 FILE is CSV with the columns load, element, signal (N and V, or load_mN, signal_mV), and where there are
 several, run and sample: every element at every load. With a column time_s a load may be read any number of
-times, and where it returns later drift is told from it. The calibration is what `tactcad calibrate` wrote
+times, and where it returns later the drift is estimated. The calibration is the file of `tactcad calibrate`
 (--out, or --json)."""
 
 
@@ -94,13 +94,13 @@ def stiffness_rows(args: argparse.Namespace, design: Design) -> int:
     if args.coupling is not None and (args.thickness or args.nu) is not None:
         raise InputError("--coupling", "takes the object as springs", legal="without --thickness and --nu")
     known = calibration_file.read(args.calibration)
-    layers = pads.layers(design, args.thickness, args.nu) if args.coupling is None else []
     results: list[grasp.Grasp] = []
     with slow_work(sys.stderr) as tell:
         tell(0, 1, f"reading {args.file}")
         samples = (
             log_readings.grasps(from_log(args.file, args.map)) if args.map else readings.grasps(args.file)
         )
+        layers = pads.layers(design, args.thickness, args.nu) if args.coupling is None else []
         for g in samples:
             tell(len(results), len(samples), f"sample {g.sample}")
             shares = pads.coupling(args.design, g, args.coupling or 0.0)

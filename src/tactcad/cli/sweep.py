@@ -20,14 +20,14 @@ if TYPE_CHECKING:
 
 EXAMPLES = """\
   tactcad sweep hardware/studies/hinges.toml --out hinges
-  tactcad sweep mine.toml --out mine --scheduler tcp://head:8786    on a cluster that is there already
-  tactcad sweep mine.toml --out mine --within 0.1%    by the rung that this takes, not the one it names
+  tactcad sweep mine.toml --out mine --scheduler tcp://head:8786    on a running cluster
+  tactcad sweep mine.toml --out mine --within 0.1%    by the rung that keeps 0.1 %, not by the study's own
   tactcad sweep plot hinges               DIR/plot.html: pairs, main effects, shares of variance
-  tactcad schema --study                  every field of a study file
+  tactcad schema study                    every field of a study file
 
 DIR gets results.parquet, results.csv (up to 1e6 rows, above with --csv) and manifest.json. Each task's
 result is kept in DIR/store as it finishes: the same command again takes up where it was stopped, computes
-nothing twice and gives the same bytes. Refused designs are rows with their reason; where all are, the exit
+nothing twice and gives the same bytes. Refused designs are rows with their reason; if all are, the exit
 status is 1."""
 
 MOST_WORKERS = 1000

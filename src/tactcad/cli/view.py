@@ -12,10 +12,10 @@ EXAMPLES = """\
   tactcad view my/design.toml --scene grasping     a rig
   tactcad view my/design.toml --port 8123          always the same port; the token changes
 
-The page of `tactcad review`, that follows the file: every save shows the new sensor, keeping the view, with
-the numbers that changed before and after. Where a rule is broken or the text is wrong, it says so and the
-last good model stays. Only this machine is answered, and only the printed address. Checks and virtual builds
-take seconds and are left out. Ctrl-C ends it."""
+The page of `tactcad review` follows the file: every save shows the new sensor in the same view, with the
+numbers that changed, before and after. If a rule is broken or the text is wrong, it says so and keeps the
+last good model. It listens on 127.0.0.1 only and needs the token in the printed address. Checks and virtual
+builds take seconds and are left out. Ctrl-C ends it."""
 
 
 def configure(parser: argparse.ArgumentParser) -> None:

@@ -23,6 +23,8 @@ from scipy.special import j0
 
 from tactcad.design.messages import InputError, one_of
 
+Rectangles = tuple[np.ndarray, ...]  # x, y, a, b: centres and sides, mm
+
 DEEP = 40.0  # c from which on phi is 1 to the last digit
 WAVES = 1200  # Gauss points up to DEEP: G to 1e-12 up to q = 20, where the face no longer feels the load
 FAR = (
@@ -91,13 +93,13 @@ def _fourfold(x: np.ndarray, y: np.ndarray) -> np.ndarray:
     return along + across - np.hypot(x, y) ** 3 / 6
 
 
-def _mean_inverse(dx: np.ndarray, dy: np.ndarray, a: tuple, b: tuple) -> np.ndarray:
-    """Mean of 1/r over the points of two rectangles, their centres dx and dy apart; a and b hold their sides,
-    along x and y: (first, second).
+def mean_inverse(first: Rectangles, second: Rectangles) -> np.ndarray:
+    """Mean of 1/r (1/mm) over the points of every two rectangles, [n, m], as of `influence`.
 
     Near ones by F at the sixteen differences of their edges; further off those differences lose digits, and
     1/r at the centres with its second moments is exact to 1e-5.
     """
+    dx, dy, a, b = _apart(first, second)
     r = np.hypot(dx, dy)
     spread_x, spread_y = (a[0] ** 2 + a[1] ** 2) / 12, (b[0] ** 2 + b[1] ** 2) / 12
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -117,7 +119,7 @@ def _mean_inverse(dx: np.ndarray, dy: np.ndarray, a: tuple, b: tuple) -> np.ndar
 
 
 def influence(
-    body: Body, first: tuple[np.ndarray, ...], second: tuple[np.ndarray, ...] | None = None
+    body: Body, first: Rectangles, second: Rectangles | None = None, mean: np.ndarray | None = None
 ) -> np.ndarray:
     """Mean displacement of every rectangle of the face under 1 N spread evenly on every other one.
 
@@ -127,20 +129,25 @@ def influence(
         What is pressed.
     first, second : four arrays (x, y, a, b) each, [n] and [m]
         Centres and sides of the rectangles, mm; second: those that are loaded, by default the first.
+    mean
+        Their `mean_inverse`, where it is known.
 
     Returns
     -------
     ndarray, [n, m]
         mm/N.
     """
-    x, y, a, b = first
-    x2, y2, a2, b2 = first if second is None else second
-    dx, dy = x[:, None] - x2, y[:, None] - y2
-    sides_x, sides_y = (a[:, None], a2), (b[:, None], b2)
-    mean = _mean_inverse(dx, dy, sides_x, sides_y)
+    second = first if second is None else second
+    mean = mean_inverse(first, second) if mean is None else mean
     if not isinf(body.thickness):
-        mean = mean + _mean_correction(body, dx, dy, sides_x, sides_y)
+        mean = mean + _mean_correction(body, *_apart(first, second))
     return (1 - body.poisson**2) / (pi * body.modulus) * mean
+
+
+def _apart(first: Rectangles, second: Rectangles) -> tuple[np.ndarray, np.ndarray, tuple, tuple]:
+    """How far their centres are apart along x and y, [n, m], and both's sides along x and along y."""
+    (x, y, a, b), (x2, y2, a2, b2) = first, second
+    return x[:, None] - x2, y[:, None] - y2, (a[:, None], a2), (b[:, None], b2)
 
 
 def _mean_correction(body: Body, dx: np.ndarray, dy: np.ndarray, a: tuple, b: tuple) -> np.ndarray:

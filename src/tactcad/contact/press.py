@@ -209,16 +209,21 @@ class PadsOnBody:
 
 
 def complementary(
-    M: np.ndarray, gap: np.ndarray, load: float | None, approach: float | None, share: np.ndarray
+    M: np.ndarray,
+    gap: np.ndarray,
+    load: float | None,
+    approach: float | None,
+    share: np.ndarray,
+    first: np.ndarray | None = None,
 ) -> tuple[np.ndarray, float]:
     """f >= 0 with M f + gap - approach >= 0 and one of them zero; the approach where the load, the sum of
-    share f, is given.
+    share f, is given. `first` are patches that may be those pressed, to begin with; by default all.
 
     Patches in tension leave, patches that overlap come back, until neither is left; should that go in
     circles, by non-negative least squares.
     """
     n = len(gap)
-    active = np.ones(n, bool)
+    active = np.ones(n, bool) if first is None or not first.any() else first
     seen = set()
     while (key := active.tobytes()) not in seen and active.any():
         seen.add(key)

@@ -21,7 +21,7 @@ from math import inf
 import numpy as np
 from scipy.interpolate import RectBivariateSpline
 
-from .elastic_body import Body, influence
+from .elastic_body import Body, influence, mean_inverse
 from .press import Pads, Pressed, complementary, patches
 
 KNOTS = 21  # of each ratio in the table, 0 to 1; 41 move forces by less than 0.1 %
@@ -124,9 +124,10 @@ def pad_law(poisson: float, thickness: float, base: str, length: float, width: f
     basis = _powers(one[0], one[1])
     spread = np.zeros((KNOTS, KNOTS, len(basis), 3))
     for i, x in enumerate(t):
+        f = np.ones(one.shape[1])
         for j, y in enumerate(t[: KNOTS - i]):
             depth = 1 - 1.5 * (x + y)
-            f, _ = complementary(M, -(x * modes[1] + y * modes[2]), None, depth, np.ones(one.shape[1]))
+            f, _ = complementary(M, -(x * modes[1] + y * modes[2]), None, depth, np.ones(one.shape[1]), f > 0)
             value[:, i, j] = modes @ f
             if not f.any():  # a corner that just touches: as before it
                 spread[i, j] = spread[i, j - 1] if j else spread[i - 1, j]
@@ -160,6 +161,18 @@ def _powers(x: np.ndarray, y: np.ndarray) -> np.ndarray:
     return np.array([x**a * y**b for a, b in POWERS])
 
 
+@lru_cache(maxsize=2)
+def _mean_inverses(x: bytes, y: bytes, length: float, width: float) -> list[np.ndarray]:
+    """What every layer under these pads has in common: for each pair of pads, [patch, patch]."""
+    at = np.stack([np.frombuffer(x), np.frombuffer(y)], -1)
+    one = patches(length, width, False, COARSE)
+    return [
+        mean_inverse((one[0] + dx, one[1] + dy, *one[2:]), tuple(one))
+        for i in range(len(at))
+        for dx, dy in at[i] - at[: i + 1]
+    ]
+
+
 @lru_cache(maxsize=64)
 def between(
     x: bytes, y: bytes, length: float, width: float, poisson: float, thickness: float, base: str
@@ -173,10 +186,11 @@ def between(
     modes = np.stack([np.ones(m), one[0], one[1]])
     unit = Body(1.0, poisson, thickness, base)
     face = np.empty((n, m, n, m))
+    means = iter(_mean_inverses(x, y, length, width))
     for i in range(n):
         for j in range(i + 1):
             dx, dy = at[i] - at[j]
-            block = influence(unit, (one[0] + dx, one[1] + dy, *one[2:]), tuple(one))
+            block = influence(unit, (one[0] + dx, one[1] + dy, *one[2:]), tuple(one), next(means))
             face[i, :, j], face[j, :, i] = block, block.T
     full = np.linalg.inv(face.reshape(n * m, n * m)).reshape(n, m, n, m)
     grip = np.einsum("am,imjk,bk->iajb", modes, full, modes).reshape(3 * n, 3 * n)

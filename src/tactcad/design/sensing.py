@@ -369,8 +369,7 @@ class Readout:
         Number("", 0, 0.1, "relative change of the bridges' supply between zero and reading"), 0.001
     )
     converter: str = given(
-        OneOf(("card", *CONVERTERS), "a card behind the amplifier, or settings of a converter besides"),
-        "card",
+        OneOf(("card", *CONVERTERS), "a card behind amplifiers, or a sigma-delta converter a board"), "card"
     )
     inputs: int | None = given(
         Whole(1, 4096, "differential inputs of the converter's card"), None, "one for each board"

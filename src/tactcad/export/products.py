@@ -192,6 +192,11 @@ def _read(plan: Plan) -> bool:
     return ARRAY in plan.options.scenes and family_of(plan.design).readout is not None
 
 
+def _converter(design: CommonTables) -> str:
+    """What reads its bridges."""
+    return getattr(getattr(design, "readout", None), "converter", "card")
+
+
 @product(_read)
 def circuit_files(plan: Plan) -> Iterator[Batch]:
     """The circuit that reads the array: its netlist in three forms, and the leads to cut."""
@@ -202,15 +207,17 @@ def circuit_files(plan: Plan) -> Iterator[Batch]:
     design, family = plan.design, family_of(plan.design)
     circuit = family.must("readout", "export").netlist(family.layout(design))
     key = digest(("circuit", plan.shapes.made_by, circuit, design.design))
+    converter = _converter(design)
     for name, kind, make in (
         ("circuit_{}.csv", "netlist", files.table_file),
         ("circuit_{}.cir", "netlist", files.deck_file),
         ("wiring_{}.csv", "wiring", files.wiring_file),
         ("harness_{}.csv", "wiring", files.harness_file),
     ):
+        if make is files.deck_file and converter != "card":  # SPICE has no converter
+            continue
         path = f"circuit/{design.name}-{name.format(plan.revision)}"
         yield _one(Output(path, kind, "", f"{key} {path}"), partial(make, design, circuit))
-    converter = getattr(getattr(design, "readout", None), "converter", "card")
     for ending, settings in (("h", settings_header), ("json", settings_json)) if converter != "card" else ():
         path = f"circuit/{design.name}-{converter}_{plan.revision}.{ending}"
         made_of = digest(("converter", plan.shapes.made_by, design, path))
@@ -344,7 +351,7 @@ def assembly_sheets(plan: Plan) -> Iterator[Batch]:
         yield _drawing(stem, "", key, partial(make, scene), FILES, 10 * len(scene.placements))
 
 
-@product(lambda plan: plan.options.drawings and _read(plan))
+@product(lambda plan: plan.options.drawings and _read(plan) and _converter(plan.design) == "card")
 def circuit_sheets(plan: Plan) -> Iterator[Batch]:
     """The circuit's sheets, as PDF and SVG."""
     draft, sample = plan.options.draft, plan.options.sample

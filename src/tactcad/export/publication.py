@@ -78,7 +78,7 @@ def looked_at(directory: str | Path, schema: str, others: str = REFUSE) -> Conte
 
 def _contents_of_one(out: Path, schema: str) -> Contents:
     """What lies in DIR; read again where another run put its folder there meanwhile, or the files of one
-    would be held against the manifest of the other.
+    would be compared with the manifest of the other.
     """
     while True:
         before = _which(out)

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from tactcad.parts.language.description import Part, Vector, vector
 from tactcad.parts.language.metric import METRIC
 
-from .scene import HAND, STILL, Contact, Move, Need, Placement, Scene, Step
+from .scene import FREEDOMS, HAND, STILL, Contact, Freedom, Held, Move, Need, Placement, Scene, Step
 
 # mm that a part starts clear of all that it comes between; chosen: fingers hold it there
 APPROACH = 20.0
@@ -257,7 +257,9 @@ def settles(scene: Scene, number: int) -> tuple[tuple[str, ...], tuple[str, ...]
                 axis = "xyz"[max(range(3), key=lambda i: abs(n[i]))]
                 laid.setdefault((axis, b if len(new) < 8 else "its neighbour"), []).append(a)
     sets = [f"{head} to {into}: all, by {' '.join(by)}" for (head, into), by in screwed.items()] + sets
-    fixed = {n for pair in screwed for n in pair}
+    screwed_on = {n for pair in screwed for n in pair}
+    fixed = screwed_on | {n for held in step.held for body in held.bodies for n in body}
+    sets = [*map(_told, step.held), *sets]
     leaves: list[str] = []
     for (axis, on), names in laid.items():
         own = tuple(dict.fromkeys(names))
@@ -266,7 +268,26 @@ def settles(scene: Scene, number: int) -> tuple[tuple[str, ...], tuple[str, ...]
         sets.append(f"{' '.join(own)} on {on}: along {axis}")
         others = " and ".join(w for w in "xyz" if w != axis)
         leaves.append(f"{' '.join(own)} on {on}: along {others}, turn about {axis}")
+    left: dict[str, list[str]] = {}
+    for body in dict.fromkeys(
+        body for held in step.held for body in held.bodies if not set(body) <= screwed_on
+    ):
+        kept = {f for held in step.held if body in held.bodies for f in held.freedoms}
+        left.setdefault(_ways([f for f in FREEDOMS if f not in kept]), []).append(" ".join(body))
+    leaves += [f"{' '.join(names)}: {ways}" for ways, names in left.items() if ways]
     return step.sets or tuple(sets), step.leaves or tuple(leaves)
+
+
+def _told(held: Held) -> str:
+    each = ", each" if len(held.bodies) > 1 else ""
+    names = " ".join(n for body in held.bodies for n in body)
+    return f"{names}{each} by {' '.join(held.by)}: {_ways(held.freedoms)}"
+
+
+def _ways(freedoms: Sequence[Freedom]) -> str:
+    along = " and ".join(f for f in freedoms if len(f) == 1)
+    about = " and ".join(f[1] for f in freedoms if len(f) == 2)
+    return ", ".join(f"{how} {axes}" for how, axes in (("along", along), ("turn about", about)) if axes)
 
 
 def entering(scene: Scene) -> Iterator[tuple[str, str]]:

@@ -81,6 +81,23 @@ class Move:
     by: str = HAND
 
 
+Freedom = Literal["x", "y", "z", "rx", "ry", "rz"]
+FREEDOMS: tuple[Freedom, ...] = ("x", "y", "z", "rx", "ry", "rz")
+
+
+@dataclass(frozen=True)
+class Held:
+    """Bodies whose freedoms contacts set: along x, y, z, or turns about them.
+
+    bodies  designators of each, which move as one
+    by      what they lie on, or hang on
+    """
+
+    bodies: tuple[tuple[str, ...], ...]
+    by: tuple[str, ...]
+    freedoms: tuple[Freedom, ...]
+
+
 @dataclass(frozen=True)
 class Need:
     """Parts that a step needs to stand there, or `away`: not there yet; and why."""
@@ -103,8 +120,9 @@ class Step:
     `order` states the moves that do not follow from the placements (scenes/moves.py), in turn: a Move; or
     designators that come together on their usual way; () brings in what lies on the bench. The step's other
     parts follow one by one. `at` is where its parts stay for now: an offset from their final place, mm.
-    `sets` and `leaves` say which freedoms it fixes and leaves, where contacts do not tell; `needs` what else
-    must be there or away. `limit` is what the step has to reach: the assembly drawing notes it.
+    `held` names what contacts set, which the check of steps tries with the solids. `sets` and `leaves` say
+    which freedoms it fixes and leaves, where contacts do not tell; `needs` what else must be there or away.
+    `limit` is what the step has to reach: the assembly drawing notes it.
     """
 
     title: str
@@ -121,6 +139,7 @@ class Step:
     at: Vector = STILL
     sets: tuple[str, ...] = ()
     leaves: tuple[str, ...] = ()
+    held: tuple[Held, ...] = ()
     needs: tuple[Need, ...] = ()
     limit: str = ""
 

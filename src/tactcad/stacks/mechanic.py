@@ -35,6 +35,7 @@ from tactcad.parts.array.measurements import WAYS
 from tactcad.parts.array.stop_gap import stop_gap
 from tactcad.parts.rigs.setting_fixture import SettingLayout
 from tactcad.scenes.requirement import Deviations, DimensionLimits
+from tactcad.scenes.scene import Freedom
 
 from .variables import (
     BLANK_LEDGE,
@@ -57,6 +58,12 @@ from .variables import (
     squareness,
 )
 
+# By scene and beginning of the designator: the freedoms that are taken as set by contacts.
+LEVEL: tuple[Freedom, ...] = ("z", "rx", "ry")
+TAKEN_AS_SET: dict[str, dict[str, tuple[Freedom, ...]]] = {
+    "setting": {"EP": LEVEL, "E": ("z", "ry"), "BL": ("z", "ry")},
+    "array": {"ST": LEVEL, "CA": LEVEL},
+}
 CUT = 100.0  # stress over yield strength, at most; chosen: whatever is beyond it is gone
 PAD = of_element(PAD_HEIGHT)
 # The field of HingeSection that a variable sets; the load arm follows from two others.

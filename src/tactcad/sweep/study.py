@@ -186,7 +186,7 @@ def read_study(path: str | Path) -> Study:
     table = _plain_toml(path, "a study file (TOML)")
     for name, value in table.items():
         if name not in TABLES:
-            raise unknown_field(name, list(TABLES), "tactcad schema --study")
+            raise unknown_field(name, list(TABLES), "tactcad schema study")
         if not isinstance(value, dict):
             raise InputError(name, "not a table", value=value, legal=f"a table [{name}]")
     for name in TABLES:

@@ -93,7 +93,7 @@ class MadeSensor:
         return np.geomspace(*self.target.range_of(self.design), POINTS)
 
     def built(self, count: int, wanted: float, seed: int = SEED) -> Yield:
-        """`count` arrays of each deciding distribution, held against a half-width (relative)."""
+        """`count` arrays of each deciding distribution, and how many keep a half-width (relative)."""
         return min((self._built(name, count, wanted, seed) for name in DECIDING), key=lambda y: y.share)
 
     def kept_by(self, share: float, count: int, seed: int = SEED) -> float:

@@ -1,9 +1,8 @@
 """The search: scipy's differential evolution over whole numbers, closed forms for many candidates at a time;
 then all candidates one or two numbers away from its best, until none of them is better.
 
-What is better: less violation of limits first, then the goal. The best is made a design and held against
-every rule. Where one refuses it, the search is done again, and whatever would be the best yet is held against
-them.
+Less violation of limits is better; then the goal decides. The best is made a design and checked
+against every rule. If one refuses it, the search runs again and checks each new best.
 """
 
 from __future__ import annotations
@@ -112,7 +111,7 @@ def search(
     goal
         To be made least among candidates that keep every limit, (candidates,).
     rules
-        Why a design is refused; None where the best is not held against rules and checks.
+        Why a design is refused; None if the best is not to be checked.
     start
         A candidate's numbers to start from.
     evolve

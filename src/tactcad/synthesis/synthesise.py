@@ -127,7 +127,7 @@ class Synthesis:
 
     target      as asked
     found       the chosen candidate
-    wanted      half-width that arrays are held against, relative; without one asked, the least that
+    wanted      half-width that arrays must keep, relative; without one asked, the least that
                 `target.share` of them keep
     made        its yield
     solid       K of every element by solid elements, N/mm

@@ -281,7 +281,7 @@ def parse_target(text: str, where: str, folder: Path = Path()) -> Target:
     table = parse_toml(text, where)
     for name, value in table.items():
         if name not in (*TABLES, "origin"):
-            raise unknown_field(name, [*TABLES, "origin"], "tactcad schema --target")
+            raise unknown_field(name, [*TABLES, "origin"], "tactcad schema target")
         if not isinstance(value, dict):
             raise InputError(name, "not a table", value=value, legal=f"a table [{name}]")
     for name in REQUIRED:
@@ -316,7 +316,7 @@ def _origins(table: dict[str, Any], values: dict[str, Any]) -> dict[str, str]:
     known = [f"{name}.{f.name}" for name, value in values.items() for f in dataclasses.fields(value)]
     for path, text in table.items():
         if path not in known:
-            raise unknown_field(f"origin.{path}", [f"origin.{p}" for p in known], "tactcad schema --target")
+            raise unknown_field(f"origin.{path}", [f"origin.{p}" for p in known], "tactcad schema target")
         shown_text(text, f"origin.{path}", "where the value is from")
     return dict(table)
 

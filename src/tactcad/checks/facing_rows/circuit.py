@@ -31,6 +31,8 @@ from tactcad.parts.rules.readout_rules import (
     switching_settles,
 )
 
+Arms = dict[str, dict[str, list[Component]]]
+
 
 def check_circuit(design: Design) -> Iterator[Finding]:
     """Findings on the array's netlist, and on its bridges, inputs, power, times and leads."""
@@ -62,6 +64,10 @@ def check_bridges(circuit: Netlist) -> Iterator[Finding]:
     for switch in circuit.of_kind("switch"):
         supply = joined[circuit.on_board("regulator", switch.board).net("out")]
         found.update(_gauges_of_bridge(arms, pairs, supply, joined[switch.net("drain")]))
+    for converter in circuit.of_kind("converter"):
+        ends = joined[circuit.on_board("regulator", converter.board).net("out")], joined[GROUND]
+        for pair in _inputs(converter):
+            found.update(_gauges_on_inputs(arms, [joined[net] for net in pair], ends))
     for gauge in circuit.of_kind("gauge"):
         count = found[gauge.designator]
         if count != 1:
@@ -82,6 +88,27 @@ def check_inputs(circuit: Netlist) -> Iterator[Finding]:
             amplifier = circuit.on_board("amplifier", part.board).designator
             message = f"the inputs of {amplifier} float while {when}"
             yield Finding("floating-input", "fail", part.designator, (), len(floating), 0, message)
+    for part in circuit.of_kind("converter"):
+        if floating := [net for pair in _inputs(part) for net in pair if net not in fed]:
+            message = f"inputs of {part.designator} float: {', '.join(floating)}"
+            yield Finding("floating-input", "fail", part.designator, (), len(floating), 0, message)
+
+
+def _inputs(converter: Component) -> list[tuple[str, str]]:
+    """Nets of a converter's differential inputs."""
+    nets = {p.role: p.net for p in converter.pins}
+    count = sum(role.startswith("AIN") for role in nets)
+    return [(nets[f"AIN{i}"], nets[f"AIN{i + 1}"]) for i in range(0, count, 2)]
+
+
+def _gauges_on_inputs(arms: Arms, middles: Sequence[str], ends: tuple[str, str]) -> list[str]:
+    """Gauges of the bridge whose outputs these are; none where an output has other than one arm to each
+    end."""
+    around = [arms.get(middle, {}).get(end, []) for middle in middles for end in ends]
+    others = [c for middle in middles for found in arms.get(middle, {}).values() for c in found]
+    if any(len(found) != 1 for found in around) or len(others) != 4 or middles[0] == middles[1]:
+        return []
+    return [c.designator for (c,) in around if c.kind == "gauge"]
 
 
 def _fed(circuit: Netlist) -> set[str]:
@@ -113,9 +140,6 @@ def _joined_by_leads(circuit: Netlist) -> dict[str, str]:
     for joint in (*circuit.of_kind("lead"), *links):
         parent[root(joint.net("2"))] = root(joint.net("1"))
     return {net: root(net) for net in parent}
-
-
-Arms = dict[str, dict[str, list[Component]]]
 
 
 def _arms(circuit: Netlist, joined: dict[str, str]) -> Arms:
@@ -158,12 +182,11 @@ def check_signals(design: Design) -> Iterator[Finding]:
     if converter:
         found = digital_readout(layout, converter.name)
         yield from _beyond_converter(found, signals, unread(design, ("converter", "completion")))
-        told = [1e3 * float(least) for least in found.resolution]
     else:
         yield from _beyond_range(design, signals)
-        told = [signal.resolution * 1e3 for signal in signals]
     stands_on = ("converter", "amplifier", "multiplexer", "switch", "completion")
-    for signal, least in zip(signals, told):
+    for signal in signals:
+        least = signal.resolution * 1e3
         if wish is not None and least > wish:
             message = (
                 f"tells no less than {least:.3g} mN from none (noise, quantisation, drift); "

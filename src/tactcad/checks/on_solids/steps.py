@@ -1,5 +1,5 @@
 """Whether the assembly's steps can be carried out: every move is made with the solids, past all that
-stands there by then, and every step finds what it needs.
+stands there by then, every step finds what it needs, and contacts set what it says they set.
 
 A pair is tried on meshes at PLACES or more of each leg, no further apart than a third of both parts'
 lengths along it: what is cut by more than FILM is in the way. What a screw or a pin shares with its hole at
@@ -8,7 +8,7 @@ its place it may share on the way.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from math import ceil, pi
 from typing import Any
 
@@ -20,18 +20,25 @@ from tactcad.parts.language.description import Vector
 from tactcad.parts.language.finding import Finding
 from tactcad.parts.language.metric import METRIC
 from tactcad.scenes.moves import Moment, entering, moments
-from tactcad.scenes.scene import HAND, STILL, Placement, Scene, Step
+from tactcad.scenes.scene import FREEDOMS, HAND, STILL, Held, Placement, Scene, Step
 from tactcad.solids.changed import closed
 from tactcad.solids.triangles import triangles
+from tactcad.stacks.mechanic import TAKEN_AS_SET
 
 from ..check import Check
 
 PLACES = 9  # on a leg, at least, from where the boxes of a pair meet to where they part; chosen
 FILM = 0.05  # mm3: what chords of two curved faces, 0.002 mm off, may share over a pin's length
 CHORD, TURN = 0.02, 0.1  # mm, rad: of the meshes
+REACH = 0.03  # mm that a body is shifted to find what it meets: more than a slide fit's play to one side
+PATCH = 1e-3  # mm3 that it must then share: 0.03 mm2 of contact
+# Least lever of what sets a turn, over half the body's diagonal; of a way, as much is left beside turns that
+# come with it. Chosen: a foot of a tenth of its height rocks.
+LEVER = 0.1
 # Two fingertips that hold a pin: each so thick and so wide (mm), over so much of its end. Chosen: half of an
 # adult's fingertip of 16 to 20 mm, which gives way.
 THICK, WIDE, GRIP = 10.0, 12.0, 4.0
+WAYS = {f: f"along {f}" if len(f) == 1 else f"to turn about {f[1]}" for f in FREEDOMS}
 
 
 def check_steps(
@@ -39,10 +46,11 @@ def check_steps(
 ) -> list[Finding]:
     """Findings on the steps of a scene; shapes by part number. `known` keeps meshes and what was tried,
     for the design's other scenes."""
-    return [*_Trial(scene, shapes, {} if known is None else known).findings()]
+    trial = Trial(scene, shapes, {} if known is None else known)
+    return [*trial.findings(), *trial.freedoms()]
 
 
-class _Trial:
+class Trial:
     def __init__(self, scene: Scene, shapes: Mapping[str, TopoDS_Shape], known: dict[tuple, Any]) -> None:
         self.scene, self.shapes, self.known = scene, shapes, known
         self.placed = {p.designator: p for p in scene.placements}
@@ -77,6 +85,72 @@ class _Trial:
         for name, offset in at.items():
             if offset != STILL:
                 yield from _order(self.scene.steps[-1], name, f"is left {np.linalg.norm(offset):.3g} mm off")
+
+    def freedoms(self) -> Iterator[Finding]:
+        """Those that are free though a step, or the virtual build, has them set."""
+        for step in self.scene.steps:
+            for held in step.held:
+                for body in held.bodies:
+                    yield from self._unset(step, body, held)
+        yield from self._taken()
+
+    def _unset(self, step: Step, body: Sequence[str], held: Held) -> Iterator[Finding]:
+        """Freedoms that a step says are set, and its contacts do not."""
+        levers = self._levers(body, held.by)
+        for freedom in held.freedoms:
+            if levers[FREEDOMS.index(freedom)] < LEVER:
+                message = (
+                    f"step '{step.title}': {' '.join(body)} is free {WAYS[freedom]}: its contact with "
+                    f"{' '.join(held.by)} does not set that"
+                )
+                yield Finding("freedom", "fail", body[0], (), 0.0, LEVER, message)
+
+    def _taken(self) -> Iterator[Finding]:
+        """Freedoms that virtual arrays take as set, and no step says so."""
+        taken = TAKEN_AS_SET.get(self.scene.name, {})
+        said = [
+            (n, f) for s in self.scene.steps for h in s.held for b in h.bodies for n in b for f in h.freedoms
+        ]
+        for name in self.placed:
+            for freedom in taken.get(name.rstrip("0123456789"), ()):
+                if (name, freedom) not in said:
+                    message = (
+                        f"{name} is free {WAYS[freedom]}: no step sets that, virtual arrays take it as set"
+                    )
+                    yield Finding("freedom", "fail", name, (), 0.0, LEVER, message)
+
+    def _levers(self, body: Sequence[str], by: Sequence[str]) -> np.ndarray:
+        """How firmly contacts set a body's six freedoms about its middle: one over the root of the compliance
+        on springs that share one stiffness at every patch, turns over half the body's diagonal."""
+        boxes = np.array([self._box(self.placed[name]) for name in body])
+        ends = np.array([boxes[:, 0].min(axis=0), boxes[:, 1].max(axis=0)])
+        middle, half = ends.mean(axis=0), float(np.linalg.norm(ends[1] - ends[0])) / 2
+        stiffness = 1e-12 * np.eye(6)
+        for name in body:
+            for other in by:
+                for points, normals, areas in self._patches(self.placed[name], self.placed[other]):
+                    rows = np.hstack([normals, np.cross(points - middle, normals) / half])
+                    stiffness += (rows * areas[:, None]).T @ rows / areas.sum()
+        return 1.0 / np.sqrt(np.diag(np.linalg.inv(stiffness)))
+
+    def _patches(self, p: Placement, q: Placement) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarray]]:
+        """Where a part cannot be shifted for another one, by direction: triangles' corners on both faces,
+        normals and areas."""
+        a, b = self._box(p), self._box(q)
+        if np.any(a[0] > b[1] + REACH) or np.any(b[0] > a[1] + REACH):
+            return
+        standing = self._mesh(q).translate(list(q.origin))
+        for way in (*np.eye(3), *-np.eye(3)):
+            shared = self._mesh(p).translate(list(np.array(p.origin) + REACH * way)) ^ standing
+            if shared.volume() <= PATCH:
+                continue
+            mesh = shared.to_mesh()
+            corners = np.asarray(mesh.vert_properties)[:, :3][np.asarray(mesh.tri_verts)]
+            cross = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+            areas = np.maximum(np.linalg.norm(cross, axis=1), 1e-12)
+            facing = np.abs(cross @ way) > 0.5 * areas  # not the sides, as high as the shift
+            normals = (cross / areas[:, None])[facing].repeat(3, axis=0)
+            yield corners[facing].reshape(-1, 3), normals, areas[facing].repeat(3)
 
     def _needed(self, number: int, there: set[str]) -> Iterator[Finding]:
         step = self.scene.steps[number]

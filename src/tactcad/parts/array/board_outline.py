@@ -16,8 +16,9 @@ from dataclasses import dataclass
 
 from tactcad.design.sensing import MULTIPLEXERS
 
-from ..bought.electronic_parts import CARD_SIGNALS
+from ..bought.electronic_parts import CARD_SIGNALS, CONTROLLER_SIGNALS, converter_of
 from .layout import Layout
+from .leads import channels_of
 
 Place = tuple[float, float]
 
@@ -54,11 +55,13 @@ class BoardOutline:
 def lead_pins(layout: Layout) -> int:
     """Of a board's lead connector: three a channel, and one each for the leads' shield and the array's
     metal."""
-    return 3 * MULTIPLEXERS[layout.design.readout.multiplexer].channels + 2
+    return 3 * channels_of(layout) + 2
 
 
 def card_pins(layout: Layout) -> int:
-    """Of a board's connector to the converter's card."""
+    """Of a board's connector to the converter's card, or to the controller of a converter on the board."""
+    if converter_of(layout.design):
+        return CONTROLLER_SIGNALS
     return CARD_SIGNALS + len(MULTIPLEXERS[layout.design.readout.multiplexer].address)
 
 

@@ -15,6 +15,7 @@ from ..bought.electronic_parts import (
     completion_drift,
     completion_resistance,
     completion_tolerance,
+    converter_of,
     gain_resistance,
     lead_part,
     supply_resistance,
@@ -23,8 +24,9 @@ from ..bought.electronic_parts import (
 from ..bought.supply import Supply, board_spares, bonded_spares
 from ..language.tables import rows
 from .board_outline import board_outline, card_pins, lead_pins
+from .converter_figures import ANALOGUE_OHM, bridge_supply, supply_ohm
 from .layout import Layout
-from .leads import boards, colours, lead_routes, leads
+from .leads import boards, channels_of, colours, lead_routes, leads
 
 COLOUR_NAMES = {"RD": "red", "WH": "white", "BK": "black"}
 ROWS = rows(__file__, "supplies")
@@ -82,21 +84,27 @@ def electronic_supplies(layout: Layout) -> tuple[Supply, ...]:
         ppm=1e6 * drift,
         end=f" ({kind.mpn}); or equal" if kind.mpn and own else "; any maker's",
     )
-    part, outline = MULTIPLEXERS[r.multiplexer], board_outline(layout)
-    free, small = part.channels * count - n, kind.package == "0805"
+    part, outline, converter = MULTIPLEXERS[r.multiplexer], board_outline(layout), converter_of(d)
+    free, small = channels_of(layout) * count - n, kind.package == "0805"
     links = 3 * free if small else free
     if leads(layout) == 2:
         links += n
-    ohm = supply_resistance(d)
+    ohm = supply_ohm(layout) if converter else supply_resistance(d)
+    on_card, on_converter = (0, count) if converter else (count, 0)
     on_boards = supplies(
         "boards",
         {
-            "elements": n,
+            "switches": 0 if converter else n,
+            "filters": n if converter else 0,
             "boards": count,
+            "card boards": on_card,
+            "converters": on_converter,
             "supply pins": (ON_SUPPLIES + 1) * count,
-            "pairs": 2 * count,
-            "threes": 3 * count,
-            "lines": (len(part.address) + 1) * count,
+            "reservoirs": 2 * on_card + 4 * on_converter,
+            "regulators": on_card + 2 * on_converter,
+            "card pairs": 2 * on_card,
+            "diodes": 3 * on_card + 2 * on_converter,
+            "lines": 3 * on_converter + (len(part.address) + 1) * on_card,
             "links": links,
             "wire links": 0 if small else 2 * free,
         },
@@ -104,7 +112,13 @@ def electronic_supplies(layout: Layout) -> tuple[Supply, ...]:
         switch=SWITCHES[r.switch],
         amplifier=AMPLIFIERS[r.amplifier],
         multiplexer=part,
-        volts=r.excitation,
+        converter_mpn=converter.mpn if converter else "",
+        supply_ohm=ANALOGUE_OHM,
+        supply_code=value_code(ANALOGUE_OHM),
+        supplied="both supplies" if converter else "the bridges' supply",
+        terminals="the controller" if converter else "the card's terminals",
+        reader="the controller" if converter else "the converter's card",
+        volts=bridge_supply(layout) if converter else r.excitation,
         ohm=ohm,
         code=value_code(ohm),
         to_leads=lead_pins(layout),
@@ -113,7 +127,7 @@ def electronic_supplies(layout: Layout) -> tuple[Supply, ...]:
         width=outline.height,
     )
     fitted = (line for line in on_boards if line.qty)
-    gain = gain_resistance(d)
+    gain = None if converter else gain_resistance(d)
     set_by = () if gain is None else supplies("gain", {"boards": count}, ohm=gain, code=value_code(gain))
     return (*completion, *lead_supplies(layout), *fitted, *set_by)
 

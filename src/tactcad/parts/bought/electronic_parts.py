@@ -28,11 +28,13 @@ REFERENCE_MOST_VOLTS = 20.0  # between its input and ground: LT3042's sheet, fro
 SET_AMPERE = 100e-6  # out of the LT3042's SET pin, 1 %: its sheet, front page
 CLAMP, LINK, WIRE_LINK = "1N5819HW-7-F", "LINK-0R", "LINK-WIRE"
 SERIES, PULL_DOWN = "RESISTOR-1K", "RESISTOR-100K"
+SUPPLY_RESISTOR, ACROSS_BRIDGE = "SUPPLY-RESISTOR", "CAPACITOR-10N"  # of a converter's board
 FILTER_RESISTOR, ANTI_ALIAS = "RESISTOR-10R", "CAPACITOR-100P"
 # In each input of the amplifier; chosen: with 100 pF between them, 8 MHz; their noise is 0.2 %.
 FILTER_OHM = 10.0
 ON_SUPPLIES = 5  # of decoupling capacitors: two at the amplifier, two at the multiplexer, one at the decoder
 CARD_SIGNALS = 8  # of the connector to the card beside the address: supplies, ground twice, enable, output
+CONTROLLER_SIGNALS = 8  # of that to a controller: EXC, ground twice, supply, three lines and one back
 
 
 def lead_part(colour: str) -> str:

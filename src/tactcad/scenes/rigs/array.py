@@ -32,11 +32,12 @@ from tactcad.parts.bought.standard_parts import dowel_limits
 from tactcad.parts.language.description import Part
 from tactcad.parts.language.metric import METRIC
 from tactcad.parts.rules.bonding_rules import FITS as BONDING_FITS
+from tactcad.parts.rules.calibration_rules import FITS as CALIBRATION_FITS
 from tactcad.parts.rules.rule import misfit
 
 from ..builder import Builder
 from ..rig import ARRAY, Rig, none
-from ..scene import AGAINST_Y, ALONG_Y, DOWN, UPRIGHT, Placement, Scene, Step
+from ..scene import AGAINST_Y, ALONG_Y, DOWN, UPRIGHT, Held, Placement, Scene, Step
 
 # Local contour plane (x, y) laid into the scene's (x, z) plane, thickness along y: row one's arms
 # run along +x, row two is row one turned by half a turn about z.
@@ -222,9 +223,19 @@ def array_steps(layout: Layout, placed: Mapping[str, Sequence[Placement]]) -> tu
         fan: int = 0,
         elements: bool = False,
         limit: str = "",
+        held: tuple[Held, ...] = (),
     ) -> Step:
         names = tuple(p.designator for p in placed.get(title, ()))
-        return Step(title, names, explode, text, fan=fan, tools=tools, elements=elements, limit=limit)
+        return Step(
+            title, names, explode, text, fan=fan, tools=tools, elements=elements, limit=limit, held=held
+        )
+
+    on_ledge = [p.designator for p in placed[STACK] if p.part.part_no != spacer(layout).part_no]
+    ledges = tuple(sorted(on_ledge, key=lambda name: (len(name), name)))
+
+    def level(title: str, by: tuple[str, ...]) -> tuple[Held, ...]:
+        names = tuple((p.designator,) for p in placed.get(title, ()) if not p.part.bought)
+        return (Held(names, by, ("z", "rx", "ry")),)
 
     return (
         step(
@@ -246,12 +257,13 @@ def array_steps(layout: Layout, placed: Mapping[str, Sequence[Placement]]) -> tu
             elements=True,
             limit=f"All pads in one plane within {2 * d.tolerance.pad_height:g} mm",
         ),
-        step(STOP_PLATE, (0, 0, 0.8 * width), _laying_stop_plate(layout)),
+        step(STOP_PLATE, (0, 0, 0.8 * width), _laying_stop_plate(layout), held=level(STOP_PLATE, ledges)),
         step(
             CARRIER,
             (0, 0, 1.4 * width),
             "Screw the carrier on both end plates, crosswise. Measure the pads' heights on the surface plate "
             "again: they must not have moved.",
+            held=level(CARRIER, ("EP1", "EP2")),
         ),
         step(
             HOLD_DOWN,
@@ -306,7 +318,7 @@ def _stacking(layout: Layout, stacked: Sequence[Placement]) -> str:
         "Slide the parts on the dowels in this order, the first one on first, pads towards you and arms to "
         f"the middle. {' '.join(rows)} Nothing is tight yet. Pressed together by hand, elements and spacers "
         f"are {layout.stack:g} mm long within {STACK_TOLERANCE:g}, and both rows alike within "
-        f"{rows_alike(layout):g} mm, or the head plate leans on its dowels: measure both. Where they are "
+        f"{rows_alike(layout):g} mm, or EP1 leans on its dowels: measure both. Where they are "
         f"not, measure the spacers: each is {layout.design.array.pitch:g} mm less what the elements' sheet "
         f"measures, +-{SPACER_TOLERANCE:g}, as their sheet says; where only the rows differ, exchange "
         "spacers between them."
@@ -355,6 +367,8 @@ def setting_words(layout: Layout) -> str:
     same = (
         "; in the calibration set-up the heights at which the force gauge first reads 0.01 N show the same "
         "to a micrometre"
+        if _is_calibrated(layout)
+        else ""
     )
     return (
         "Press both end plates down on the fixture's steps, and with a bar of rubber on the ledges, between "
@@ -363,7 +377,7 @@ def setting_words(layout: Layout) -> str:
         f"still turn about its dowel by {wedge(layout)}: pressed on its ledge it lies at one end of that. "
         f"{gap}No pad may let a {2 * tolerance * 1e3:g} um feeler pass. Then lay the array on its back on a "
         "surface plate (grade 1 or better) and read each pad with a lever indicator: all within "
-        f"{2 * tolerance * 1e3:g} um{same if d.calibration else ''}. Record them; loosen and repeat if one "
+        f"{2 * tolerance * 1e3:g} um{same}. Record them; loosen and repeat if one "
         "is off, and repeat it all whenever the clamping was loosened."
     )
 
@@ -382,15 +396,20 @@ def carrier_tools(design: Design) -> tuple[str, ...]:
     return (f"hex key {METRIC[design.clamp.screw].key:g} mm: the carrier's screws",)
 
 
+def _is_calibrated(layout: Layout) -> bool:
+    """Whether the calibration's rig takes the array."""
+    return layout.design.calibration is not None and misfit(layout, CALIBRATION_FITS) is None
+
+
 def _laying_stop_plate(layout: Layout) -> str:
     calibrated = (
-        "An array that is still to be calibrated goes to that set-up without stop plate and set screws, its "
-        "carrier on: the stops would close before the end of the travel. Afterwards take the carrier off "
-        "again and read the pads' heights on the surface plate once more, as before: what has moved is made "
-        "coplanar and calibrated anew. "
+        "An array that is still to be calibrated goes to scene calibration without stop plate and set "
+        "screws, its carrier on: the stops would close before the end of the travel. Afterwards take the "
+        "carrier off again and read the pads' heights on the surface plate once more, as before: what "
+        "has moved is made coplanar and calibrated anew. "
     )
     return (
-        calibrated if layout.design.calibration else ""
+        calibrated if _is_calibrated(layout) else ""
     ) + "Wipe ledges and plate. Lay the stop plate on the ledges; both faces are ground, either lies down."
 
 

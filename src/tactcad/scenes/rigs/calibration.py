@@ -99,8 +99,8 @@ def calibration(design: Design, pose: Pose = REST) -> Scene:
         (0, 0, 0),
         f"Above a pad, set x by the edge of the pad to {c.load_point:g} mm; {c.step * 1e3:g} um steps to "
         f"{c.travel * 1e3:g} um. {_limits(design)} Afterwards take the array off its mount, set it in the "
-        "setting fixture as in the step Coplanar pads of the array's own guide, its clamping screws "
-        "tight, and take the carrier off it there (hex key of its screws). Read the pads' heights on the "
+        "setting fixture as in the step Coplanar pads of the array's own guide, still clamped, "
+        "and take the carrier off it there (hex key of its screws). Read the pads' heights on the "
         "surface plate again and go on in that guide with the step Stop plate. Zero every signal anew.",
         tools=(*flatness_tools(rig.array), *carrier_tools(design)),
         elements=True,
@@ -159,6 +159,11 @@ def _stages(b: Builder, rig: StandLayout, dx: float, dy: float) -> str:
         bench=True,
         at=BESIDE,
         later=on_base,
+        sets=(f"{upper[0]} to {x_moving}: all, by {' '.join(on_x)}",),
+        leaves=(
+            f"{x_moving} on {x_fixed}: along x, by {x_micrometer}",
+            f"{upper[1]} on {upper[0]}: along y, by {upper[2]}",
+        ),
         order=[stages[0], upper, *driven((upper[1],), fixings[1], (0.0, 1.0, 0.0), stage.travel, dy, BESIDE)],
     )
     b.step(

@@ -12,7 +12,7 @@ from tactcad.parts.rigs.setting_fixture import BASE, PIN_OUT, SettingLayout
 
 from ..builder import Builder
 from ..rig import Rig, none
-from ..scene import REST, STILL, UPRIGHT, Contact, Move, Pose, Rotation, Scene
+from ..scene import REST, STILL, UPRIGHT, Contact, Held, Move, Pose, Rotation, Scene
 from .array import COPLANAR, STACKED, array, flatness_tools, setting_words, wedge
 
 ALONG_X: Rotation = ((0, 0, 1), (1, 0, 0), (0, 1, 0))  # local x runs along y, y along z, z along x
@@ -63,6 +63,7 @@ def setting(design: Design, pose: Pose = REST) -> Scene:
         steps=(),
     )
     b.subassembly(loose, UPRIGHT, (0, 0, 0))
+    pins = tuple(c.first for c in loose.contacts if c.kind == "press")
     for name, fence in fences.items():
         b.meet(name, fence)
         b.meet(name, fixture)
@@ -77,10 +78,15 @@ def setting(design: Design, pose: Pose = REST) -> Scene:
         "fixture, pads down: the pads stand on the floor, both end plates' lower edges on the steps. "
         "Turn it against both pins, one at the left edge of each plate.",
         order=[Move(tuple(p.designator for p in loose.placements), (0.0, 0.0, 60.0), (STILL,))],
-        sets=("both end plates on FX1: along z, turn about x and y; turn about z by FP1 and FP2",),
+        held=(
+            Held((("EP1", "EP2"),), (fixture,), ("z", "rx", "ry")),
+            Held((("EP1", "EP2"),), tuple(fences.values()), ("rz",)),
+            Held(tuple((p.designator,) for p in layout.elements), (fixture, *pins), ("z", "ry")),
+            *([Held(tuple((p.designator,) for p in blanks), (strip, *pins), ("z", "ry"))] if blanks else []),
+        ),
         leaves=(
             f"elements: turn about their dowels, {wedge(layout)}",
-            "the head end plate: along y, until the screws are tight",
+            "EP1: along y, until the clamping is tight",
         ),
     )
     screws = [

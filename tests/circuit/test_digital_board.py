@@ -1,0 +1,145 @@
+"""Boards of a converter: read by KiCad, followed from gauge to register, counted by the bill."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+from collections import Counter
+from dataclasses import replace
+
+import pytest
+from test_boards import checked, needs_kicad
+from variants import variant
+
+from tactcad.checks.facing_rows.circuit import check_bridges, check_circuit, check_inputs
+from tactcad.circuit import boards
+from tactcad.circuit.bridges import netlist
+from tactcad.circuit.digital_readout import settings_json
+from tactcad.circuit.harness import harness_csv
+from tactcad.circuit.netlist_files import wiring
+from tactcad.export.board_files import BILL, bill_csv
+from tactcad.parts.array.layout import Layout
+from tactcad.parts.array.supplies import electronic_supplies
+
+CHIP = "AD7124-8"
+
+
+def layout_of(changes: dict | None = None) -> Layout:
+    return Layout(variant({"readout.converter": CHIP, **(changes or {})}))
+
+
+def test_kicad_finds_nothing(tmp_path):
+    needs_kicad()
+    (board,) = boards.laid_out(layout_of())
+    checked(board, tmp_path)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("completion", "connection"), [("foil-0.01", "two-wire"), ("film-0.1", "three-wire")]
+)
+def test_kicad_finds_nothing_on_any_board(completion, connection, tmp_path):
+    """Rows of 1 and 8 elements; those between differ by what is fitted."""
+    needs_kicad()
+    changes = {"readout.completion": completion, "readout.connection": connection}
+    for used in (1, 8):
+        (board,) = boards.laid_out(layout_of({**changes, "array.row_arms": [[4.0] * used]}))
+        checked(board, tmp_path)
+
+
+@pytest.mark.parametrize("connection", ["two-wire", "three-wire"])
+def test_an_elements_leads_end_at_the_inputs_that_its_registers_name(connection):
+    """From the terminals by lead, connector and board's net to the input that CHANNEL_n selects."""
+    layout = layout_of({"readout.connection": connection})
+    circuit, told = netlist(layout), json.loads(settings_json(layout, CHIP))
+    ends = {lead.designator: circuit.pin_at(lead.end) for lead in wiring(layout, circuit)}
+    for number, chip in enumerate(told["chips"], start=1):
+        converter = next(c for c in circuit.of_kind("converter") if c.board == number)
+        for channel, entry in enumerate(chip["inputs"]):
+            n, value = (
+                entry["element"],
+                next(r["value"] for r in chip["registers"] if r["name"] == f"CHANNEL_{channel}"),
+            )
+            plus, minus = (converter.net(f"AIN{value >> shift & 31}") for shift in (5, 0))
+            last = f"W{n}{3 if connection == 'three-wire' else 2}"
+            assert ends[f"W{n}1"].net == f"E{n}_RED" and ends[last].net == "GND"
+            assert ends[last].role.endswith(f"CH{channel + 1}_FOOT")
+            if connection == "three-wire":
+                assert ends[f"W{n}2"].net == plus
+            arms = {frozenset(p.net for p in c.pins) for c in circuit.of_kind("resistor") if c.element == n}
+            supply = f"EXC{number}"
+            halves = {frozenset(s) for s in ((f"E{n}_RED", supply), (minus, supply), (minus, "GND"))}
+            link = {frozenset((f"E{n}_RED", plus))} if connection == "two-wire" else set()
+            assert arms == halves | link
+
+
+def test_each_gauge_is_in_one_bridge_and_no_input_floats():
+    layout = layout_of()
+    circuit = netlist(layout)
+    assert [*check_circuit(layout.design)] == []
+
+    def moved(name: str, role: str, net: str):
+        return replace(
+            circuit,
+            components=tuple(
+                replace(c, pins=tuple(replace(p, net=net) if p.role == role else p for p in c.pins))
+                if c.designator == name
+                else c
+                for c in circuit.components
+            ),
+        )
+
+    for name, role, net, gauges in (
+        ("A1-R21", "2", "GND", {"B2"}),  # an arm that the supply does not feed
+        ("A1-R33", "2", "E4_MINUS", {"B3", "B4"}),  # an arm in the next bridge
+        ("A1-U1", "AIN2", "E1_PLUS", {"B2"}),  # an input across two bridges
+    ):
+        assert {f.part for f in check_bridges(moved(name, role, net))} >= gauges, name
+    (found,) = check_inputs(moved("A2-U1", "AIN15", "SPARE"))
+    assert found.part == "A2-U1" and "SPARE" in found.message
+
+
+@pytest.mark.parametrize("changes", [{}, {"readout.completion": "film-1", "readout.connection": "two-wire"}])
+def test_the_bill_has_what_stands_on_the_boards(changes):
+    """Counted from the netlists of both boards; and every line of a board's own bill is one to order by."""
+    layout = layout_of(changes)
+    circuit = netlist(layout)
+    placed = Counter(c.part_no for c in circuit.components if c.board and c.footprint and c.fitted)
+    supplies = electronic_supplies(layout)
+    ordered = {s.part_no: s.qty for s in supplies}
+    assert {part: ordered.get(part) for part in placed} == dict(placed)
+    assert not {"ADG1407BRUZ", "AD621ARZ", "IRLML6244TRPBF", "74HCT238"} & set(ordered)
+    (board,) = boards.laid_out(layout)
+    rows = [*csv.DictReader(io.StringIO(bill_csv(board, supplies).decode()), BILL)][1:]
+    read = {row["source_verified"] for row in rows}
+    assert {row["part_no"] for row in rows if row["part_no"] not in ordered} == set() and read == {"unread"}
+    assert "1.09 V" in next(s.description for s in supplies if s.part_no == "SET-RESISTOR")
+
+
+def test_the_harness_carries_all_bridges():
+    """Ten bridges of 120 ohm at 1.09 V from VPOS, half of each one's current in its leads."""
+    layout = layout_of()
+    circuit = netlist(layout)
+    rows = [*csv.DictReader(io.StringIO(harness_csv(circuit, wiring(layout, circuit)).decode()))]
+    assert float(next(r for r in rows if r["from"] == "supply VPOS")["current_mA"]) == pytest.approx(
+        2 * 7.0 + 10 * 1090 / 120, rel=1e-2
+    )
+    lead = next(r for r in rows if r["signal"] == "E1_RED")
+    assert float(lead["current_mA"]) == pytest.approx(1090 / 240, rel=1e-2)
+    assert {r["to"] for r in rows if r["signal"] in ("CS1", "CS2")} == {
+        "digital output CS1",
+        "digital output CS2",
+    }
+
+
+def test_the_check_and_the_search_see_the_same_resolution():
+    """`smallest_output` over an amplifier's slope is what the converter's own figures give."""
+    from tactcad.circuit.digital_readout import digital_readout
+    from tactcad.circuit.element_signals import element_signals
+
+    layout = layout_of()
+    found = digital_readout(layout, CHIP)
+    assert [s.resolution for s in element_signals(layout)] == pytest.approx(
+        [*abs(found.resolution)], rel=3e-3
+    )  # leads and switch, which only the card's slope knows of
