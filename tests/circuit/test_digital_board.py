@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import json
+import re
 from collections import Counter
 from dataclasses import replace
 
@@ -15,10 +16,11 @@ from variants import variant
 from tactcad.checks.facing_rows.circuit import check_bridges, check_circuit, check_inputs
 from tactcad.circuit import boards
 from tactcad.circuit.bridges import netlist
-from tactcad.circuit.digital_readout import settings_json
+from tactcad.circuit.digital_readout import settings_header, settings_json
 from tactcad.circuit.harness import harness_csv
+from tactcad.circuit.kicad_board import board_bytes
 from tactcad.circuit.netlist_files import wiring
-from tactcad.export.board_files import BILL, bill_csv
+from tactcad.export.board_files import BILL, bill_csv, nets_in_board
 from tactcad.parts.array.layout import Layout
 from tactcad.parts.array.supplies import electronic_supplies
 
@@ -72,6 +74,25 @@ def test_an_elements_leads_end_at_the_inputs_that_its_registers_name(connection)
             halves = {frozenset(s) for s in ((f"E{n}_RED", supply), (minus, supply), (minus, "GND"))}
             link = {frozenset((f"E{n}_RED", plus))} if connection == "two-wire" else set()
             assert arms == halves | link
+
+
+def test_the_pin_map_is_the_boards():
+    """In both files, as the pads of KiCad's file have it; every pad of the package is in it once."""
+    layout = layout_of()
+    (board,) = boards.laid_out(layout)
+    on_pads = {
+        pin: net
+        for net, pins in nets_in_board(board_bytes(board, "N", "t", "2026-01-01", "A")).items()
+        for name, pin in pins
+        if name == "U1"
+    }
+    told = json.loads(settings_json(layout, CHIP))["pins"]
+    assert [int(p["pin"]) for p in told] == list(range(1, 34))
+    assert {p["pin"]: p["net"] for p in told if p["net"]} == on_pads
+    text = settings_header(layout, CHIP).decode()
+    assert {
+        n: net for n, net in re.findall(r"^ +(\d+) [A-Z0-9+-]+ +(\w+)", text, re.M) if net != "open"
+    } == on_pads
 
 
 def test_each_gauge_is_in_one_bridge_and_no_input_floats():

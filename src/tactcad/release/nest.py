@@ -129,7 +129,12 @@ def nests(ordered: Iterable[tuple[Part, int, int]], wire: bool) -> list[Nest]:
     """
     groups: dict[tuple[str, float, int], list[tuple[Part, int]]] = {}
     for part, count, high in ordered:
-        if (part.process == "wire-cut") == wire and (stock := stock_of(part)) and cut_section(part):
+        if (
+            part.process != "etched"
+            and (part.process == "wire-cut") == wire
+            and (stock := stock_of(part))
+            and cut_section(part)
+        ):
             groups.setdefault((str(part.material), stock.thickness, high), []).append(
                 (part, ceil(count / high))
             )

@@ -15,7 +15,7 @@ from OCP.BRepExtrema import BRepExtrema_DistShapeShape
 from OCP.BRepGProp import BRepGProp
 from OCP.GeomAbs import GeomAbs_Cylinder
 from OCP.GProp import GProp_GProps
-from OCP.TopAbs import TopAbs_FACE
+from OCP.TopAbs import TopAbs_FACE, TopAbs_VERTEX
 from OCP.TopoDS import TopoDS_Compound, TopoDS_Shape
 
 from tactcad.parts.language.description import Vector
@@ -120,6 +120,28 @@ def faces_within(faces: Faces, place: Placement, box: np.ndarray, reach: float) 
     for i in near:
         make.Add(compound, faces.faces[i])
     return compound.Located(location(place.origin, place.rotation))
+
+
+MOST_VERTICES = 6  # of each set that are tried; chosen: of two layers the first one meets
+
+
+def met_at_vertex(
+    first: TopoDS_Shape | None, second: TopoDS_Shape | None, within: float
+) -> tuple[float, Vector] | None:
+    """A vertex of one set of faces that lies within that distance (mm) of the other set: its distance and
+    place, as of `nearest`; None where those that are tried lie further off, though the sets may not.
+
+    Quick where faces have thousands of edges, whose pairs `nearest` would all look at.
+    """
+    for own, other in ((first, second), (second, first)):
+        if own is None or other is None:
+            return None
+        vertices = list(subshapes(own, TopAbs_VERTEX))
+        for vertex in vertices[:: max(1, len(vertices) // MOST_VERTICES)]:
+            distance, place = nearest(vertex, other)
+            if distance < within:
+                return distance, place
+    return None
 
 
 def nearest(first: TopoDS_Shape | None, second: TopoDS_Shape | None) -> tuple[float, Vector]:

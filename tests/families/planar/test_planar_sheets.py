@@ -11,6 +11,7 @@ import pytest
 from built import shape_of
 
 from tactcad.contour import Contour
+from tactcad.design.load import parse
 from tactcad.design.messages import CheckFailure
 from tactcad.drawing.engine.layout_check import layout_faults
 from tactcad.drawing.engine.sheet_files import pdf_runs
@@ -148,3 +149,38 @@ def test_stack_names_every_fit_and_all_are_made():
                 part = next(p for p in cell_array.scene(lay.design).parts if p.part_no == number)
                 found = {c.name for c in part.characteristics} | {g.name for g in part.geometric}
                 assert limit in found
+
+
+@pytest.mark.parametrize("off, found", [(0.0, []), (1e-4, ["contact"]), (-1e-3, ["overlap"])])
+def test_layers_that_touch_are_told_from_layers_that_do_not(off, found):
+    """Foil on the lower spacer: in its place, 0.1 um above it, and 1 um inside it, where the overlap is the
+    foil's and the spacer's common area, the frame of both, times 1 um."""
+    from tactcad.checks.on_solids.interference import check_interference
+    from tactcad.scenes.scene import Contact, Placement, Scene
+
+    text = (DESIGNS / "jaw-array.toml").read_text("utf-8")
+    two = text.replace("rows = 2", "rows = 1").replace("columns = 6", "columns = 2")
+    lay = PlanarLayout(parse(two, "two.toml"))
+    spacer, foil = parts.lower_spacer(lay), parts.foil(lay)
+    t = spacer.extrusion.thickness
+    placed = (Placement("SP1", spacer, (0.0, 0.0, 0.0)), Placement("F1", foil, (0.0, 0.0, t + off)))
+    scene = Scene("pair", placed, contacts=(Contact("SP1", "F1", "touch"),))
+    shapes = {p.part_no: shape_of(p) for p in (spacer, foil)}
+    findings = check_interference(scene, shapes)
+    assert [f.check for f in findings] == found
+    if off < 0:
+        assert findings[0].value == pytest.approx(spacer.extrusion.section_area * -off, rel=1e-6)
+
+
+def test_etched_sheets_are_ordered_as_rolled_and_lie_in_no_nest():
+    """Strip of the drawn thickness and limits, nothing to come off; etchers lay out their own sheets."""
+    from tactcad.parts.language.stock import stock_of
+    from tactcad.release.nest import nests
+
+    lay = layout("jaw")
+    made = [parts.foil(lay), parts.lower_spacer(lay), parts.foot(lay, lay.used[0])]
+    for part, thickness, limit in zip(made, (0.04, 0.03, 0.2), (0.002, 0.005, 0.02)):
+        stock = stock_of(part)
+        assert stock and (stock.thickness, stock.face, stock.edge) == (thickness, 0.0, 0.0)
+        assert (stock.lower, stock.upper) == pytest.approx((thickness - limit, thickness + limit))
+    assert not nests([(part, 1, 1) for part in made], True) + nests([(part, 1, 1) for part in made], False)

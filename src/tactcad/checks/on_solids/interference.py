@@ -30,7 +30,16 @@ from tactcad.parts.language.description import (
 from tactcad.parts.language.finding import Finding
 from tactcad.scenes.scene import Contact, Placement, Scene
 from tactcad.scenes.threads import thread_overlap
-from tactcad.solids.measure import Faces, bounding_box, boxed, faces_within, measure, nearest, volume
+from tactcad.solids.measure import (
+    Faces,
+    bounding_box,
+    boxed,
+    faces_within,
+    measure,
+    met_at_vertex,
+    nearest,
+    volume,
+)
 from tactcad.solids.occt import location
 
 from ..check import Check, Job
@@ -160,18 +169,21 @@ def meeting(
     anchor
         Index of the part in whose frame the point is given.
     """
-    reach = [
+    first, second = (
         faces_within(_faces(p, shapes, faces), p, box, TOUCH_MM) for p, box in zip(pair, reversed(boxes))
-    ]
-    distance, place = nearest(*reach)
+    )
+    distance, place = met_at_vertex(first, second, TOUCH_MM) or nearest(first, second)
     if distance > TOUCH_MM and not (_holds(*boxes) or _holds(*reversed(boxes))):
         return Meeting(0.0, distance, (0.0, 0.0, 0.0), anchor)
-    common = BRepAlgoAPI_Common(
-        *(shapes[p.part.part_no].Located(location(p.origin, p.rotation)) for p in pair)
-    ).Shape()
-    overlap = volume(common)
+    shared = np.minimum(boxes[0][1], boxes[1][1]) - np.maximum(boxes[0][0], boxes[1][0])
+    overlap = float(np.prod(np.maximum(shared, 0.0)))  # at most: of their boxes, which layers only touch
     if overlap > OVERLAP_MM3:
-        place = tuple(measure(common)["centre"])
+        common = BRepAlgoAPI_Common(
+            *(shapes[p.part.part_no].Located(location(p.origin, p.rotation)) for p in pair)
+        ).Shape()
+        overlap = volume(common)
+        if overlap > OVERLAP_MM3:
+            place = tuple(measure(common)["centre"])
     seen_from = pair[anchor]
     there = np.array(seen_from.rotation).T @ (np.array(place) - np.array(seen_from.origin))
     return Meeting(overlap, distance, vector(there.tolist()), anchor)

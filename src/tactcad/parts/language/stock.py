@@ -19,7 +19,7 @@ from .tables import number, rows
 EDGE = ((20.0, 2.0), (50.0, 3.0), (80.0, 5.0), (120.0, 7.0))
 # Over each finished face, mm; chosen: milled off, the skin and bow of a rolled plate of 200 mm; ground off
 # (and so before it is wire-cut), the skin alone.
-FACE = {"ground": 0.2, "milled": 0.5, "wire-cut": 0.2}
+FACE = {"ground": 0.2, "milled": 0.5, "wire-cut": 0.2, "etched": 0.0}
 # Spring strip is rolled to any thickness up to this, mm: picked by the part's own limits; chosen.
 STRIP, THICKEST_STRIP = "EN 10151", 1.0
 _SOLD = rows(__file__, "stock")
@@ -48,9 +48,9 @@ def own_thickness(part: Part) -> Characteristic | None:
 
 
 def stock_of(part: Part) -> FlatStock | None:
-    """The thinnest stock sold that leaves enough on both faces. Wire-cut sheet of a thickness that is
-    sold is left as rolled, picked where the part's limits are closer than the standard's. None for what is
-    no extrusion, or is turned, and where nothing sold is thick enough."""
+    """The thinnest stock sold that leaves enough on both faces. Wire-cut or etched sheet of a thickness
+    that is sold is left as rolled, picked where the part's limits are closer than the standard's. None for
+    what is no extrusion, or is turned, and where nothing sold is thick enough."""
     if not isinstance(part.body, Extrusion) or part.process not in FACE:
         return None
     t, own, metal = part.body.thickness, own_thickness(part), family(part.material.density)
@@ -60,12 +60,12 @@ def stock_of(part: Part) -> FlatStock | None:
     if part.material.standard.startswith(STRIP) and t <= THICKEST_STRIP:
         sold = []
     standard = next((name for size, _, name in sold if size == t), None if sold else "")
-    if part.process == "wire-cut" and own and standard is not None:
+    if part.by_contour and own and standard is not None:
         return FlatStock(t, own.lower, own.upper, standard, 0.0, 0.0)
     face, high = FACE[part.process], own.upper if own else t + general(t)
     for size, off, standard in sold:
         if size - off >= high + 2 * face - 1e-9:
-            edge = 0.0 if part.process == "wire-cut" else next(e for to, e in EDGE if size <= to)
+            edge = 0.0 if part.by_contour else next(e for to, e in EDGE if size <= to)
             return FlatStock(size, size - off, size + off, standard, face, edge)
     return None
 
