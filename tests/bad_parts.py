@@ -69,7 +69,7 @@ BAD_STEPS = {
     "insertion": "a pin 16 mm long under a roof 10 mm over its hole's plate",
     "order": "a screw before the part that it goes into",
     "fingers": "a pin to be pulled that stands out 8 mm, a roof 13 mm over it",
-    "freedom": "a plate on a rail of 2.8 mm, said to be level",
+    "freedom": "a plate on a rail of 2 mm, said to be level",
 }
 
 

@@ -68,7 +68,7 @@ BAD = {
     "fingers": scene(
         (step("P1", "DW1"), step("RO1"), step(order=(PULL,))), (Contact("DW1", "P1", "press"),), 21.0
     ),
-    "freedom": on_rail(2.8),
+    "freedom": on_rail(2.0),
 }
 
 
@@ -113,12 +113,12 @@ def test_good_steps_are_not_found():
 
 
 def test_a_rail_levels_a_plate_from_a_tenth_of_its_half_diagonal_on():
-    """That is 15 mm: half a rail of 3 mm. A plate that stands off by 0.1 is free in all it is said to be held
-    in."""
-    assert found(on_rail(3.2)) == []
-    (rocks,) = found(on_rail(2.8))
+    """Across the rail that is 11.2 mm, for half a rail of 2.24 mm. A plate that stands off by 0.1 is free in
+    all it is said to be held in."""
+    assert found(on_rail(2.4)) == []
+    (rocks,) = found(on_rail(2.0))
     assert "P1 is free to turn about x: its contact with RA1 does not set that" in rocks.message
-    one = on_rail(3.2)
+    one = on_rail(2.4)
     off = replace(one, placements=(one.placements[0], Placement("P1", HOLED, (0, 0, 5.1))))
     assert [f.message.split(":")[1].split("free ")[1] for f in found(off)] == [
         "along z", "to turn about x", "to turn about y",

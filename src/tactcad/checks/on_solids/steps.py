@@ -32,8 +32,8 @@ FILM = 0.05  # mm3: what chords of two curved faces, 0.002 mm off, may share ove
 CHORD, TURN = 0.02, 0.1  # mm, rad: of the meshes
 REACH = 0.03  # mm that a body is shifted to find what it meets: more than a slide fit's play to one side
 PATCH = 1e-3  # mm3 that it must then share: 0.03 mm2 of contact
-# Least lever of what sets a turn, over half the body's diagonal; of a way, as much is left beside turns that
-# come with it. Chosen: a foot of a tenth of its height rocks.
+# Least lever of what sets a turn, over half the body's diagonal across its axis; of a way, as much is left
+# beside turns that come with it. Chosen: a foot of a tenth of its height rocks.
 LEVER = 0.1
 # Two fingertips that hold a pin: each so thick and so wide (mm), over so much of its end. Chosen: half of an
 # adult's fingertip of 16 to 20 mm, which gives way.
@@ -121,15 +121,16 @@ class Trial:
 
     def _levers(self, body: Sequence[str], by: Sequence[str]) -> np.ndarray:
         """How firmly contacts set a body's six freedoms about its middle: one over the root of the compliance
-        on springs that share one stiffness at every patch, turns over half the body's diagonal."""
+        on springs that share one stiffness at every patch, turns over half the body's diagonal across."""
         boxes = np.array([self._box(self.placed[name]) for name in body])
         ends = np.array([boxes[:, 0].min(axis=0), boxes[:, 1].max(axis=0)])
-        middle, half = ends.mean(axis=0), float(np.linalg.norm(ends[1] - ends[0])) / 2
+        middle, half = ends.mean(axis=0), (ends[1] - ends[0]) / 2
+        across = np.hypot(half[[1, 2, 0]], half[[2, 0, 1]])  # the turn's axis
         stiffness = 1e-12 * np.eye(6)
         for name in body:
             for other in by:
                 for points, normals, areas in self._patches(self.placed[name], self.placed[other]):
-                    rows = np.hstack([normals, np.cross(points - middle, normals) / half])
+                    rows = np.hstack([normals, np.cross(points - middle, normals) / across])
                     stiffness += (rows * areas[:, None]).T @ rows / areas.sum()
         return 1.0 / np.sqrt(np.diag(np.linalg.inv(stiffness)))
 
