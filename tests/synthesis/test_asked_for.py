@@ -151,3 +151,21 @@ def test_an_exact_calibration_leaves_the_noise_of_the_readings():
         warnings.simplefilter("error")
         got = quick(target)
     assert got.met and got.found.half_width < got.wanted < 4.0 * got.found.half_width
+
+
+@pytest.mark.slow
+def test_the_gauge_is_chosen_where_a_converter_is_to_tell_a_small_force():
+    """Within small's room 120 ohm at 1.09 V tell 0.8 mN or more, 350 ohm at 1.84 V six tenths of that."""
+
+    def offered(*gauges: float) -> Synthesis:
+        readout = replace(target.base.readout, converter="AD7124-8", force_resolution=0.75)
+        asked = replace(target, base=replace(target.base, readout=readout))
+        return quick(asked.with_("stock.gauges", gauges), 0.5)
+
+    target = small()
+    assert not offered(120.0).met
+    got = offered(120.0, 350.0)
+    assert got.met and got.design.gauge.resistance == 350.0
+    assert max(signal.resolution for signal in element_signals(Layout(got.design))) <= 0.75e-3
+    assert got.design.origin["gauge.resistance"] == "chosen: of the target's stock"
+    assert not list(check_signals(got.design)) and parse(design_text(got.design), "d") == got.design

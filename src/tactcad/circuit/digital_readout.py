@@ -26,6 +26,8 @@ from tactcad.parts.array.leads import boards, leads, longest_lead_resistance
 from tactcad.parts.array.stop_gap import overloads
 from tactcad.parts.bought.electronic_parts import completion_drift, completion_tolerance
 
+from .digital_board import digital_netlist
+
 
 @dataclass(frozen=True)
 class DigitalReadout:
@@ -144,8 +146,18 @@ def registers(found: DigitalReadout, chip: int) -> list[Register]:
     return [control, config, filter_, *channels]
 
 
+PINS_FROM = "unread: the sheet's pin table; two layout libraries of others' that agree"
+
+
+def pin_map(layout: Layout, converter: Converter) -> list[tuple[str, str, str]]:
+    """Of every board's converter: pin, its role, and the board's net on it; "" where it stays open."""
+    board = digital_netlist(layout, converter, converter.inputs)
+    (part,) = board.of_kind("converter")
+    return [(p.number, p.role, p.net) for p in sorted(part.pins, key=lambda p: int(p.number))]
+
+
 def settings_json(layout: Layout, name: str) -> bytes:
-    """Registers, inputs by element and figures, as JSON."""
+    """Registers, inputs by element, pins and figures, as JSON."""
     found = digital_readout(layout, name)
     chips = [
         {
@@ -175,6 +187,8 @@ def settings_json(layout: Layout, name: str) -> bytes:
         "from_input_to_input_s": found.settling,
         "noise_nV": round(found.noise * 1e9, 3),
         "drift_nV": round(found.drift * 1e9, 3),
+        "pins_from": PINS_FROM,
+        "pins": [{"pin": n, "role": r, "net": net} for n, r, net in pin_map(layout, found.converter)],
         "chips": chips,
     }
     return (json.dumps(data, indent=1) + "\n").encode()
@@ -195,6 +209,9 @@ def settings_header(layout: Layout, name: str) -> bytes:
         "#include <stdint.h>",
         "struct tactcad_register { uint8_t address; uint8_t bytes; uint32_t value; };",
     ]
+    lines.append(f"/* Pins ({PINS_FROM}):")
+    lines += [f"   {n:>2} {role:8} {net or 'open'}" for n, role, net in pin_map(layout, found.converter)]
+    lines[-1] += " */"
     for chip, places in enumerate(found.chips, start=1):
         numbers = ", ".join(str(p.number) for p in places)
         lines.append(f"static const uint8_t tactcad_elements_{chip}[] = {{{numbers}}}; /* by channel */")

@@ -64,6 +64,7 @@ TAKEN_AS_SET: dict[str, dict[str, tuple[Freedom, ...]]] = {
     "setting": {"EP": LEVEL, "E": ("z", "ry"), "BL": ("z", "ry")},
     "array": {"ST": LEVEL, "CA": LEVEL},
 }
+WITHIN = 1.0 - 1e-12  # of a size that another may not pass, so that rounding does not
 CUT = 100.0  # stress over yield strength, at most; chosen: whatever is beyond it is gone
 PAD = of_element(PAD_HEIGHT)
 # The field of HingeSection that a variable sets; the load arm follows from two others.
@@ -292,7 +293,7 @@ class Assembled:
         arm = m[of_element(ARM_LENGTH)] - m[of_element(PAD_LENGTH)] / 2
         modulus = drawn.youngs_modulus * (1.0 + m[MODULUS])
         # nor does a fillet reach higher than the arm
-        deep = (changed["arm_height"] - changed["hinge_thickness"]) / drawn.notch_sides
+        deep = WITHIN * (changed["arm_height"] - changed["hinge_thickness"]) / drawn.notch_sides
         full = np.minimum(np.minimum(changed["fillet_radius"], changed["hinge_length"] / 2), deep)
         return drawn.with_(
             **{**changed, "load_arm": drawn.load_arm + arm, "youngs_modulus": modulus, "fillet_radius": full}

@@ -11,7 +11,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
-from math import ceil
+from itertools import product
+from math import ceil, inf
 from typing import Any
 
 import numpy as np
@@ -29,6 +30,7 @@ from tactcad.mechanics.strength import largest_closing_force, tip_compliance
 from tactcad.parts.array.hinge_section import design_alloy, design_readout, hinge_section
 from tactcad.parts.array.layout import Layout
 from tactcad.parts.array.stop_gap import STEP_MM, land_room, seat
+from tactcad.parts.bought.electronic_parts import converter_of
 from tactcad.parts.language.finding import SAME
 
 from .interval import bounds, motion
@@ -186,15 +188,14 @@ def _with_rows(d: Design, elements: int) -> Layout:
 def stands(target: Target) -> list[Stand]:
     """Every choice of what is not searched."""
     out = []
-    for sheet in target.stock.sheets:
-        for alloy in target.stock.alloys:
-            for tolerance in target.stock.hinge_tolerances:
-                base = _base(target, sheet, alloy, tolerance)
-                out += [Stand(target, base, kinds) for kinds in range(2, target.elements.kinds + 1)]
+    stock = target.stock
+    for choice in product(stock.sheets, stock.alloys, stock.hinge_tolerances, stock.gauges):
+        base = _base(target, *choice)
+        out += [Stand(target, base, kinds) for kinds in range(2, target.elements.kinds + 1)]
     return out
 
 
-def _base(target: Target, sheet: float, alloy: str, tolerance: float) -> Design:
+def _base(target: Target, sheet: float, alloy: str, tolerance: float, gauge: float) -> Design:
     d = target.base
     spacer = Layout(d).spacer
     pitch = max(target.room.pitch, round(sheet + spacer, 6))
@@ -209,6 +210,7 @@ def _base(target: Target, sheet: float, alloy: str, tolerance: float) -> Design:
         array=replace(d.array, pitch=pitch, row_pitch=across, spacer=round(pitch - sheet, 6), row_arms=rows),
         element=replace(d.element, override={}),
         tolerance=replace(d.tolerance, hinge_thickness=tolerance, youngs_modulus=spread),
+        gauge=replace(d.gauge, resistance=gauge),
         rating=replace(d.rating, overload_force=target.grasp.overload),
         stop=replace(d.stop, gaps=None),
     )
@@ -324,13 +326,18 @@ class Candidates:
         thin = d.tolerance.hinge_thickness / self.thickness
         strong = d.rating.yield_factor * (1.0 + 2.5 * thin)
         soft = tip * (1.0 + 3.5 * thin)
-        volts = e.signal * self.largest_force / e.stiffness
-        readout = design_readout(d)
+        volts, full = (
+            e.signal * self.largest_force / e.stiffness,
+            inf,
+        )  # a converter's gain follows the signal
+        if converter_of(d) is None:
+            readout = design_readout(d)
+            full = min(readout.highest, -readout.lowest)
         return {
             "grasp.element_force": (self.largest_force / grip.element_force - 1.0).max(axis=1),
             "strength": (self.largest_force * strong / self.yield_force - 1.0).max(axis=1),
             "stop": (self.largest_force * soft / np.maximum(least_gap, 1e-6) - 1.0).max(axis=1),
-            "readout": (volts / min(readout.highest, -readout.lowest) - 1.0).max(axis=1),
+            "readout": (volts / full - 1.0).max(axis=1),
             **self._resolution,
             **self.of_shape,
             **({"grasp.force": self.felt[2] / LINEAR_REACH - 1.0} if s.on_layer else {}),
@@ -491,6 +498,7 @@ def origins(base: Design, made: Design, binding: str) -> dict[str, str]:
         "calibration.travel": "synthesised: what every hinge bears",
         "sheet.thickness": "chosen: of the target's stock",
         "tolerance.hinge_thickness": "chosen: of the target's stock",
+        "gauge.resistance": "chosen: of the target's stock",
         "tolerance.youngs_modulus": "chosen: the material's row",
     }
     told |= {path: "chosen: of the target's stock" for path in after if path.startswith("material.")}

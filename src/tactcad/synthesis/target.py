@@ -20,6 +20,7 @@ from tactcad.design.load import DEFAULT_DESIGN, MOST_BYTES, read, read_table, un
 from tactcad.design.materials import ALLOYS
 from tactcad.design.messages import InputError
 from tactcad.design.schema import table_schema, table_text
+from tactcad.design.sensing import StrainGauge
 from tactcad.design.text_values import parse_toml
 from tactcad.design.tree import Array, Design, Element, Identity, Rating, Sheet, Tolerance
 from tactcad.lab.calibration import RUN_SCATTER
@@ -134,6 +135,11 @@ class Stock:
         None,
         "the base design's",
     )
+    gauges: tuple[float, ...] = given(
+        Numbers(_spec(StrainGauge, "resistance"), 1, 6, "gauges, by their resistance"),
+        None,
+        "the base design's",
+    )
 
 
 @dataclass(frozen=True)
@@ -188,7 +194,7 @@ class Target:
     grasp: Grip
     base: Design
     room: Room = Room()
-    stock: Stock = Stock(None, None, None)  # type: ignore[arg-type]
+    stock: Stock = Stock(None, None, None, None)  # type: ignore[arg-type]
     elements: Kinds = Kinds()
     known: Known = Known()
     origin: dict[str, str] = field(default_factory=dict)
@@ -294,6 +300,7 @@ def parse_target(text: str, where: str, folder: Path = Path()) -> Target:
         stock.sheets or (base.sheet.thickness,),
         stock.alloys or (base.material.alloy,),
         stock.hinge_tolerances or (base.tolerance.hinge_thickness,),
+        stock.gauges or (base.gauge.resistance,),
     )
     written = frozenset(f"{name}.{field}" for name in TABLES for field in table.get(name, {}))
     target = Target(**values, base=base, origin=_origins(table.get("origin", {}), values), written=written)
@@ -341,6 +348,7 @@ def _refuse_contradictions(target: Target) -> None:
     for path, values in (
         ("stock.sheets", target.stock.sheets),
         ("stock.hinge_tolerances", target.stock.hinge_tolerances),
+        ("stock.gauges", target.stock.gauges),
     ):
         if len(set(values)) < len(values):
             raise InputError(path, "not a list of different numbers", value=list(values), legal="each once")
