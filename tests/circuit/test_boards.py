@@ -191,12 +191,13 @@ def rendered(file: Path) -> np.ndarray:
 
 
 @pytest.mark.slow
-def test_the_gerber_files_show_the_copper_that_kicad_plots(tmp_path):
+@pytest.mark.parametrize("converter", ["card", pytest.param("AD7124-8", marks=pytest.mark.nightly)])
+def test_the_gerber_files_show_the_copper_that_kicad_plots(converter, tmp_path):
     """KiCad plots the board file by its own, pygerber draws both: they differ at edges alone, by a dot."""
     from scipy.ndimage import binary_dilation, binary_erosion
 
     needs_kicad()
-    board = laid_out()
+    (board,) = boards.laid_out(Layout(variant({"readout.converter": converter})))
     file = tmp_path / "board.kicad_pcb"
     file.write_bytes(board_bytes(board, "NAME A", "title", "2026-01-01", "A"))
     in_kicad(file, tmp_path)

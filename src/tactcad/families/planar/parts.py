@@ -353,7 +353,7 @@ def _milled(
         body=body,
         features=tuple(features),
         colour="#7c8794",
-        finish="Ra 1.6, clear anodised after machining; dowel holes masked",
+        finish="Ra 1.6, clear anodised after machining" + ("; dowel holes masked" if layout.screwed else ""),
         notes=(BREAK_EDGES, *notes),
         characteristics=(within("thickness", body.thickness, 0.02, between=FACES), *_stated(layout, *bores)),
         **marks,
