@@ -149,7 +149,7 @@ def interrupted_imports(work: Path, moments: int) -> None:
     counted = at_import(work, "SIGINT", 0)
     assert counted.returncode == 0, counted.stderr.decode()
     count, chance = int(counted.stdout.split()[-1]), random.Random(SEED)
-    assert count > 1000  # the kernel's modules are among them
+    assert count > 800  # the kernel's modules are among them
     for path in ("out", "cold"):
         subprocess.run(["rm", "-rf", *work.glob(path), *work.glob(f".{path}.*")], check=True)
     before = sorted(p.name for p in work.iterdir())

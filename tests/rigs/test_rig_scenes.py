@@ -294,7 +294,7 @@ def test_a_guide_places_every_part_once_and_shows_its_torques(name):
         scene = make_scene(design, scene_name)
         placed = [d for step in scene.steps for d in step.designators]
         assert sorted(placed) == sorted(p.designator for p in scene.placements)
-        page = guide.page(design, scene).decode()
+        page = re.sub('<p class="note">.*?</p>', "", guide.page(design, scene).decode())  # Fixes: E1 ...
         ready = {d for step in scene.steps for d in step.ready}  # put together before, by its own guide
         supplies = {*scene.supplies} - {s for before in scene.ready for s in before.supplies}
         assert page.count("<h2>") == len(scene.steps) + 1 + bool(supplies)  # and the tools

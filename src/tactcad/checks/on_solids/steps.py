@@ -30,7 +30,8 @@ from ..check import Check
 PLACES = 9  # on a leg, at least, from where the boxes of a pair meet to where they part; chosen
 FILM = 0.05  # mm3: what chords of two curved faces, 0.002 mm off, may share over a pin's length
 CHORD, TURN = 0.02, 0.1  # mm, rad: of the meshes
-REACH = 0.03  # mm that a body is shifted to find what it meets: more than a slide fit's play to one side
+REACH = 0.03  # mm that a body is shifted to find what it meets
+SLIP = 0.1  # mm, in a hole that slips over a pin: 0.075 is the play to one side that rules leave a dowel
 PATCH = 1e-3  # mm3 that it must then share: 0.03 mm2 of contact
 # Least lever of what sets a turn, over half the body's diagonal across its axis; of a way, as much is left
 # beside turns that come with it. Chosen: a foot of a tenth of its height rocks.
@@ -138,11 +139,14 @@ class Trial:
         """Where a part cannot be shifted for another one, by direction: triangles' corners on both faces,
         normals and areas."""
         a, b = self._box(p), self._box(q)
-        if np.any(a[0] > b[1] + REACH) or np.any(b[0] > a[1] + REACH):
+        pair = p.designator, q.designator
+        slips = frozenset(pair) not in self.kind and any(n in self.goes_into for n in pair)
+        reach = SLIP if slips else REACH
+        if np.any(a[0] > b[1] + reach) or np.any(b[0] > a[1] + reach):
             return
         standing = self._mesh(q).translate(list(q.origin))
         for way in (*np.eye(3), *-np.eye(3)):
-            shared = self._mesh(p).translate(list(np.array(p.origin) + REACH * way)) ^ standing
+            shared = self._mesh(p).translate(list(np.array(p.origin) + reach * way)) ^ standing
             if shared.volume() <= PATCH:
                 continue
             mesh = shared.to_mesh()

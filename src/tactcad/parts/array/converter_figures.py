@@ -7,7 +7,6 @@ from __future__ import annotations
 from tactcad.design.sensing import Converter
 
 from ..bought.electronic_parts import SET_AMPERE, nearest_e192
-from .hinge_section import design_gauge
 from .layout import Layout
 
 RATE = 50.0  # Hz, results while one input is read; chosen: the filter's first notch lies on the mains
@@ -24,6 +23,8 @@ def converter_supply() -> float:
 
 def supply_ohm(layout: Layout) -> float:
     """Of the resistor that sets the bridges' supply, ohm: what a grid's backing bears all the time."""
+    from .hinge_section import design_gauge  # needs numpy, which a bill with a card does not
+
     d, gauge = layout.design, design_gauge(layout.design)
     area = gauge.grid_length * gauge.grid_width * 1e-6
     borne = 2 * (HEAT_LEFT * d.gauge.power_density * 1e3 * area * d.gauge.resistance) ** 0.5
