@@ -9,6 +9,7 @@ import subprocess
 import sys
 import threading
 from contextlib import contextmanager
+from functools import partial
 
 import numpy as np
 import pytest
@@ -255,10 +256,21 @@ def test_the_command_prints_its_address_and_ends_on_ctrl_c(tmp_path):
     (tmp_path / "d.toml").write_text(TEXT, "utf-8")
     command = [sys.executable, "-m", "tactcad", "view", "d.toml"]
     with subprocess.Popen(
-        command, cwd=tmp_path, env=environment(tmp_path), stdout=subprocess.PIPE, stderr=subprocess.PIPE
+        command,
+        cwd=tmp_path,
+        env=environment(tmp_path),
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        preexec_fn=partial(
+            signal.signal, signal.SIGINT, signal.SIG_DFL
+        ),  # a job in the background ignores it
     ) as run:
         said = run.stdout.readline().decode()
         assert said.startswith("d.toml: http://127.0.0.1:")
+        with pytest.raises(
+            subprocess.TimeoutExpired
+        ):  # it stays, with the kernel loaded after the first page
+            run.wait(8)
         run.send_signal(signal.SIGINT)
         assert run.wait(30) == 130 and run.stderr.read().count(b"\n") == 1
 

@@ -83,7 +83,7 @@ class LiveState:
 
 def load_kernel() -> None:
     """Load the kernel now: a first model from the cache did without, and the first save would wait for it."""
-    for module in ("build", "bytes", "facets"):
+    for module in ("build", "step", "triangles"):
         importlib.import_module(f"tactcad.solids.{module}")
 
 
