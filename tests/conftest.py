@@ -25,6 +25,11 @@ def own_cache(tmp_path_factory):
         yield
 
 
+def pytest_collection_modifyitems(items):
+    """Pages first: typing them takes one worker long, and at the end the other one would stand idle."""
+    items.sort(key=lambda item: item.path.name != "test_pages.py")
+
+
 def pytest_collection_finish():
     """Thousands of tests and all libraries stay to the end: they are not looked through for garbage again and
     again, nor copied by what is forked."""
