@@ -20,16 +20,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from tactcad.design.sensing import COMPLETIONS, Converter
+from tactcad.design.sensing import Converter
 from tactcad.parts.array.converter_figures import ANALOGUE_OHM, bridge_supply, supply_ohm
 from tactcad.parts.array.layout import Layout
 from tactcad.parts.array.leads import leads
 from tactcad.parts.bought.electronic_parts import (
     ACROSS_BRIDGE,
     CLAMP,
-    COMPLETION,
     DECOUPLING,
-    LINK,
     PULL_DOWN,
     REFERENCE,
     RESERVOIR,
@@ -39,12 +37,10 @@ from tactcad.parts.bought.electronic_parts import (
     SUPPLY_RESISTOR,
     TO_CARD,
     TO_LEADS,
-    WIRE_LINK,
-    completion_resistance,
 )
 
 from .netlist import GROUND, Component, Kind, Netlist, Pin
-from .read_board import EXCITATION, OUTSIDE, POSITIVE, REFERENCE_PINS, two
+from .read_board import EXCITATION, OUTSIDE, POSITIVE, REFERENCE_PINS, bridge_arms, two
 
 SUPPLY = "V33"  # of the converter
 LINES = ("SCLK", "DIN", "CS")
@@ -82,24 +78,9 @@ def _converter(converter: Converter) -> Component:
 
 
 def _channel(layout: Layout, c: int, used: bool) -> Iterator[Component]:
-    package = COMPLETIONS[layout.design.readout.completion].package
-    arm, red, plus, minus = (
-        completion_resistance(layout.design),
-        *(f"CH{c}_{e}" for e in ("RED", "PLUS", "MINUS")),
-    )
-    for k, nets in enumerate(((red, EXCITATION), (minus, EXCITATION), (GROUND, minus)), start=1):
-        name = f"R{10 * c + k}"
-        if used:
-            yield two(name, "resistor", f"{arm:g} ohm", COMPLETION, nets, package, ohm=arm)
-        elif k < 3:
-            link = LINK if package == "0805" else WIRE_LINK
-            yield two(name, "resistor", "0 ohm link", link, nets, package, ohm=1e-3)
-        else:
-            yield two(name, "resistor", "left off", COMPLETION, nets, package, False, ohm=1e12)
-    linked = leads(layout) == 2 or not used
-    ohm = 1e-3 if linked else 1e12
-    yield two(f"R{10 * c + 4}", "resistor", "0 ohm", LINK, (red, plus), "0805", linked, ohm=ohm)
-    yield two(f"C{10 * c + 1}", "capacitor", "10 nF", ACROSS_BRIDGE, (plus, minus), "0805", used, farad=1e-8)
+    yield from bridge_arms(layout.design, c, used, leads(layout), GROUND)
+    nets = f"CH{c}_PLUS", f"CH{c}_MINUS"
+    yield two(f"C{10 * c + 1}", "capacitor", "10 nF", ACROSS_BRIDGE, nets, "0805", used, farad=1e-8)
 
 
 def _supplies(layout: Layout) -> Iterator[Component]:

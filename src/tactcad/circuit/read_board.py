@@ -103,10 +103,10 @@ def two(
     )
 
 
-def _channel(design: Design, c: int, used: bool, wires: int) -> Iterator[Component]:
+def bridge_arms(design: Design, c: int, used: bool, wires: int, foot: str) -> Iterator[Component]:
+    """Of channel c: the bridge's three resistors, the third down to `foot`; and the link of red and plus."""
     package, arm = COMPLETIONS[design.readout.completion].package, completion_resistance(design)
-    switch = SWITCHES[design.readout.switch]
-    red, plus, minus, foot = (f"CH{c}_{end}" for end in ("RED", "PLUS", "MINUS", "FOOT"))
+    red, plus, minus = (f"CH{c}_{end}" for end in ("RED", "PLUS", "MINUS"))
     for k, nets in enumerate(((red, EXCITATION), (minus, EXCITATION), (foot, minus)), start=1):
         name = f"R{10 * c + k}"
         if used:
@@ -120,6 +120,11 @@ def _channel(design: Design, c: int, used: bool, wires: int) -> Iterator[Compone
     yield two(
         f"R{10 * c + 4}", "resistor", "0 ohm", LINK, (red, plus), "0805", linked, ohm=1e-3 if linked else 1e12
     )
+
+
+def _channel(design: Design, c: int, used: bool, wires: int) -> Iterator[Component]:
+    switch, foot = SWITCHES[design.readout.switch], f"CH{c}_FOOT"
+    yield from bridge_arms(design, c, used, wires, foot)
     on = {"gate": f"GATE{c}", "source": GROUND, "drain": foot}
     pins = tuple(Pin(switch.pins[role], role, net) for role, net in on.items())
     ohm = (("ohm", switch.on_ohm),)

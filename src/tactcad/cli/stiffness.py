@@ -100,6 +100,7 @@ def stiffness_rows(args: argparse.Namespace, design: Design) -> int:
         samples = (
             log_readings.grasps(from_log(args.file, args.map)) if args.map else readings.grasps(args.file)
         )
+        tell(0, len(samples), "layers under the pads")
         layers = pads.layers(design, args.thickness, args.nu) if args.coupling is None else []
         for g in samples:
             tell(len(results), len(samples), f"sample {g.sample}")
