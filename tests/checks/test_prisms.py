@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tactcad.contour import Arc, Contour, Corner, Line, chain, circle, rectangle, rounded_polygon
-from tactcad.contour.apart import keep_clear
+from tactcad.contour.keep_clear import keep_clear
 from tactcad.contour.inside import self_intersections
 from tactcad.parts.language.description import Extrusion, Hole, Material, Part
 
@@ -102,7 +102,7 @@ WAIST = chain([(0, 0), (4, 0), (4, 3), (2, 0), (0, 3)])  # a corner on an edge
 )
 def test_the_plane_and_the_kernel_agree(contours, faulty, monkeypatch):
     from tactcad.checks.on_solids import soundness
-    from tactcad.solids.prism import prism_edges
+    from tactcad.solids.prism_edges import prism_edges
 
     shape = prism(*contours)
     edges = prism_edges(shape)
@@ -120,7 +120,7 @@ def test_what_is_no_prism_is_left_to_the_kernel():
     from build123d import Box, Cone, Cylinder, Pos, Rotation
 
     from tactcad.solids.build import build
-    from tactcad.solids.prism import prism_edges
+    from tactcad.solids.prism_edges import prism_edges
 
     block = Box(4, 3, 2)
     assert len(prism_edges(block.wrapped)) == 4
