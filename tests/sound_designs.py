@@ -363,7 +363,8 @@ def _clamp(d: Draw) -> None:
     # plates
     drilled = DRILL_REACH * min(m.tap_drill, dowel)
     stack = max(map(len, d.arms)) * d.table["array.pitch"] + spacer
-    d.number("clamp.end_plate_thickness", max(m.tap_drill + 2, 3), min(drilled, (d.across_mount - stack) / 2))
+    least = max(m.tap_drill + 2, dowel + 3.5)  # the setting fixture's pins in their steps
+    d.number("clamp.end_plate_thickness", least, min(drilled, (d.across_mount - stack) / 2))
     d.number(
         "clamp.mount_pitch_y",
         max(5, mounted.d + 0.5, mounted.head + 1.1 if d.widest_pad < 48 else 0),

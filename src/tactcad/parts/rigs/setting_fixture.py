@@ -63,6 +63,11 @@ class SettingLayout:
         """Height of the steps over the floor as drawn, mm."""
         return round(self.design.clamp.end_plate_bottom - self.floor, 9)
 
+    @property
+    def step_length(self) -> float:
+        """Of each step along y, mm."""
+        return round(self.design.clamp.end_plate_thickness - SHORT - AIR, 9)
+
     def over_floor(self, name: str, step: str) -> Characteristic:
         """Limits of a step's height: higher by half the play, so that elements in the middle of their limits,
         pressed down on their pins, stand square; to a micrometre."""
@@ -82,7 +87,7 @@ class SettingLayout:
     @property
     def pin_y(self) -> float:
         """The middle of a step."""
-        return round(self.array.stack / 2 + (AIR + self.design.clamp.end_plate_thickness - SHORT) / 2, 6)
+        return round(self.array.stack / 2 + AIR + self.step_length / 2, 6)
 
     @property
     def pin_length(self) -> float:

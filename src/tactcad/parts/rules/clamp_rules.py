@@ -12,6 +12,7 @@ from ..bought.screws import SET_SCREW_LENGTHS
 from ..bought.standard_parts import LEAST_PLAY, dowel_diameter, dowel_limits
 from ..language.finding import SAME, Finding
 from ..language.metric import DRILL_REACH, METRIC, SOCKET_WALL, TAP_REACH, counterbore_diameter, engagement
+from ..rigs.setting_fixture import SettingLayout
 from .rule import at_least, at_most, rule, wrong
 
 # Tie rod and ground rod are sold in bars of up to 3 m (DIN 976-1: 1, 2 and 3 m).
@@ -119,6 +120,19 @@ def end_plate_takes_holes(layout: Layout) -> Iterator[Finding]:
             c.end_plate_thickness,
             f"at least {2 * END_PLATE_WEB + m.tap_drill:g} mm",
         )
+
+
+@rule(after="end_plate_takes_holes")
+def setting_fixture_holds_its_pins(layout: Layout) -> Iterator[Finding]:
+    """Its steps are as long as the end plates are thick, less a channel: the pins that the plates are turned
+    against have END_PLATE_WEB around them, as in the plates."""
+    c, step = layout.design.clamp, SettingLayout(layout.design).step_length
+    yield from at_least(
+        "clamp.end_plate_thickness",
+        f"leaves a step of {step:g} mm in the setting fixture, too short for its pins",
+        c.end_plate_thickness,
+        c.end_plate_thickness - step + float(c.dowel) + 2 * END_PLATE_WEB,
+    )
 
 
 def _heads_apart(layout: Layout, around: float, rod: bool) -> Iterator[Finding]:
