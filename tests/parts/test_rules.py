@@ -257,7 +257,12 @@ WITNESSES = {
     "setting_fixture_holds_its_pins": [
         ({"clamp.end_plate_thickness": 6.4}, "clamp.end_plate_thickness"),
         (
-            {"clamp.end_plate_thickness": 6.4, "clamp.dowel": "4", "holes.dowel_hole": 4.014, "holes.web": 1.0},
+            {
+                "clamp.end_plate_thickness": 6.4,
+                "clamp.dowel": "4",
+                "holes.dowel_hole": 4.014,
+                "holes.web": 1.0,
+            },
             "clamp.end_plate_thickness",
         ),
     ],
@@ -271,6 +276,7 @@ WITNESSES = {
         ({"element.rear_height": 20.0}, "clamp.stop_plate_thickness"),
         ({"clamp.stop_plate_thickness": 0.5, "rating.overload_force": 1.0}, "clamp.stop_plate_thickness"),
         ({**ONE, **THIN}, "clamp.screw"),
+        ({**ONE, "array.pitch": 20.0, "array.spacer": 17.0, "clamp.mount_pitch_y": 30.0}, "sheet.thickness"),
     ],
     "carrier_holes_apart": [
         ({"clamp.carrier_screw_offset": 20.0}, "clamp.carrier_screw_offset"),
