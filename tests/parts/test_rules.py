@@ -167,8 +167,7 @@ WITNESSES = {
         ({"readout.amplifier": "AD620", "readout.gain": 2000, "readout.excitation": 0.3}, "readout.gain"),
     ],
     "supplies_suit_parts": [
-        ({"readout.supply_positive": 30.0}, "readout.supply_positive"),
-        ({"readout.supply_positive": 24.0}, "readout.supply_positive"),  # the bridges' regulator
+        ({"readout.supply_positive": 19.0, "readout.supply_negative": -15.0}, "readout.supply_positive"),
         ({"readout.amplifier": "AD623", "readout.supply_positive": 8.0}, "readout.supply_positive"),
     ],
     "boards_have_inputs": [({"readout.inputs": 1}, "readout.inputs")],
@@ -208,6 +207,12 @@ WITNESSES = {
     ],
     "converter_reads_within_period": [
         ({"readout.converter": "AD7124-8", "readout.period": 0.2}, "readout.period")
+    ],
+    "regulators_take_supply": [
+        ({"readout.supply_positive": 24.0}, "readout.supply_positive"),
+        ({"readout.converter": "AD7124-8", "readout.supply_positive": 20.5}, "readout.supply_positive"),
+        ({"readout.converter": "AD7124-8", "readout.supply_positive": 3.3}, "readout.supply_positive"),
+        ({"gauge.resistance": 10.0, "gauge.rise": 100.0}, "readout.excitation"),
     ],
     "leads_are_relieved": [
         ({"wiring.bonded": 0.0}, "wiring.bonded"),
@@ -307,7 +312,7 @@ def test_every_rule_has_a_witness():
     [
         n
         for n in WITNESSES
-        if design_rules()[n].find.__module__.endswith(("readout_rules", "converter_rules"))
+        if design_rules()[n].find.__module__.endswith(("readout_rules", "converter_rules", "supply_rules"))
     ],
 )
 def test_a_rule_names_the_unread_parts_that_it_asks(rule):
