@@ -28,6 +28,12 @@ REFUSED = {
     "a range that is too small": ("headroom = 4.8", "readout.headroom", "4.8", "at most 4.76 V"),
     "no range": ("headroom = 5", "readout.headroom", "5", "at most 4.76 V"),
     "a supply that no input bears at rest": ("excitation = 4.5", "readout.excitation", "4.5", "3.8 V"),
+    "more than the board's regulator bears": (
+        "supply_positive = 24",
+        "readout.supply_positive",
+        "24",
+        "from 3.2 to 20 V",
+    ),
     "a supply on one side only": ("supply_negative = 0", "readout.supply_negative", "0", "to -4 V"),
     "more samples than a reading takes": ("samples = 100000", "readout.samples", "100000", "at most 498"),
     "samples that take too long": ("sample_rate = 10", "readout.sample_rate", "10", "at least 2010 Hz"),

@@ -167,8 +167,7 @@ WITNESSES = {
         ({"readout.amplifier": "AD620", "readout.gain": 2000, "readout.excitation": 0.3}, "readout.gain"),
     ],
     "supplies_suit_parts": [
-        ({"readout.supply_positive": 30.0}, "readout.supply_positive"),
-        ({"readout.supply_positive": 24.0}, "readout.supply_positive"),  # the bridges' regulator
+        ({"readout.supply_positive": 19.0, "readout.supply_negative": -15.0}, "readout.supply_positive"),
         ({"readout.amplifier": "AD623", "readout.supply_positive": 8.0}, "readout.supply_positive"),
     ],
     "boards_have_inputs": [({"readout.inputs": 1}, "readout.inputs")],
@@ -208,6 +207,12 @@ WITNESSES = {
     ],
     "converter_reads_within_period": [
         ({"readout.converter": "AD7124-8", "readout.period": 0.2}, "readout.period")
+    ],
+    "regulators_take_supply": [
+        ({"readout.supply_positive": 24.0}, "readout.supply_positive"),
+        ({"readout.converter": "AD7124-8", "readout.supply_positive": 20.5}, "readout.supply_positive"),
+        ({"readout.converter": "AD7124-8", "readout.supply_positive": 3.3}, "readout.supply_positive"),
+        ({"gauge.resistance": 10.0, "gauge.rise": 100.0}, "readout.excitation"),
     ],
     "leads_are_relieved": [
         ({"wiring.bonded": 0.0}, "wiring.bonded"),
@@ -254,6 +259,18 @@ WITNESSES = {
         ({"clamp.end_plate_thickness": 30.5}, "clamp.end_plate_thickness"),
         ({"clamp.end_plate_height": 15.0, "clamp.stop_plate_thickness": 2.5}, "clamp.end_plate_height"),
     ],
+    "setting_fixture_holds_its_pins": [
+        ({"clamp.end_plate_thickness": 6.4}, "clamp.end_plate_thickness"),
+        (
+            {
+                "clamp.end_plate_thickness": 6.4,
+                "clamp.dowel": "4",
+                "holes.dowel_hole": 4.014,
+                "holes.web": 1.0,
+            },
+            "clamp.end_plate_thickness",
+        ),
+    ],
     "carrier_can_be_screwed": [
         ({"clamp.mount_thread": "M5"}, "clamp.carrier_thickness"),
         ({"clamp.carrier_thickness": 9.1, "clamp.stop_plate_thickness": 7.0}, "clamp.carrier_thickness"),
@@ -264,6 +281,7 @@ WITNESSES = {
         ({"element.rear_height": 20.0}, "clamp.stop_plate_thickness"),
         ({"clamp.stop_plate_thickness": 0.5, "rating.overload_force": 1.0}, "clamp.stop_plate_thickness"),
         ({**ONE, **THIN}, "clamp.screw"),
+        ({**ONE, "array.pitch": 20.0, "array.spacer": 17.0, "clamp.mount_pitch_y": 30.0}, "sheet.thickness"),
     ],
     "carrier_holes_apart": [
         ({"clamp.carrier_screw_offset": 20.0}, "clamp.carrier_screw_offset"),
@@ -294,7 +312,7 @@ def test_every_rule_has_a_witness():
     [
         n
         for n in WITNESSES
-        if design_rules()[n].find.__module__.endswith(("readout_rules", "converter_rules"))
+        if design_rules()[n].find.__module__.endswith(("readout_rules", "converter_rules", "supply_rules"))
     ],
 )
 def test_a_rule_names_the_unread_parts_that_it_asks(rule):
@@ -448,7 +466,7 @@ def test_many_such_designs_build_and_pass_every_check(design):
         {"element.rear_height": 16.0},  # carrier over high rear bodies
         {
             "array.row_arms": [[4] * 4],
-            "clamp.end_plate_thickness": 5.0,
+            "clamp.end_plate_thickness": 6.5,
             "clamp.mount_pitch_y": 5.0,
         },  # counterbores
         # set screws over the outermost of thin elements would stand in the end plates

@@ -24,8 +24,11 @@ BOARD = "CIRCUIT-BOARD"
 DECOUPLING, RESERVOIR = "CAPACITOR-100N", "CAPACITOR-10U"
 TO_LEADS, TO_CARD = "HEADER-LEADS", "HEADER-CARD"
 REFERENCE, SET_RESISTOR = "LT3042EMSE#PBF", "SET-RESISTOR"
-REFERENCE_MOST_VOLTS = 20.0  # between its input and ground: LT3042's sheet, from memory
-SET_AMPERE = 100e-6  # out of the LT3042's SET pin, 1 %: its sheet, front page
+# LT3042, front page of its sheet, rev. B (digikey.fr, datasheet 46159): input up to 20 V, 200 mA, 100 uA out
+# of its SET pin within 1 %. Above 12 V its limit folds back, to 130 mA at least at 20 V: pages 22 and 4.
+REFERENCE_MOST_VOLTS, REFERENCE_AMPERE, SET_AMPERE = 20.0, 0.2, 100e-6
+FOLDS_FROM, FOLDED_AMPERE = 12.0, 0.13
+DROPOUT = 0.5  # V; chosen: 0.35 at 200 mA is typical, front page
 CLAMP, LINK, WIRE_LINK = "1N5819HW-7-F", "LINK-0R", "LINK-WIRE"
 SERIES, PULL_DOWN = "RESISTOR-1K", "RESISTOR-100K"
 SUPPLY_RESISTOR, ACROSS_BRIDGE = "SUPPLY-RESISTOR", "CAPACITOR-10N"  # of a converter's board
@@ -73,6 +76,17 @@ def completion_resistance(design: Design) -> float:
     """Of each of a bridge's three other arms, ohm."""
     own = design.readout.completion_resistance
     return design.gauge.resistance if own is None else own
+
+
+def bridge_resistance(design: Design) -> float:
+    """Of a bridge, ohm: gauge and an arm beside it, parallel to two other arms."""
+    gauge, arm = design.gauge.resistance, completion_resistance(design)
+    return 1 / (1 / (gauge + arm) + 1 / (2 * arm))
+
+
+def regulator_gives(volts: float) -> float:
+    """A that a regulator gives at so many volts at its input."""
+    return REFERENCE_AMPERE if volts <= FOLDS_FROM else FOLDED_AMPERE
 
 
 def completion_tolerance(design: Design) -> float:

@@ -27,6 +27,7 @@ FIRST = (
     "pressed_rules",
     "readout_rules",
     "converter_rules",
+    "supply_rules",
     "cart_rules",
     "calibration_rules",
 )

@@ -15,13 +15,7 @@ from ..array.bridge_figures import bridge_signal, heating, imbalance, sample_spa
 from ..array.hinge_section import design_readout
 from ..array.layout import Layout
 from ..array.leads import AHEAD_OF_LEADS, WHOLE, boards, lead_routes, longest_lead_resistance, recess_length
-from ..bought.electronic_parts import (
-    REFERENCE,
-    REFERENCE_MOST_VOLTS,
-    completion_resistance,
-    completion_tolerance,
-    converter_of,
-)
+from ..bought.electronic_parts import completion_resistance, completion_tolerance, converter_of
 from ..language.finding import SAME, Finding
 from .gauge_rules import lead
 from .rule import at_least, at_most, rule, wrong
@@ -121,13 +115,6 @@ def supplies_suit_parts(layout: Layout) -> Iterator[Finding]:
         r.excitation,
         SWITCHES[r.switch].most_volts,
         f"at most {SWITCHES[r.switch].most_volts:g} V",
-    )
-    yield from at_most(
-        "readout.supply_positive",
-        f"more than the regulator of the bridges' supply, {REFERENCE}, bears",
-        r.supply_positive,
-        REFERENCE_MOST_VOLTS,
-        f"at most {REFERENCE_MOST_VOLTS:g} V",
     )
 
 
