@@ -46,7 +46,7 @@ EASED_BY = {
 # A clamp of M2 screws and 2 mm dowels: plates that M2 screws and set screws reach through, and the shortest
 # rear body that keeps the rules of holes, webs and heads. Long stacks take tie rods; short ones cap screws,
 # whose heads need more room, and the axis's threads outside the carrier's screws.
-COMPACT = {
+COMPACT: dict[str, Any] = {
     "holes.dowel_hole": 2.012,
     "holes.web": 1.0,
     "clamp.screw": "M2",
@@ -57,14 +57,14 @@ COMPACT = {
     "clamp.carrier_screw_offset": 5.5,
     "clamp.mount_thread": "M3",
 }
-RODS = {
+RODS: dict[str, Any] = {
     "element.rear_length": 11.8,
     "holes.screw_offsets": (2.3, 9.3),
     "holes.dowel_offsets": (5.8,),
     "clamp.end_plate_margin": 0.0,
     "clamp.mount_pitch_y": 16.0,
 }
-CAP_SCREWS = {
+CAP_SCREWS: dict[str, Any] = {
     "element.rear_length": 12.1,
     "holes.screw_offsets": (2.3, 9.6),
     "holes.dowel_offsets": (5.95,),
