@@ -168,9 +168,8 @@ def test_a_room_too_small_for_the_bases_clamp_takes_one_of_smaller_screws(room, 
     origin = got.design.origin
     assert {origin[path] for path in COMPACT | RODS} == {FROM_COMPACT}
     assert compact(got) is None  # there is none smaller
-    base = (
-        smaller.base
-    )  # and it is the shortest: a tenth less breaks a rule, holes moved with the rear end or not
+    # and it is the shortest: a tenth less breaks a rule, whether holes move with the rear end or not
+    base = smaller.base
     shorter = with_value(base, "element.rear_length", round(base.element.rear_length - 0.1, 1))
     moved = (base.holes.screw_offsets[0], round(base.holes.screw_offsets[1] - 0.1, 1))
     array = with_value(shorter, "array.row_arms", got.design.array.row_arms)
