@@ -118,7 +118,7 @@ def test_its_resolution_by_hand():
     drift = ((found.excitation / 4 * x) ** 2 + (10e-9) ** 2) ** 0.5
     assert found.drift == pytest.approx(drift, rel=1e-3)
     told = (4 * found.noise**2 + drift**2) ** 0.5 / abs(found.per_force)
-    assert found.resolution == pytest.approx(told)
+    assert found.resolution == pytest.approx(told, rel=1e-3)
     assert [len(chip) for chip in found.chips] == [5, 5]
 
 

@@ -17,14 +17,18 @@ import numpy as np
 
 from tactcad.design.sensing import CONVERTERS, Converter
 from tactcad.mechanics import gauge_signal
-from tactcad.mechanics.readout import BOLTZMANN, ROOM
+from tactcad.mechanics.readout import BOLTZMANN, ROOM, transmission
 from tactcad.parts.array.bridge_figures import COPPER, zero_drift
 from tactcad.parts.array.converter_figures import RATE, bridge_supply, on_time, settling, warm_up
 from tactcad.parts.array.hinge_section import design_gauge, hinge_section
 from tactcad.parts.array.layout import ElementPlace, Layout
 from tactcad.parts.array.leads import boards, leads, longest_lead_resistance
 from tactcad.parts.array.stop_gap import overloads
-from tactcad.parts.bought.electronic_parts import completion_drift, completion_tolerance
+from tactcad.parts.bought.electronic_parts import (
+    completion_drift,
+    completion_resistance,
+    completion_tolerance,
+)
 
 from .digital_board import digital_netlist
 
@@ -39,6 +43,7 @@ class DigitalReadout:
     warm_up, on s, from ON to the first input's turn, and to the last result; 0 where always on
     noise       V rms of one result, at the bridge
     drift       V, half-width, at the bridge, between zero and reading
+    per_strain  V at the bridge for a strain of 1
     per_force   V/N at the bridge, by element
     resolution  N, by element, as that of the other read-out
     largest     V at each bridge under overload, tolerances at their worst
@@ -54,6 +59,7 @@ class DigitalReadout:
     on: float
     noise: float
     drift: float
+    per_strain: float
     per_force: np.ndarray
     resolution: np.ndarray
     largest: tuple[float, ...]
@@ -64,12 +70,14 @@ def digital_readout(layout: Layout, name: str) -> DigitalReadout:
     """The design read by the converter of that name. Raises CheckFailure out of the estimator's range."""
     d, part, gauge = layout.design, CONVERTERS[name], design_gauge(layout.design)
     volts, span = bridge_supply(layout), d.readout.temperature_span
-    per_strain = volts * gauge.factor / 4
+    lead, three = longest_lead_resistance(layout), leads(layout) == 3
+    left = transmission(d.gauge.resistance, completion_resistance(d), lead, 0.0, three)
+    per_strain = volts * left * gauge.factor / 4
     section, shape = hinge_section(layout, layout.elements), (len(layout.elements),)
     per_force = per_strain * np.broadcast_to(gauge_signal.foil_strain_per_force(section, gauge), shape)
     bent = np.broadcast_to(gauge_signal.foil_strain_per_deflection(section, gauge), shape)
     overload = [float(b) * state.deflection for b, state in zip(bent, overloads(layout), strict=True)]
-    two_leads = 2 * longest_lead_resistance(layout) / d.gauge.resistance if leads(layout) == 2 else 0.0
+    two_leads = 0.0 if three else 2 * lead / d.gauge.resistance
     off = d.gauge.resistance_tolerance + 3 * completion_tolerance(d) + abs(d.readout.bridge_offset)
     unloaded = volts * (off + two_leads) / 4
     largest = tuple(unloaded + abs(per_strain) * strain for strain in overload)
@@ -87,8 +95,9 @@ def digital_readout(layout: Layout, name: str) -> DigitalReadout:
     resolution = np.hypot(2 * noise, drift) / np.abs(per_force)
     times = (warm_up(layout), on_time(layout)) if d.readout.power == "duty" else (0.0, 0.0)
     return DigitalReadout(
-        part, volts, gain, RATE, settling(), *times, noise, drift, per_force, resolution, largest, chips
-    )
+        part, volts, gain, RATE, settling(), *times,
+        noise, drift, per_strain, per_force, resolution, largest, chips,
+    )  # fmt: skip
 
 
 @dataclass(frozen=True)

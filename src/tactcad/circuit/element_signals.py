@@ -62,8 +62,8 @@ def reading_noise(layout: Layout, alike: bool = False) -> float:
 
 def _behind_amplifier(design: Design, found: DigitalReadout, volts: float) -> float:
     """V behind an amplifier for the strain that gives so many V at a bridge that a converter reads."""
-    strain = volts / (found.excitation * design.gauge.factor / 4)
-    return float(strain * readout.volts_per_strain(design.gauge.factor, design_readout(design)))
+    slope = readout.volts_per_strain(design.gauge.factor, design_readout(design))
+    return float(volts / found.per_strain * slope)
 
 
 def element_signals(layout: Layout) -> list[ElementSignal]:
