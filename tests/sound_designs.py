@@ -147,9 +147,10 @@ def _stack(d: Draw, row_lengths: tuple[int, ...]) -> list[int]:
         1.9 if d.longest_stack < 100 and d.once_in(2) else LEAST_SPACER
     )  # room for the calibration's roller
     spacer = d.number("array.spacer", wide, min(30.0, d.longest_stack / n / 2))
-    sheet = d.number(
-        "sheet.thickness", max((least - spacer) / n, LEAD) - spacer, (d.longest_stack - spacer) / n - spacer
-    )
+    thin = max((least - spacer) / n, LEAD) - spacer
+    # ledges carry a stop plate that is higher than they are apart
+    thin = max(thin, 1.5 - spacer, *([round(spacer / 3 + 5e-4, 3), 2.0] if n == 1 else []))
+    sheet = d.number("sheet.thickness", thin, (d.longest_stack - spacer) / n - spacer)
     d.put("array.pitch", round(sheet + spacer, 3))
     return rows
 
@@ -325,7 +326,8 @@ def _clamp(d: Draw) -> None:
         "element.rear_height", max(height + web + widest / 2 + drop, d.ledge + 2 * corner), top - 0.1
     )
     lowest = max(height + over, rear + 0.1)
-    stop_plate = d.number("clamp.stop_plate_thickness", lowest - d.ledge - reach)
+    most = 7 * sheet if max(map(len, d.arms)) == 1 else None
+    stop_plate = d.number("clamp.stop_plate_thickness", lowest - d.ledge - reach, most)
     plate_bottom = d.table["clamp.end_plate_bottom"]
     if d.once_in(5):  # given instead of derived: up to where the set screw is just engaged
         on = d.ledge + stop_plate
@@ -363,7 +365,8 @@ def _clamp(d: Draw) -> None:
     # plates
     drilled = DRILL_REACH * min(m.tap_drill, dowel)
     stack = max(map(len, d.arms)) * d.table["array.pitch"] + spacer
-    d.number("clamp.end_plate_thickness", max(m.tap_drill + 2, 3), min(drilled, (d.across_mount - stack) / 2))
+    least = max(m.tap_drill + 2, dowel + 3.5)  # the setting fixture's pins in their steps
+    d.number("clamp.end_plate_thickness", least, min(drilled, (d.across_mount - stack) / 2))
     d.number(
         "clamp.mount_pitch_y",
         max(5, mounted.d + 0.5, mounted.head + 1.1 if d.widest_pad < 48 else 0),

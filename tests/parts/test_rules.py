@@ -259,6 +259,18 @@ WITNESSES = {
         ({"clamp.end_plate_thickness": 30.5}, "clamp.end_plate_thickness"),
         ({"clamp.end_plate_height": 15.0, "clamp.stop_plate_thickness": 2.5}, "clamp.end_plate_height"),
     ],
+    "setting_fixture_holds_its_pins": [
+        ({"clamp.end_plate_thickness": 6.4}, "clamp.end_plate_thickness"),
+        (
+            {
+                "clamp.end_plate_thickness": 6.4,
+                "clamp.dowel": "4",
+                "holes.dowel_hole": 4.014,
+                "holes.web": 1.0,
+            },
+            "clamp.end_plate_thickness",
+        ),
+    ],
     "carrier_can_be_screwed": [
         ({"clamp.mount_thread": "M5"}, "clamp.carrier_thickness"),
         ({"clamp.carrier_thickness": 9.1, "clamp.stop_plate_thickness": 7.0}, "clamp.carrier_thickness"),
@@ -269,6 +281,7 @@ WITNESSES = {
         ({"element.rear_height": 20.0}, "clamp.stop_plate_thickness"),
         ({"clamp.stop_plate_thickness": 0.5, "rating.overload_force": 1.0}, "clamp.stop_plate_thickness"),
         ({**ONE, **THIN}, "clamp.screw"),
+        ({**ONE, "array.pitch": 20.0, "array.spacer": 17.0, "clamp.mount_pitch_y": 30.0}, "sheet.thickness"),
     ],
     "carrier_holes_apart": [
         ({"clamp.carrier_screw_offset": 20.0}, "clamp.carrier_screw_offset"),
@@ -453,7 +466,7 @@ def test_many_such_designs_build_and_pass_every_check(design):
         {"element.rear_height": 16.0},  # carrier over high rear bodies
         {
             "array.row_arms": [[4] * 4],
-            "clamp.end_plate_thickness": 5.0,
+            "clamp.end_plate_thickness": 6.5,
             "clamp.mount_pitch_y": 5.0,
         },  # counterbores
         # set screws over the outermost of thin elements would stand in the end plates

@@ -27,6 +27,7 @@ from tactcad.lab.pads import places
 from tactcad.mechanics import as_built, ladder, strength, validity
 from tactcad.mechanics.section import Array, HingeSection
 from tactcad.mechanics.strength import largest_closing_force, tip_compliance
+from tactcad.parts.array.clamp import array_width
 from tactcad.parts.array.hinge_section import design_alloy, design_readout, hinge_section
 from tactcad.parts.array.layout import Layout
 from tactcad.parts.array.stop_gap import STEP_MM, land_room, seat
@@ -106,9 +107,9 @@ class Stand:
 
     @cached_property
     def widths(self) -> Array:
-        """Width of the carrier along the rows, mm, by the elements of the longer row, from none on."""
+        """Width of the array along the rows, mm, by the elements of the longer row, from none on."""
         most = int(self.target.room.elements[1]) // self.target.room.rows + 1
-        return np.array([0.0, *(_with_rows(self.base, n).carrier_width for n in range(1, most + 1))])
+        return np.array([0.0, *(array_width(_with_rows(self.base, n)) for n in range(1, most + 1))])
 
     @cached_property
     def _places(self) -> dict[tuple[int, ...], tuple[Array, Array]]:
@@ -407,7 +408,7 @@ class Candidates:
 
     @cached_property
     def area(self) -> Array:
-        """Of the carrier, mm2."""
+        """Of the array from above, mm2."""
         return (
             self.layout.carrier_length
             * self.stand.widths[np.minimum(self.in_a_row, len(self.stand.widths) - 1)]

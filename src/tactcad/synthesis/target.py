@@ -190,7 +190,8 @@ class Known:
 
 @dataclass(frozen=True)
 class Target:
-    """A whole target file, with the design that it starts from; `written` has the paths of its own values."""
+    """A whole target file, with the design that it starts from; `written` has the paths of its own values.
+    Where `base` was given the compact clamp, `own_clamp` has the screws that it came with."""
 
     target: Wish
     object: Object
@@ -202,6 +203,7 @@ class Target:
     known: Known = Known()
     origin: dict[str, str] = field(default_factory=dict)
     written: frozenset[str] = frozenset()
+    own_clamp: str = ""
 
     @property
     def on_layer(self) -> bool:

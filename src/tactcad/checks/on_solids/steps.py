@@ -16,6 +16,7 @@ import manifold3d
 import numpy as np
 from OCP.TopoDS import TopoDS_Shape
 
+from tactcad.parts.array.layout import LEVER
 from tactcad.parts.language.description import Vector
 from tactcad.parts.language.finding import Finding
 from tactcad.parts.language.metric import METRIC
@@ -33,9 +34,6 @@ CHORD, TURN = 0.02, 0.1  # mm, rad: of the meshes
 REACH = 0.03  # mm that a body is shifted to find what it meets
 SLIP = 0.1  # mm, in a hole that slips over a pin: 0.075 is the play to one side that rules leave a dowel
 PATCH = 1e-3  # mm3 that it must then share: 0.03 mm2 of contact
-# Least lever of what sets a turn, over half the body's diagonal across its axis; of a way, as much is left
-# beside turns that come with it. Chosen: a foot of a tenth of its height rocks.
-LEVER = 0.1
 # Two fingertips that hold a pin: each so thick and so wide (mm), over so much of its end. Chosen: half of an
 # adult's fingertip of 16 to 20 mm, which gives way.
 THICK, WIDE, GRIP = 10.0, 12.0, 4.0

@@ -32,6 +32,9 @@ BESIDE_SET_SCREW = 0.3
 # Least material between holes of a plate: feasible in metal, where 0.8 is advised and less is flagged
 # (vendors' guides, see checks/data/shop.toml).
 HOLE_WEB = 0.5
+# Least lever of what sets a turn, over half the body's diagonal across its axis; of a way, as much is left
+# beside turns that come with it. Chosen: a foot of a tenth of its height rocks.
+LEVER = 0.1
 # Least material to the carrier's edge; chosen: as END_PLATE_WEB.
 CARRIER_EDGE = 1.0
 

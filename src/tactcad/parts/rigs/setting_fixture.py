@@ -9,12 +9,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from math import hypot
 
 from tactcad.contour import Corner, rectangle, rounded_polygon
 from tactcad.design.tree import Design
 
 from ..array.clamp import PRESS_FIT, pressed
-from ..array.layout import Layout
+from ..array.layout import LEVER, Layout
 from ..bought.standard_parts import dowel_diameter, dowel_lengths, dowel_limits
 from ..language.description import Extrusion, Hole, Part
 from ..language.limits import Characteristic, DatumFeature, Geometric, within
@@ -63,6 +64,11 @@ class SettingLayout:
         """Height of the steps over the floor as drawn, mm."""
         return round(self.design.clamp.end_plate_bottom - self.floor, 9)
 
+    @property
+    def step_length(self) -> float:
+        """Of each step along y, mm."""
+        return round(self.design.clamp.end_plate_thickness - SHORT - AIR, 9)
+
     def over_floor(self, name: str, step: str) -> Characteristic:
         """Limits of a step's height: higher by half the play, so that elements in the middle of their limits,
         pressed down on their pins, stand square; to a micrometre."""
@@ -82,7 +88,14 @@ class SettingLayout:
     @property
     def pin_y(self) -> float:
         """The middle of a step."""
-        return round(self.array.stack / 2 + (AIR + self.design.clamp.end_plate_thickness - SHORT) / 2, 6)
+        return round(self.array.stack / 2 + AIR + self.step_length / 2, 6)
+
+    @property
+    def pins_square(self) -> bool:
+        """Whether both pins stand far enough apart to keep the plates from turning about z; a short stack of
+        long bodies is turned by hand, and nothing stands on it: the dowels hold its plates to each other."""
+        long, wide = self.array.end_plate_half, self.array.stack / 2 + self.design.clamp.end_plate_thickness
+        return self.pin_y >= LEVER * hypot(long, wide)
 
     @property
     def pin_length(self) -> float:

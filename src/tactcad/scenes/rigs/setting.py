@@ -80,7 +80,7 @@ def setting(design: Design, pose: Pose = REST) -> Scene:
         order=[Move(tuple(p.designator for p in loose.placements), (0.0, 0.0, 60.0), (STILL,))],
         held=(
             Held((("EP1", "EP2"),), (fixture,), ("z", "rx", "ry")),
-            Held((("EP1", "EP2"),), tuple(fences.values()), ("rz",)),
+            *([Held((("EP1", "EP2"),), tuple(fences.values()), ("rz",))] if rig.pins_square else []),
             Held(tuple((p.designator,) for p in layout.elements), (fixture, *pins), ("z", "ry")),
             *([Held(tuple((p.designator,) for p in blanks), (strip, *pins), ("z", "ry"))] if blanks else []),
         ),

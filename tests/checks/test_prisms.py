@@ -1,0 +1,144 @@
+"""Whether a prism passes through itself, told in its plane: against the kernel, and against all pairs."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from tactcad.contour import Arc, Contour, Corner, Line, chain, circle, rectangle, rounded_polygon
+from tactcad.contour.inside import self_intersections
+from tactcad.contour.keep_clear import keep_clear
+from tactcad.parts.language.description import Extrusion, Hole, Material, Part
+
+CLEAR = 1e-6
+
+
+def random_chains(number: int):
+    """Polygons of a few random corners, half of them star-shaped and so simple; some with rounded corners."""
+    rng = np.random.default_rng(5)
+    for n in range(number):
+        corners = rng.integers(0, 40, (rng.integers(4, 9), 2)) / 4.0
+        if n % 2:
+            off = corners - corners.mean(axis=0)
+            corners = corners[np.argsort(np.arctan2(off[:, 1], off[:, 0]), kind="stable")]
+        points = [tuple(map(float, p)) for p in corners]
+        if len(set(points)) == len(points):
+            yield points
+
+
+def test_clear_is_what_no_pair_of_pieces_contradicts():
+    answers = []
+    for points in random_chains(300):
+        contour = chain(points)
+        folded = any(_back(points, i) for i in range(len(points)))
+        answers.append(keep_clear(list(contour), CLEAR))
+        assert answers[-1] == (not self_intersections(contour) and not folded), points
+    assert 60 < sum(answers) < len(answers) - 60
+
+
+def _back(points, i: int) -> bool:
+    """Whether the chain turns back on itself in a corner."""
+    a, b, c = (np.array(points[(i + k) % len(points)]) for k in (-1, 0, 1))
+    u, v = a - b, c - b
+    return bool(abs(u[0] * v[1] - u[1] * v[0]) < 1e-9 and u @ v > 0)
+
+
+@pytest.mark.parametrize(
+    "apart, clear", [(0.5, True), (2e-6, True), (5e-7, False), (0.0, False), (-0.1, False)]
+)
+def test_two_round_openings_that_come_near(apart, clear):
+    pieces = [*circle((0.0, 0.0), 2.0), *circle((2.0 + apart, 0.0), 2.0)]
+    assert keep_clear(pieces, CLEAR) is clear
+
+
+def test_rounded_corners_touch_their_neighbours_only():
+    corners = [
+        Corner((0.0, 0.0), 0.3),
+        Corner((4.0, 0.0), 0.1),
+        Corner((4.0, 3.0), 1.0),
+        Corner((0.0, 3.0), 0.0),
+    ]
+    assert keep_clear(list(rounded_polygon(corners)), CLEAR)
+
+
+def test_neighbours_that_meet_again():
+    """A line from an arc's end is inside it or beside it; one that ends on or beyond it crosses it."""
+    half = Arc((1.0, 0.0), (-1.0, 0.0), (0.0, 0.0), True)
+    for end, clear in (((0.5, 0.2), True), ((1.0, -0.5), True), ((0.6, 0.8), False), ((1.5, 0.6), False)):
+        assert keep_clear([half, Line((-1.0, 0.0), end)], CLEAR) is clear, end
+
+
+def prism(*contours: Contour):
+    """As the kernel moves a face, sound or not."""
+    from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeFace
+    from OCP.BRepPrimAPI import BRepPrimAPI_MakePrism
+    from OCP.gp import gp_Pln, gp_Vec
+
+    from tactcad.solids.build import wire
+
+    maker = BRepBuilderAPI_MakeFace(gp_Pln(), wire(contours[0]), True)
+    for opening in contours[1:]:
+        maker.Add(wire(opening.reversed()))
+    return BRepPrimAPI_MakePrism(maker.Face(), gp_Vec(0, 0, 0.5)).Shape()
+
+
+SQUARE = rectangle(-10, -10, 10, 10)
+BOW_TIE = chain([(0, 0), (4, 3), (4, 0), (0, 3)])
+WAIST = chain([(0, 0), (4, 0), (4, 3), (2, 0), (0, 3)])  # a corner on an edge
+
+
+@pytest.mark.cad
+@pytest.mark.parametrize(
+    "contours, faulty",
+    [
+        ((SQUARE,), False),
+        ((SQUARE, circle((0, 0), 3), rectangle(3, 3, 5, 5)), False),
+        ((BOW_TIE,), True),
+        ((WAIST,), True),
+        ((SQUARE, circle((0, 0), 3), circle((2, 0), 3)), True),
+        ((SQUARE, rectangle(0, 0, 3, 3), rectangle(3, 1, 5, 2)), True),
+        ((SQUARE, rectangle(8, 0, 12, 3)), True),
+    ],
+)
+def test_the_plane_and_the_kernel_agree(contours, faulty, monkeypatch):
+    from tactcad.checks.on_solids import soundness
+    from tactcad.solids.prism_edges import prism_edges
+
+    shape = prism(*contours)
+    edges = prism_edges(shape)
+    assert edges is not None and sum(e.length for e in edges) == pytest.approx(
+        sum(c.length for c in contours)
+    )
+    assert keep_clear(edges, CLEAR) is not faulty
+    assert soundness.meets_itself(shape) is faulty
+    monkeypatch.setattr(soundness, "prism_edges", lambda shape: None)
+    assert soundness.meets_itself(shape) is faulty  # by the kernel alone
+
+
+@pytest.mark.cad
+def test_what_is_no_prism_is_left_to_the_kernel():
+    from build123d import Box, Cone, Cylinder, Pos, Rotation
+
+    from tactcad.solids.build import build
+    from tactcad.solids.prism_edges import prism_edges
+
+    block = Box(4, 3, 2)
+    assert len(prism_edges(block.wrapped)) == 4
+    for other in (
+        block - Pos(0, 0, 1) * Cylinder(0.5, 1),
+        block + Pos(0, 0, 2) * Box(1, 1, 2),
+        block - Rotation(90, 0, 0) * Cylinder(0.3, 9),
+        Rotation(0, 1, 0) * block,
+        Cone(2, 1, 2),
+        Pos(0, 0, 1) * block - Pos(0, 0, 1.5) * Rotation(0, 45, 0) * Box(0.5, 9, 0.5),
+    ):
+        assert prism_edges(other.solid().wrapped) is None
+    bored = Part(
+        "P",
+        "plate",
+        "milled",
+        Material("steel", 7850.0),
+        Extrusion(SQUARE, 2.0),
+        (Hole("bore", (0.0, 0.0, 0.0), (0, 0, 1), 3.0, 2.0, True),),
+    )
+    assert len(prism_edges(build(bored))) == 5
