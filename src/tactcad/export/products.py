@@ -214,8 +214,6 @@ def circuit_files(plan: Plan) -> Iterator[Batch]:
         ("wiring_{}.csv", "wiring", files.wiring_file),
         ("harness_{}.csv", "wiring", files.harness_file),
     ):
-        if make is files.deck_file and converter != "card":  # SPICE has no converter
-            continue
         path = f"circuit/{design.name}-{name.format(plan.revision)}"
         yield _one(Output(path, kind, "", f"{key} {path}"), partial(make, design, circuit))
     for ending, settings in (("h", settings_header), ("json", settings_json)) if converter != "card" else ():
