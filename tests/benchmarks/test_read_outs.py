@@ -18,7 +18,7 @@ def test_the_document_has_the_table_as_it_is():
 
 def test_chips_parts_and_heat_by_hand():
     """Two boards: amplifier, multiplexer, decoder and regulator, or converter and two regulators. Three arms
-    and a switch a channel, or a capacitor. All grids bear the same heat: EXC grows with the root of the ohms."""
+    and a switch a channel, or a capacitor. All grids bear the same heat: EXC grows as the root of ohms."""
     rows = [[cell.strip() for cell in row.split("|")[1:-1]] for row in read_outs().splitlines()[2:]]
     assert [row[5].split(", ")[0] for row in rows] == ["8", "6", "6", "6", "6"]
     assert {row[6] for row in rows} == {"4"}
