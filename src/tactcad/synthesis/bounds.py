@@ -169,11 +169,11 @@ def soon(target: Target) -> float:
 def near(target: Target, found: Found) -> list[Stand]:
     """Stands of a target that are the found one's, but for tolerances or for more kinds than it may have."""
     here = found.candidate.stand
-    own = here.base.sheet, here.base.material.alloy, here.base.gauge
+    own = here.base.sheet, here.base.material.alloy, here.base.gauge, here.base.readout
 
     def alike(s: Stand) -> bool:
         kinds = s.kinds == here.kinds or s.kinds > here.target.elements.kinds
-        return kinds and own == (s.base.sheet, s.base.material.alloy, s.base.gauge)
+        return kinds and own == (s.base.sheet, s.base.material.alloy, s.base.gauge, s.base.readout)
 
     return [_placed(s, here) for s in stands(target) if alike(s)] or stands(target)
 

@@ -190,13 +190,14 @@ def stands(target: Target) -> list[Stand]:
     """Every choice of what is not searched."""
     out = []
     stock = target.stock
-    for choice in product(stock.sheets, stock.alloys, stock.hinge_tolerances, stock.gauges):
+    choices = stock.sheets, stock.alloys, stock.hinge_tolerances, stock.gauges, stock.powers
+    for choice in product(*choices):
         base = _base(target, *choice)
         out += [Stand(target, base, kinds) for kinds in range(2, target.elements.kinds + 1)]
     return out
 
 
-def _base(target: Target, sheet: float, alloy: str, tolerance: float, gauge: float) -> Design:
+def _base(target: Target, sheet: float, alloy: str, tolerance: float, gauge: float, power: str) -> Design:
     d = target.base
     spacer = Layout(d).spacer
     pitch = max(target.room.pitch, round(sheet + spacer, 6))
@@ -212,6 +213,7 @@ def _base(target: Target, sheet: float, alloy: str, tolerance: float, gauge: flo
         element=replace(d.element, override={}),
         tolerance=replace(d.tolerance, hinge_thickness=tolerance, youngs_modulus=spread),
         gauge=replace(d.gauge, resistance=gauge),
+        readout=replace(d.readout, power=power),
         rating=replace(d.rating, overload_force=target.grasp.overload),
         stop=replace(d.stop, gaps=None),
     )
@@ -500,6 +502,7 @@ def origins(base: Design, made: Design, binding: str) -> dict[str, str]:
         "sheet.thickness": "chosen: of the target's stock",
         "tolerance.hinge_thickness": "chosen: of the target's stock",
         "gauge.resistance": "chosen: of the target's stock",
+        "readout.power": "chosen: of the target's stock",
         "tolerance.youngs_modulus": "chosen: the material's row",
     }
     told |= {path: "chosen: of the target's stock" for path in after if path.startswith("material.")}
