@@ -311,8 +311,8 @@ def _bowed(
     for name, height, share in zip(("force", "signal"), heights, off):
         if height:
             notes.append(
-                f"the {name} bows by up to {height:.1%} of its full scale (hysteresis, friction): the interval "
-                f"of its slope is {share:.1%} wider either way; readings of the way back would tell"
+                f"the {name} bows by up to {height:.1%} of its full scale (hysteresis, friction): the "
+                f"interval of its slope is {share:.1%} wider either way; readings of the way back would tell"
             )
     se = np.sqrt(np.diag(covariance))
     return covariance + np.diag((se + off * np.abs(slope) / t) ** 2 - se**2)
