@@ -181,7 +181,7 @@ def test_duty_is_offered_where_noise_is_what_is_left():
     one, two = stands(replace(target, base=base))
     told = [bridge_supply(Layout(s.base)) for s in (one, two)]
     assert (one.base.readout.power, two.base.readout.power) == ("continuous", "duty")
-    assert two.smallest_output < 0.75 * one.smallest_output and told[1] > 1.6 * told[0]
+    assert two.smallest_output / told[1] < 0.75 * one.smallest_output / told[0] and told[1] > 1.6 * told[0]
 
 
 @pytest.mark.slow
