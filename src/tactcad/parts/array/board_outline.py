@@ -18,7 +18,6 @@ from tactcad.design.sensing import MULTIPLEXERS
 
 from ..bought.electronic_parts import CARD_SIGNALS, CONTROLLER_SIGNALS, converter_of
 from .layout import Layout
-from .leads import channels_of
 
 Place = tuple[float, float]
 
@@ -50,6 +49,12 @@ class BoardOutline:
     connector_direction: Place
     highest: float
     lowest: float
+
+
+def channels_of(layout: Layout) -> int:
+    """Of a board: of its multiplexer, or of the converter that takes the bridges themselves."""
+    converter = converter_of(layout.design)
+    return converter.inputs if converter else MULTIPLEXERS[layout.design.readout.multiplexer].channels
 
 
 def lead_pins(layout: Layout) -> int:
