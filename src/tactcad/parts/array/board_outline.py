@@ -23,7 +23,7 @@ Place = tuple[float, float]
 
 THICKNESS = 1.6  # mm; chosen: what every board house has in stock
 PITCH = 2.54  # of the headers' pins, mm
-HOLE, AT_CORNER = 3.2, 4.0  # mm: a hole for M3 (ISO 273, fine), from both edges of its corner
+HOLE, AT_CORNER = 3.4, 4.0  # mm: a hole for M3 (ISO 273, medium), from both edges of its corner
 LEADS_FROM_EDGE = 10.0  # mm, the lead connector's pins from the upper edge: before them are the ties' holes
 CARD_FROM_EDGE = 5.0  # mm, the other connector's pins from the lower edge: their names are printed below
 HIGHEST = 8.5  # mm, pin headers: insulator 2.54 and pins of 6; the foil resistors are 8.3
