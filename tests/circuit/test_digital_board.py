@@ -17,7 +17,8 @@ from variants import variant
 from tactcad.checks.facing_rows.circuit import check_bridges, check_circuit, check_inputs
 from tactcad.circuit import boards
 from tactcad.circuit.bridges import netlist
-from tactcad.circuit.digital_readout import settings_header, settings_json
+from tactcad.circuit.digital_readout import digital_readout, settings_header, settings_json
+from tactcad.circuit.element_signals import element_signals, reading_noise
 from tactcad.circuit.harness import harness_csv
 from tactcad.circuit.kicad_board import board_bytes
 from tactcad.circuit.netlist_files import DIODE, lines_of, wiring
@@ -96,6 +97,24 @@ def test_the_pin_map_is_the_boards():
     } == on_pads
 
 
+def test_on_switches_the_bridges_supply_and_nothing_else():
+    """From the card's connector by 1 kohm to the enable pin, 100 kohm to ground; VPOS is beside it."""
+    circuit = boards.netlist_of_board(layout_of({"readout.power": "duty"}), 5)
+    (regulator,), (supply,) = circuit.of_kind("regulator"), circuit.of_kind("supply")
+    assert (regulator.net("enable"), supply.net("enable")) == ("ON", "VPOS")
+    around = [c for c, _ in circuit.nets["ON"] if c.kind == "resistor"]
+    on = {(c.kind, c.value, frozenset(p.net for p in c.pins)) for c in around}
+    assert on == {
+        ("resistor", "1 kohm", frozenset(("ON_IN", "ON"))),
+        ("resistor", "100 kohm", frozenset(("ON", "GND"))),
+    }
+    card = [p.net for c in circuit.of_kind("connector") if c.designator == "J1" for p in c.pins]
+    assert card[2:4] == ["VPOS", "ON_IN"]
+    always = boards.netlist_of_board(layout_of(), 5)
+    differs = [a.designator for a, b in zip(circuit.components, always.components) if a != b]
+    assert differs == ["U4", "R2"]  # by the volts that it is set to
+
+
 def test_each_gauge_is_in_one_bridge_and_no_input_floats():
     layout = layout_of()
     circuit = netlist(layout)
@@ -157,7 +176,7 @@ def test_supplies_in_any_order_harm_no_input(falls, tmp_path):
     if falls == "V33":
         lines += ["V33 V33 0 PWL(0 3.32 1m 3.32 2m 0)", ".ic v(EXC)=3.12"]
     else:
-        lines += ["R33 V33 0 100", *(f"V{n} {n}_IN 0 3.3" for n in ("SCLK", "DIN", "CS"))]
+        lines += ["R33 V33 0 100", *(f"V{n} {n}_IN 0 3.3" for n in ("ON", "SCLK", "DIN", "CS"))]
     seen = [p for p in part.pins if p.role.startswith("AIN") or p.role in ("SCLK", "DIN", "CS", "REFIN1+")]
     for p in seen:
         lines += [f"VM{p.number} {p.net} P{p.number} 0", f"DU{p.number} P{p.number} V33 esd"]
@@ -180,19 +199,27 @@ def test_the_harness_carries_all_bridges():
     )
     lead = next(r for r in rows if r["signal"] == "E1_RED")
     assert float(lead["current_mA"]) == pytest.approx(1090 / 240, rel=1e-2)
+    assert [r["to"] for r in rows if r["signal"] == "ON"] == 2 * [
+        "digital output ON, or a jumper to VPOS beside it: high, the bridges are on"
+    ]
     assert {r["to"] for r in rows if r["signal"] in ("CS1", "CS2")} == {
         "digital output CS1",
         "digital output CS2",
     }
 
 
-def test_the_check_and_the_search_see_the_same_resolution():
-    """`smallest_output` over an amplifier's slope is what the converter's own figures give."""
-    from tactcad.circuit.digital_readout import digital_readout
-    from tactcad.circuit.element_signals import element_signals
-
+def test_noise_in_a_grasp_is_the_converters():
+    """What estimates, robots' taxels and the search take of a reading: in newtons as the converter's own."""
     layout = layout_of()
     found = digital_readout(layout, CHIP)
-    assert [s.resolution for s in element_signals(layout)] == pytest.approx(
-        [*abs(found.resolution)], rel=3e-3
-    )  # leads and switch, which only the card's slope knows of
+    for signal, per_force in zip(element_signals(layout), found.per_force):
+        for alike in (False, True):
+            told = reading_noise(layout, alike) / signal.per_force
+            assert told == pytest.approx(found.noise / abs(per_force))
+
+
+def test_the_check_and_the_search_see_the_same_resolution():
+    """`smallest_output` over an amplifier's slope is what the converter's own figures give."""
+    layout = layout_of()
+    found = digital_readout(layout, CHIP)
+    assert [s.resolution for s in element_signals(layout)] == pytest.approx([*abs(found.resolution)])

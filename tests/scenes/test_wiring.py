@@ -48,7 +48,12 @@ def test_every_board_has_a_plate_of_its_own(kind):
     scene, n = make_scene(design, "wiring"), len(boards(Layout(design)))
     rows = {row.part_no: row.qty for row in bom_rows(scene, "A", {})}
     own = {f"{design.name}-{part}": 1 for part in ("board-plate", "lead-clamp", "fitted-board")}
-    own |= {"SOCKET-LEADS-26": 1, "STAND-OFF-M3x10-6": 4, f"{CAP}6-A2-70-screw": 4, f"{CAP}12-A2-70-screw": 2}
+    own |= {
+        "SOCKET-LEADS-26-strip": 1,
+        "STAND-OFF-M3x10-6-bolt": 4,
+        f"{CAP}6-A2-70-screw": 4,
+        f"{CAP}12-A2-70-screw": 2,
+    }
     extra = {row.part_no: row.qty for row in bom_rows(make_scene(design, "array"), "A", {})}
     assert {part: rows[part] - extra.get(part, 0) for part in own} == {p: n * k for p, k in own.items()}
     plate = next(p.part for p in scene.placements if p.designator == "BH1")

@@ -9,6 +9,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from small_target import SMALL
+from variants import variant
 
 from tactcad.checks.facing_rows.circuit import check_signals
 from tactcad.circuit.element_signals import element_signals
@@ -16,6 +17,7 @@ from tactcad.design.design_text import design_text
 from tactcad.design.load import parse
 from tactcad.design.messages import InputError
 from tactcad.mechanics.ladder import stiffness
+from tactcad.parts.array.converter_figures import bridge_supply
 from tactcad.parts.array.hinge_section import hinge_section
 from tactcad.parts.array.layout import Layout
 from tactcad.parts.language.finding import Finding
@@ -169,3 +171,14 @@ def test_the_gauge_is_chosen_where_a_converter_is_to_tell_a_small_force():
     assert max(signal.resolution for signal in element_signals(Layout(got.design))) <= 0.75e-3
     assert got.design.origin["gauge.resistance"] == "chosen: of the target's stock"
     assert not list(check_signals(got.design)) and parse(design_text(got.design), "d") == got.design
+
+
+def test_duty_is_offered_where_noise_is_what_is_left():
+    """Steady temperature and leads: 1.82 V once a period tell less than 1.09 V all the time do."""
+    target = small(("[elements]", '[stock]\npowers = ["continuous", "duty"]\n[elements]'))
+    base = variant({"readout.converter": "AD7124-8", "readout.temperature_span": 0.05})
+    base = replace(base, tolerance=replace(base.tolerance, zero_drift=1e-8))
+    one, two = stands(replace(target, base=base))
+    told = [bridge_supply(Layout(s.base)) for s in (one, two)]
+    assert (one.base.readout.power, two.base.readout.power) == ("continuous", "duty")
+    assert two.smallest_output < 0.75 * one.smallest_output and told[1] > 1.6 * told[0]

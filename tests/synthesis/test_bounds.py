@@ -5,16 +5,34 @@ from __future__ import annotations
 import json
 from dataclasses import asdict, replace
 from functools import lru_cache
+from pathlib import Path
 
 import pytest
+from random_designs import raw_table
 from small_target import SMALL
 
 from tactcad.cli.main import main
-from tactcad.design.load import read
+from tactcad.design.load import from_table, read
+from tactcad.parts.array.clamp import clamping
 from tactcad.parts.array.layout import Layout
+from tactcad.parts.designs import load
 from tactcad.parts.rules import broken_rules
+from tactcad.scenes import overall_size
 from tactcad.synthesis import relax, synthesise
-from tactcad.synthesis.bounds import Bound, base_breaks, bound, deciding, narrowest, touched, with_value
+from tactcad.synthesis.bounds import (
+    COMPACT,
+    FROM_COMPACT,
+    RODS,
+    SIZES,
+    Bound,
+    base_breaks,
+    bound,
+    compact,
+    deciding,
+    narrowest,
+    touched,
+    with_value,
+)
 from tactcad.synthesis.candidates import stands
 from tactcad.synthesis.search import Found, refusals, search
 from tactcad.synthesis.target import parse_target
@@ -134,3 +152,54 @@ def test_a_search_that_time_ends_has_an_answer():
 def test_a_bound_beyond_which_nothing_is_legal_says_so():
     none = Bound("element.corner_radius", 0.3, "base design", 0.27, None)
     assert beyond(asdict(none)) == "no design there"
+
+
+@pytest.mark.parametrize(("room", "rods"), [("length = 52\nwidth = 40", False), ("length = 48", True)])
+def test_a_room_too_small_for_the_bases_clamp_takes_one_of_smaller_screws(room, rods):
+    small = SMALL.replace("[room]", f"[room]\n{room}")
+    own = found(small.replace("elements = [4, 6]", "elements = [10, 12]") if rods else small)
+    assert not own.accepted
+    smaller = compact(own)
+    assert smaller.own_clamp == "M3" and smaller.base.clamp.screw == "M2"
+    got = search(stands(smaller)[0], narrowest, rules=refusals, within=1e-2)
+    assert got.accepted and clamping(Layout(got.design)).rod == rods
+    assert SIZES["length"](Layout(got.design)) <= smaller.room.length < SIZES["length"](Layout(own.design))
+    assert not broken_rules(got.design)
+    origin = got.design.origin
+    assert {origin[path] for path in COMPACT | RODS} == {FROM_COMPACT}
+    assert compact(got) is None  # there is none smaller
+    # and it is the shortest: a tenth less breaks a rule, whether holes move with the rear end or not
+    base = smaller.base
+    shorter = with_value(base, "element.rear_length", round(base.element.rear_length - 0.1, 1))
+    moved = (base.holes.screw_offsets[0], round(base.holes.screw_offsets[1] - 0.1, 1))
+    array = with_value(shorter, "array.row_arms", got.design.array.row_arms)
+    assert broken_rules(array) and broken_rules(with_value(array, "holes.screw_offsets", moved))
+
+
+def test_sizes_are_those_of_the_box_around_all_parts():
+    """Tie rods, which arrays longer than a screw take, and heads that stand out are in the width."""
+    rods = 0
+    for seed in range(8):
+        design = from_table(raw_table(seed, (1, 2, 3, 4), 0.0))
+        if broken_rules(design):
+            continue
+        layout = Layout(design)
+        assert [size(layout) for size in SIZES.values()] == pytest.approx(overall_size(design), abs=1e-3), (
+            seed
+        )
+        rods += clamping(layout).rod
+    assert rods
+
+
+@pytest.mark.slow
+def test_a_newcomers_box_is_met_by_two_commands(tmp_path, capsys):
+    """README's own: 2 x 6 elements of steel in 40 x 40 mm, as all parts' box has it, and no rule broken."""
+    target = Path(__file__).parents[2] / "hardware" / "targets" / "small-steel.toml"
+    out = tmp_path / "small-steel"
+    assert main(["design", str(target), "--out", str(out), "--in", "20"]) == 0
+    design = load(out / "design.toml")
+    assert [len(row) for row in design.array.row_arms] == [6, 6]
+    assert design.material.alloy == "1.4310-C1300" and design.clamp.screw == "M2"
+    assert max(overall_size(design)[:2]) <= 40.0 + 1e-6
+    assert "with M3 nothing fits the room" in capsys.readouterr().out
+    assert main(["check", str(out / "design.toml"), "--scene", "array"]) == 0

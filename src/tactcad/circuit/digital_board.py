@@ -12,8 +12,9 @@
 
 Bare boards are all alike. A channel that reads no element has links for Rc1 and Rc2, and neither Rc3 nor Cc1.
 D1 holds EXC below V33, which the converter's inputs may not exceed, whatever rises first; D3 is for a VPOS
-that is the wrong way round. R5 to R7 limit what the controller drives into an unpowered converter, R91 to R93
-hold its lines low while the cable is off.
+that is the wrong way round. ON high switches U4 on: by the controller, or by a jumper to VPOS beside it.
+R5 to R8 limit what the controller drives into an unpowered converter, R91 to R94 hold its lines low while the
+cable is off.
 """
 
 from __future__ import annotations
@@ -43,7 +44,7 @@ from .netlist import GROUND, Component, Kind, Netlist, Pin
 from .read_board import EXCITATION, OUTSIDE, POSITIVE, REFERENCE_PINS, bridge_arms, two
 
 SUPPLY = "V33"  # of the converter
-LINES = ("SCLK", "DIN", "CS")
+LINES = ("ON", "SCLK", "DIN", "CS")
 OUTPUT = "DOUT"
 
 
@@ -69,7 +70,7 @@ def _converter(converter: Converter) -> Component:
         "REFIN1+": EXCITATION,
         "REFIN1-": GROUND,
         OUTPUT: OUTPUT,
-        **{name: name for name in ("REGCAPD", "REGCAPA", *LINES)},
+        **{name: name for name in ("REGCAPD", "REGCAPA", *LINES[1:])},
     }
     for c in range(1, converter.inputs + 1):
         nets |= {f"AIN{2 * c - 2}": f"CH{c}_PLUS", f"AIN{2 * c - 1}": f"CH{c}_MINUS"}
@@ -92,7 +93,10 @@ def _supplies(layout: Layout) -> Iterator[Component]:
     ):
         set_net = f"SET_{out}"
         nets = {EXCITATION: out, "SET": set_net}
-        pins = tuple(Pin(number, role, nets.get(net, net)) for role, number, net in REFERENCE_PINS)
+        pins = tuple(
+            Pin(number, role, "ON" if (role, out) == ("enable", EXCITATION) else nets.get(net, net))
+            for role, number, net in REFERENCE_PINS
+        )
         figures = (("volts", SET_AMPERE * ohm),)
         yield Component(name, kind, "LT3042", REFERENCE, pins, figures, footprint="MSOP-10-EP")
         yield two(resistor, "resistor", f"{ohm:g} ohm", part_no, (set_net, GROUND), "0805", ohm=ohm)

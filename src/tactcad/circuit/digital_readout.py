@@ -1,10 +1,10 @@
 """The array read by sigma-delta converters, one a board: no amplifier, no multiplexer of ours, no card.
 
-EXC --+-----------+--- REFIN+     The bridges stand in parallel and stay warm: EXC is what the grids'
-      |           |               backing bears all the time, 2 sqrt(p A R). It is the converter's
-  bridge n    converter           reference too, so its drift cancels. The converter takes one input
-      | AIN 2n, 2n+1              after the other; its filter of third order needs three periods of
-GND --+-----------+--- REFIN-     its rate after each change.
+EXC --+-----------+--- REFIN+     The bridges stand in parallel: EXC is what the grids' backing bears
+      |           |               (converter_figures.py), all the time or once a period. It is the
+  bridge n    converter           converter's reference too, so its drift cancels. The converter takes
+      | AIN 2n, 2n+1              one input after the other; its filter of third order needs three
+GND --+-----------+--- REFIN-     periods of its rate after each change.
 """
 
 from __future__ import annotations
@@ -17,14 +17,18 @@ import numpy as np
 
 from tactcad.design.sensing import CONVERTERS, Converter
 from tactcad.mechanics import gauge_signal
-from tactcad.mechanics.readout import BOLTZMANN, ROOM
+from tactcad.mechanics.readout import BOLTZMANN, ROOM, transmission
 from tactcad.parts.array.bridge_figures import COPPER, zero_drift
-from tactcad.parts.array.converter_figures import RATE, bridge_supply, settling
+from tactcad.parts.array.converter_figures import RATE, bridge_supply, on_time, settling, warm_up
 from tactcad.parts.array.hinge_section import design_gauge, hinge_section
 from tactcad.parts.array.layout import ElementPlace, Layout
 from tactcad.parts.array.leads import boards, leads, longest_lead_resistance
 from tactcad.parts.array.stop_gap import overloads
-from tactcad.parts.bought.electronic_parts import completion_drift, completion_tolerance
+from tactcad.parts.bought.electronic_parts import (
+    completion_drift,
+    completion_resistance,
+    completion_tolerance,
+)
 
 from .digital_board import digital_netlist
 
@@ -33,11 +37,13 @@ from .digital_board import digital_netlist
 class DigitalReadout:
     """Figures of the array read so.
 
-    excitation  V, all the time
+    excitation  V, all the time or for `on` in each period
     gain, rate  of the converter's input; Hz
     settling    s, from one input to the next
+    warm_up, on s, from ON to the first input's turn, and to the last result; 0 where always on
     noise       V rms of one result, at the bridge
     drift       V, half-width, at the bridge, between zero and reading
+    per_strain  V at the bridge for a strain of 1
     per_force   V/N at the bridge, by element
     resolution  N, by element, as that of the other read-out
     largest     V at each bridge under overload, tolerances at their worst
@@ -49,8 +55,11 @@ class DigitalReadout:
     gain: float
     rate: float
     settling: float
+    warm_up: float
+    on: float
     noise: float
     drift: float
+    per_strain: float
     per_force: np.ndarray
     resolution: np.ndarray
     largest: tuple[float, ...]
@@ -61,12 +70,14 @@ def digital_readout(layout: Layout, name: str) -> DigitalReadout:
     """The design read by the converter of that name. Raises CheckFailure out of the estimator's range."""
     d, part, gauge = layout.design, CONVERTERS[name], design_gauge(layout.design)
     volts, span = bridge_supply(layout), d.readout.temperature_span
-    per_strain = volts * gauge.factor / 4
+    lead, three = longest_lead_resistance(layout), leads(layout) == 3
+    left = transmission(d.gauge.resistance, completion_resistance(d), lead, 0.0, three)
+    per_strain = volts * left * gauge.factor / 4
     section, shape = hinge_section(layout, layout.elements), (len(layout.elements),)
     per_force = per_strain * np.broadcast_to(gauge_signal.foil_strain_per_force(section, gauge), shape)
     bent = np.broadcast_to(gauge_signal.foil_strain_per_deflection(section, gauge), shape)
     overload = [float(b) * state.deflection for b, state in zip(bent, overloads(layout), strict=True)]
-    two_leads = 2 * longest_lead_resistance(layout) / d.gauge.resistance if leads(layout) == 2 else 0.0
+    two_leads = 0.0 if three else 2 * lead / d.gauge.resistance
     off = d.gauge.resistance_tolerance + 3 * completion_tolerance(d) + abs(d.readout.bridge_offset)
     unloaded = volts * (off + two_leads) / 4
     largest = tuple(unloaded + abs(per_strain) * strain for strain in overload)
@@ -82,9 +93,11 @@ def digital_readout(layout: Layout, name: str) -> DigitalReadout:
     ) ** 0.5
     chips = tuple(board.places for board in boards(layout))
     resolution = np.hypot(2 * noise, drift) / np.abs(per_force)
+    times = (warm_up(layout), on_time(layout)) if d.readout.power == "duty" else (0.0, 0.0)
     return DigitalReadout(
-        part, volts, gain, RATE, settling(), noise, drift, per_force, resolution, largest, chips
-    )
+        part, volts, gain, RATE, settling(), *times,
+        noise, drift, per_strain, per_force, resolution, largest, chips,
+    )  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -99,6 +112,7 @@ class Register:
 
 
 LINUX = "Linux, drivers/iio/adc/ad7124.c"
+MODES = "Linux, include/linux/iio/adc/ad_sigma_delta.h"
 HEADER = "the maker's ad7124.h"
 
 
@@ -107,13 +121,14 @@ def registers(found: DigitalReadout, chip: int) -> list[Register]:
     clock, places = found.converter.clock, found.chips[chip]
     fs = ceil(clock / (32 * found.rate))
     pga = found.converter.gains.index(found.gain)
+    mode, said = (1, "; unread: it takes each channel once") if found.on else (0, "")
     control = Register(
         "ADC_CONTROL",
         0x01,
         2,
-        2 << 6,
-        f"{LINUX}: power mode in bits 7 to 6, full power is 2; mode in bits 5 to 2; "
-        "unread: mode 0 is continuous",
+        2 << 6 | mode << 2,
+        f"{LINUX}: power mode in bits 7 to 6, full power is 2; mode in bits 5 to 2; {MODES}: 0 is "
+        f"continuous, 1 single{said}",
     )
     config = Register(
         "CONFIG_0",
@@ -146,6 +161,16 @@ def registers(found: DigitalReadout, chip: int) -> list[Register]:
     return [control, config, filter_, *channels]
 
 
+def when_on(layout: Layout, found: DigitalReadout) -> str:
+    """What the line ON does."""
+    if not found.on:
+        return "always high"
+    return (
+        f"every {layout.design.readout.period:g} s high; after {found.warm_up * 1e3:.3g} ms write "
+        f"ADC_CONTROL, which starts the channels; low after the last one's result, at {found.on * 1e3:.3g} ms"
+    )
+
+
 PINS_FROM = "unread: the sheet's pin table; two layout libraries of others' that agree"
 
 
@@ -158,7 +183,7 @@ def pin_map(layout: Layout, converter: Converter) -> list[tuple[str, str, str]]:
 
 def settings_json(layout: Layout, name: str) -> bytes:
     """Registers, inputs by element, pins and figures, as JSON."""
-    found = digital_readout(layout, name)
+    d, found = layout.design, digital_readout(layout, name)
     chips = [
         {
             "inputs": [
@@ -185,6 +210,9 @@ def settings_json(layout: Layout, name: str) -> bytes:
         "gain": found.gain,
         "rate_Hz": found.rate,
         "from_input_to_input_s": found.settling,
+        "on": {"from_ON_to_first_input_s": found.warm_up, "ON_s": found.on, "period_s": d.readout.period}
+        if found.on
+        else "always",
         "noise_nV": round(found.noise * 1e9, 3),
         "drift_nV": round(found.drift * 1e9, 3),
         "pins_from": PINS_FROM,
@@ -204,6 +232,7 @@ def settings_header(layout: Layout, name: str) -> bytes:
     lines = [
         f"/* {layout.design.name}: {found.converter.name}, gain {found.gain:g}, "
         f"{found.rate:g} results a second; EXC {found.excitation:.4g} V. Written by tactcad. */",
+        f"/* ON: {when_on(layout, found)}. */",
         "#ifndef TACTCAD_CONVERTER_H",
         "#define TACTCAD_CONVERTER_H",
         "#include <stdint.h>",

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from tactcad.design.tree import Design
 from tactcad.mechanics import gauge_signal, readout
 from tactcad.parts.array.bridge_figures import amplified, drift, reading_scatter
 from tactcad.parts.array.hinge_section import design_gauge, design_readout, hinge_section
@@ -14,7 +15,7 @@ from tactcad.parts.array.leads import longest_lead_resistance
 from tactcad.parts.array.stop_gap import overloads
 from tactcad.parts.bought.electronic_parts import completion_tolerance, converter_of
 
-from .digital_readout import digital_readout
+from .digital_readout import DigitalReadout, digital_readout
 
 
 @dataclass(frozen=True)
@@ -43,10 +44,26 @@ def smallest_output(layout: Layout) -> float:
     converter reads the bridges, what an amplifier would have to tell for the same strain."""
     design = layout.design
     if converter := converter_of(design):
-        found, factor = digital_readout(layout, converter.name), design.gauge.factor
-        strain = np.hypot(2 * found.noise, found.drift) / (found.excitation * factor / 4)
-        return float(strain * readout.volts_per_strain(factor, design_readout(design)))
+        found = digital_readout(layout, converter.name)
+        return _behind_amplifier(design, found, float(np.hypot(2 * found.noise, found.drift)))
     return float(np.hypot(2 * reading_scatter(layout), drift(layout)))
+
+
+def reading_noise(layout: Layout, alike: bool = False) -> float:
+    """Standard deviation of one reading, V, without drift; of a converter's as above.
+
+    alike: of readings that the mains and the instant of the samples move alike, as those of one run.
+    """
+    if converter := converter_of(layout.design):
+        found = digital_readout(layout, converter.name)
+        return _behind_amplifier(layout.design, found, found.noise)
+    return design_readout(layout.design).averaged_noise if alike else reading_scatter(layout)
+
+
+def _behind_amplifier(design: Design, found: DigitalReadout, volts: float) -> float:
+    """V behind an amplifier for the strain that gives so many V at a bridge that a converter reads."""
+    slope = readout.volts_per_strain(design.gauge.factor, design_readout(design))
+    return float(volts / found.per_strain * slope)
 
 
 def element_signals(layout: Layout) -> list[ElementSignal]:

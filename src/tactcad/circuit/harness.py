@@ -24,6 +24,7 @@ OUT = "OUT"
 AT_CARD = {
     OUT: "analogue input {b} +",
     "EXC": "analogue input, free, to see the bridges' supply",
+    "ON": "digital output ON, or a jumper to VPOS beside it: high, the bridges are on",
     "DOUT": "digital input, all boards' together: CS{b} picks this one",
 }
 Row = tuple[str, str, str, str, float, float]

@@ -4,7 +4,9 @@ them), as a SPICE deck, as a list of leads, and as a table of pins.
 The deck is for ngspice: every element is read in turn, and the deck prints its bridge's and its amplifier's
 output. Switches are resistors, open at OPEN; an amplifier is its gain behind a resistor without current whose
 Johnson noise is the amplifier's own, and one pole at its bandwidth. Logic is left out: the deck's commands
-close the switches as the decoder would.
+close the switches as the decoder would. Where a converter reads the bridges, all are on: the deck prints each
+one's output, and its share of the bridges' supply, which the converter takes for its reference; its pins are
+open.
 
 The list of leads runs from terminal to connector: colour, gauge of wire, cut length, bundle.
 """
@@ -21,7 +23,7 @@ from uuid import NAMESPACE_OID, uuid5
 from tactcad.parts.array.layout import Layout
 from tactcad.parts.array.leads import boards, colours
 
-from .netlist import Component, Netlist
+from .netlist import GROUND, Component, Netlist
 
 PASSIVE = ("lead", "terminal", "gauge", "resistor", "capacitor", "connector", "diode")
 Expression = str | tuple
@@ -114,7 +116,8 @@ DIODE = ".model schottky D(IS=2e-7 RS=0.1 N=1.05)"  # about 0.3 V at 20 mA, as a
 
 
 def deck_bytes(netlist: Netlist) -> bytes:
-    """The deck that reads every element once: lines `E7 output`, with the bridge and the amplifier in V."""
+    """The deck that reads every element once: what its bridge gives, V, and the amplifier, V; or the bridge's
+    share of its supply."""
     return deck(netlist, list(reading(netlist))).encode()
 
 
@@ -128,9 +131,15 @@ def deck(netlist: Netlist, commands: Sequence[str]) -> str:
 
 
 def reading(netlist: Netlist) -> Iterator[str]:
-    """Commands that read every element: its bridge's output and the amplifier's."""
+    """Commands that read every element: its bridge's output, and the amplifier's or its ratio."""
+    converters = {c.board: c for c in netlist.of_kind("converter")}
+    if converters:
+        yield "op"
     for gauge in netlist.of_kind("gauge"):
         b, n = gauge.board, gauge.element
+        if converters:
+            yield from _ratio(converters[b], n)
+            continue
         amplifier = netlist.on_board("amplifier", b)
         yield from closed(netlist, n)
         yield "op"
@@ -138,6 +147,19 @@ def reading(netlist: Netlist) -> Iterator[str]:
         yield f"let output{n} = v({_node(amplifier.net('out'))})"
         yield f"print bridge{n} output{n}"
         yield from closed(netlist, n, OPEN)
+
+
+def inputs_of(converter: Component, element: int) -> tuple[str, str]:
+    """The nodes of the inputs that an element's bridge is on."""
+    nets = {p.net.partition("__")[0]: p.net for p in converter.pins}
+    return _node(nets[f"E{element}_PLUS"]), _node(nets[f"E{element}_MINUS"])
+
+
+def _ratio(converter: Component, n: int) -> Iterator[str]:
+    plus, minus = inputs_of(converter, n)
+    yield f"let bridge{n} = v({plus}) - v({minus})"
+    yield f"let ratio{n} = bridge{n}/v({_node(converter.net('REFIN1+'))})"
+    yield f"print bridge{n} ratio{n}"
 
 
 def closed(netlist: Netlist, element: int, ohm: float | None = None) -> Iterator[str]:
@@ -170,12 +192,17 @@ def _name(c: Component) -> str:
 
 
 def lines_of(c: Component) -> list[str]:
-    """The component's lines of the deck; the bridges' supply is an ideal source."""
+    """The component's lines of the deck; what a regulator makes is an ideal source."""
     if c.kind in WITHOUT_LINES or not c.fitted:
         return []
     if c.kind == "regulator":
         net = c.net("out")
         return [f"V{net} {_node(net)} 0 {c.figure('volts')!r} AC 1"]
+    if c.kind == "supply":
+        return [f"V{_name(c)} {_node(c.net('out'))} 0 {c.figure('volts')!r}"]
+    if c.kind == "converter":  # none floats
+        nets = sorted({p.net for p in c.pins if p.net and p.net != GROUND})
+        return [f"R{_name(c)}{i} {_node(net)} 0 {OPEN!r}" for i, net in enumerate(nets)]
     if c.kind == "diode":
         return [f"D{_name(c)} {_node(c.net('2'))} {_node(c.net('1'))} schottky"]
     if c.kind == "decoder":

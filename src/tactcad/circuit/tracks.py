@@ -12,6 +12,7 @@ from math import dist, pi
 
 from tactcad.parts.array.layout import Layout
 from tactcad.parts.array.leads import ReadBoard, boards
+from tactcad.parts.bought.electronic_parts import COMPLETION
 
 from .boards import laid_out
 from .bridges import array_net
@@ -27,7 +28,7 @@ TRACK_PART = "TRACK"
 
 def with_tracks(layout: Layout, circuit: Netlist) -> Netlist:
     """The array's circuit with the tracks of its boards."""
-    made = {sum(1 for _ in b.netlist.of_kind("switch")): b for b in laid_out(layout)}
+    made = {_used(b.netlist): b for b in laid_out(layout)}
     found: list[Component] = [c for c in circuit.components if not c.designator.startswith("A")]
     for board in boards(layout):
         copper = made[len(board.places)]
@@ -50,6 +51,11 @@ def with_tracks(layout: Layout, circuit: Netlist) -> Netlist:
                 )
             )
     return replace(circuit, components=tuple(found))
+
+
+def _used(circuit: Netlist) -> int:
+    """Elements that a board reads: three arms of each."""
+    return sum(c.part_no == COMPLETION for c in circuit.of_kind("resistor")) // 3
 
 
 def _on(p: Point, a: Point, b: Point) -> bool:

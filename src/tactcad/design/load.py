@@ -23,6 +23,8 @@ from .tree import NO_TABLES, CommonTables, Element, Hinge, SheetMaterial, Stop
 MOST_BYTES = 1_000_000
 
 DEFAULT_DESIGN = "macro-array"
+# how the origins begin that `tactcad design` writes
+OF_A_SEARCH = ("synthesised", "chosen: the target's", "chosen: of the target's stock")
 
 
 def read(source: str | Path) -> CommonTables:
@@ -214,9 +216,11 @@ def _shipped() -> tuple[CommonTables, ...]:
 
 def stale_origins(design: CommonTables) -> list[str]:
     """Origins that a shipped design has of another value, word for word: of a value that was changed since
-    the design was started from it."""
+    the design was started from it. What a search or its target says of its values is no value's own."""
     values, told = paths(design), []
     for path, text in design.origin.items():
+        if text.startswith(OF_A_SEARCH):
+            continue
         of = [paths(other)[path] for other in _shipped() if other.origin.get(path) == text]
         if of and values[path] not in of and not path.startswith("design."):
             told.append(

@@ -21,6 +21,7 @@ JITTER = {"hardware": 1e-6, "software": 1e-3}
 # V rms of one sample for each volt of the range: NI 6259, 140 uV at +-5 V, from memory of its table
 # (unread). The paper's USB-6258 stands in no list of the maker's that was found; 6255 and 6259 do.
 ADC_NOISE = 28e-6
+POWERS = ("continuous", "duty")  # of bridges that a converter reads
 
 
 @dataclass(frozen=True)
@@ -370,6 +371,9 @@ class Readout:
     )
     converter: str = given(
         OneOf(("card", *CONVERTERS), "a card behind amplifiers, or a sigma-delta converter a board"), "card"
+    )
+    power: str = given(
+        OneOf(POWERS, "of a converter's bridges: always on, or on once a period to be read"), "continuous"
     )
     inputs: int | None = given(
         Whole(1, 4096, "differential inputs of the converter's card"), None, "one for each board"

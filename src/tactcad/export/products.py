@@ -214,8 +214,6 @@ def circuit_files(plan: Plan) -> Iterator[Batch]:
         ("wiring_{}.csv", "wiring", files.wiring_file),
         ("harness_{}.csv", "wiring", files.harness_file),
     ):
-        if make is files.deck_file and converter != "card":  # SPICE has no converter
-            continue
         path = f"circuit/{design.name}-{name.format(plan.revision)}"
         yield _one(Output(path, kind, "", f"{key} {path}"), partial(make, design, circuit))
     for ending, settings in (("h", settings_header), ("json", settings_json)) if converter != "card" else ():
@@ -351,13 +349,13 @@ def assembly_sheets(plan: Plan) -> Iterator[Batch]:
         yield _drawing(stem, "", key, partial(make, scene), FILES, 10 * len(scene.placements))
 
 
-@product(lambda plan: plan.options.drawings and _read(plan) and _converter(plan.design) == "card")
+@product(lambda plan: plan.options.drawings and _read(plan))
 def circuit_sheets(plan: Plan) -> Iterator[Batch]:
     """The circuit's sheets, as PDF and SVG."""
     draft, sample = plan.options.draft, plan.options.sample
 
     def make() -> Written:
-        from tactcad.drawing.circuit_sheets import CircuitOrder
+        from tactcad.drawing.circuit_sheets.sheets import CircuitOrder
 
         written = family_of(plan.design).must("readout", "export").sheets.found
         return written(CircuitOrder(plan.design, draft, sample))

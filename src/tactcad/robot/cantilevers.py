@@ -8,11 +8,12 @@ from itertools import pairwise
 
 import numpy as np
 
+from tactcad.circuit.element_signals import reading_noise
 from tactcad.contour.cut import cut
 from tactcad.design.tree import Design
 from tactcad.lab.pads import springs_of
 from tactcad.mechanics.strength import tip_compliance
-from tactcad.parts.array.hinge_section import design_readout, hinge_section
+from tactcad.parts.array.hinge_section import hinge_section
 from tactcad.parts.array.layout import ElementPlace, Layout
 from tactcad.parts.array.stop_gap import stop_gap
 from tactcad.parts.language.description import Extrusion, Part
@@ -38,7 +39,7 @@ def cantilevers(design: Design) -> Mechanism:
     tip = tip_compliance(hinge_section(layout, layout.elements), K, arms)
     flange = np.array([0.0, 0.0, layout.carrier_bottom + design.clamp.carrier_thickness])
     placed = array_seen(design, flange, np.array(DOWN))
-    noise, beside, moving = design_readout(design).averaged_noise, [*_neighbours(layout.elements)], []
+    noise, beside, moving = reading_noise(layout, alike=True), [*_neighbours(layout.elements)], []
     for i, p in enumerate(layout.elements):
         whole = placed[p.designator]
         arm, body = _parted(whole.part, p.hinge_x)

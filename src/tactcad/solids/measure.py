@@ -8,7 +8,7 @@ from math import inf
 import numpy as np
 from numpy.typing import ArrayLike
 from OCP.Bnd import Bnd_Box
-from OCP.BRep import BRep_Builder
+from OCP.BRep import BRep_Builder, BRep_Tool
 from OCP.BRepAdaptor import BRepAdaptor_Surface
 from OCP.BRepBndLib import BRepBndLib
 from OCP.BRepExtrema import BRepExtrema_DistShapeShape
@@ -21,7 +21,7 @@ from OCP.TopoDS import TopoDS_Compound, TopoDS_Shape
 from tactcad.parts.language.description import Vector
 from tactcad.scenes.scene import Placement
 
-from .occt import as_face, location, subshapes
+from .occt import as_face, as_vertex, location, subshapes
 
 
 def measure(shape: TopoDS_Shape) -> dict:
@@ -136,12 +136,19 @@ def met_at_vertex(
     for own, other in ((first, second), (second, first)):
         if own is None or other is None:
             return None
-        vertices = list(subshapes(own, TopAbs_VERTEX))
+        low, high = np.array(_box(other)) + [[-within], [within]]
+        vertices = [
+            v for v in subshapes(own, TopAbs_VERTEX) if np.all((low <= (p := _point(v))) & (p <= high))
+        ]
         for vertex in vertices[:: max(1, len(vertices) // MOST_VERTICES)]:
             distance, place = nearest(vertex, other)
             if distance < within:
                 return distance, place
     return None
+
+
+def _point(vertex: TopoDS_Shape) -> np.ndarray:
+    return np.array(BRep_Tool.Pnt_s(as_vertex(vertex)).Coord())
 
 
 def nearest(first: TopoDS_Shape | None, second: TopoDS_Shape | None) -> tuple[float, Vector]:

@@ -13,6 +13,7 @@ import numpy as np
 
 from tactcad.design.load import paths
 from tactcad.design.tree import Design
+from tactcad.parts.array.clamp import array_width
 from tactcad.parts.array.layout import Layout
 from tactcad.parts.rules import broken_rules
 
@@ -42,9 +43,38 @@ EASED_BY = {
     "readout": "readout.gain",
     "calibration": "calibration.step",
 }
+# A clamp of M2 screws and 2 mm dowels: plates that M2 screws and set screws reach through, and the shortest
+# rear body that keeps the rules of holes, webs and heads. Long stacks take tie rods; short ones cap screws,
+# whose heads need more room, and the axis's threads outside the carrier's screws.
+COMPACT: dict[str, Any] = {
+    "holes.dowel_hole": 2.012,
+    "holes.web": 1.0,
+    "clamp.screw": "M2",
+    "clamp.dowel": "2",
+    "clamp.end_plate_thickness": 5.0,
+    "clamp.stop_plate_thickness": 6.0,
+    "clamp.carrier_margin": 0.5,
+    "clamp.carrier_screw_offset": 5.5,
+    "clamp.mount_thread": "M3",
+}
+RODS: dict[str, Any] = {
+    "element.rear_length": 11.8,
+    "holes.screw_offsets": (2.3, 9.3),
+    "holes.dowel_offsets": (5.8,),
+    "clamp.end_plate_margin": 0.0,
+    "clamp.mount_pitch_y": 16.0,
+}
+CAP_SCREWS: dict[str, Any] = {
+    "element.rear_length": 12.1,
+    "holes.screw_offsets": (2.3, 9.6),
+    "holes.dowel_offsets": (5.95,),
+    "clamp.end_plate_margin": 0.7,
+    "clamp.mount_pitch_y": 28.0,
+}
+FROM_COMPACT = "chosen: a clamp of M2 screws, as the room asked for has no design with the base's"
 SIZES: dict[str, Callable[[Layout], float]] = {
     "length": lambda layout: layout.carrier_length,
-    "width": lambda layout: layout.carrier_width,
+    "width": array_width,
     "height": lambda layout: (
         layout.design.element.pad_height + layout.carrier_bottom + layout.design.clamp.carrier_thickness
     ),
@@ -139,11 +169,11 @@ def soon(target: Target) -> float:
 def near(target: Target, found: Found) -> list[Stand]:
     """Stands of a target that are the found one's, but for tolerances or for more kinds than it may have."""
     here = found.candidate.stand
-    own = here.base.sheet, here.base.material.alloy, here.base.gauge
+    own = here.base.sheet, here.base.material.alloy, here.base.gauge, here.base.readout
 
     def alike(s: Stand) -> bool:
         kinds = s.kinds == here.kinds or s.kinds > here.target.elements.kinds
-        return kinds and own == (s.base.sheet, s.base.material.alloy, s.base.gauge)
+        return kinds and own == (s.base.sheet, s.base.material.alloy, s.base.gauge, s.base.readout)
 
     return [_placed(s, here) for s in stands(target) if alike(s)] or stands(target)
 
@@ -178,6 +208,25 @@ def with_value(design: Design, path: str, value: Any) -> Design:
     """A design with another value of one field of a table, unchecked."""
     table, name = path.split(".")
     return replace(design, **{table: replace(getattr(design, table), **{name: value})})
+
+
+def compact(found: Found) -> Target | None:
+    """The target on its base with the compact clamp, where the room binds the candidate and that clamp is the
+    smaller one and keeps every rule with as many elements; else None."""
+    target, base, room = found.candidate.stand.target, found.design, ("room.length", "room.width")
+    if all(found.candidate.misses[name][0] <= -NEAR for name in room):
+        return None
+    for clamp in (COMPACT | RODS, COMPACT | CAP_SCREWS):
+        shorter = clamp["element.rear_length"] < base.element.rear_length
+        if shorter and not broken_rules(_with_clamp(base, clamp)):
+            return replace(target, base=_with_clamp(target.base, clamp), own_clamp=base.clamp.screw)
+    return None
+
+
+def _with_clamp(base: Design, clamp: dict[str, Any]) -> Design:
+    for path, value in clamp.items():
+        base = with_value(base, path, value)
+    return replace(base, origin=base.origin | dict.fromkeys(clamp, FROM_COMPACT))
 
 
 def base_breaks(target: Target) -> list[str]:

@@ -27,6 +27,7 @@ from tactcad.lab.pads import places
 from tactcad.mechanics import as_built, ladder, strength, validity
 from tactcad.mechanics.section import Array, HingeSection
 from tactcad.mechanics.strength import largest_closing_force, tip_compliance
+from tactcad.parts.array.clamp import array_width
 from tactcad.parts.array.hinge_section import design_alloy, design_readout, hinge_section
 from tactcad.parts.array.layout import Layout
 from tactcad.parts.array.stop_gap import STEP_MM, land_room, seat
@@ -106,9 +107,9 @@ class Stand:
 
     @cached_property
     def widths(self) -> Array:
-        """Width of the carrier along the rows, mm, by the elements of the longer row, from none on."""
+        """Width of the array along the rows, mm, by the elements of the longer row, from none on."""
         most = int(self.target.room.elements[1]) // self.target.room.rows + 1
-        return np.array([0.0, *(_with_rows(self.base, n).carrier_width for n in range(1, most + 1))])
+        return np.array([0.0, *(array_width(_with_rows(self.base, n)) for n in range(1, most + 1))])
 
     @cached_property
     def _places(self) -> dict[tuple[int, ...], tuple[Array, Array]]:
@@ -189,13 +190,14 @@ def stands(target: Target) -> list[Stand]:
     """Every choice of what is not searched."""
     out = []
     stock = target.stock
-    for choice in product(stock.sheets, stock.alloys, stock.hinge_tolerances, stock.gauges):
+    choices = stock.sheets, stock.alloys, stock.hinge_tolerances, stock.gauges, stock.powers
+    for choice in product(*choices):
         base = _base(target, *choice)
         out += [Stand(target, base, kinds) for kinds in range(2, target.elements.kinds + 1)]
     return out
 
 
-def _base(target: Target, sheet: float, alloy: str, tolerance: float, gauge: float) -> Design:
+def _base(target: Target, sheet: float, alloy: str, tolerance: float, gauge: float, power: str) -> Design:
     d = target.base
     spacer = Layout(d).spacer
     pitch = max(target.room.pitch, round(sheet + spacer, 6))
@@ -211,6 +213,7 @@ def _base(target: Target, sheet: float, alloy: str, tolerance: float, gauge: flo
         element=replace(d.element, override={}),
         tolerance=replace(d.tolerance, hinge_thickness=tolerance, youngs_modulus=spread),
         gauge=replace(d.gauge, resistance=gauge),
+        readout=replace(d.readout, power=power),
         rating=replace(d.rating, overload_force=target.grasp.overload),
         stop=replace(d.stop, gaps=None),
     )
@@ -405,7 +408,7 @@ class Candidates:
 
     @cached_property
     def area(self) -> Array:
-        """Of the carrier, mm2."""
+        """Of the array from above, mm2."""
         return (
             self.layout.carrier_length
             * self.stand.widths[np.minimum(self.in_a_row, len(self.stand.widths) - 1)]
@@ -499,6 +502,7 @@ def origins(base: Design, made: Design, binding: str) -> dict[str, str]:
         "sheet.thickness": "chosen: of the target's stock",
         "tolerance.hinge_thickness": "chosen: of the target's stock",
         "gauge.resistance": "chosen: of the target's stock",
+        "readout.power": "chosen: of the target's stock",
         "tolerance.youngs_modulus": "chosen: the material's row",
     }
     told |= {path: "chosen: of the target's stock" for path in after if path.startswith("material.")}

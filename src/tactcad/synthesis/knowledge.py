@@ -16,11 +16,12 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from tactcad.circuit import element_signals
 from tactcad.design.tree import Design
 from tactcad.lab.regression import KNOWN
 from tactcad.mechanics import as_built, gauge_signal, ladder, readout
 from tactcad.mechanics.section import Array, HingeSection
-from tactcad.parts.array.bridge_figures import reading_scatter, zero_drift
+from tactcad.parts.array.bridge_figures import zero_drift
 from tactcad.parts.array.hinge_section import design_gauge, design_readout
 from tactcad.parts.array.layout import Layout
 from tactcad.stacks.variables import OFFSET_SHARE, SIGMAS
@@ -107,7 +108,7 @@ def reading_noise(design: Design) -> float:
     bridge's zero by its leads' warmth, whose half-width is taken as two standard deviations."""
     r, layout = design_readout(design), Layout(design)
     drift = r.excitation * r.gain * zero_drift(layout) / 4.0
-    return float(np.hypot(reading_scatter(layout), drift / SIGMAS))
+    return float(np.hypot(element_signals.reading_noise(layout), drift / SIGMAS))
 
 
 def knowledge(target: Target, design: Design, e: Elements, steps: Array | None = None) -> Knowledge:
@@ -193,7 +194,7 @@ def _calibrated(target: Target, design: Design, e: Elements, steps: Array) -> tu
     """
     rig, known = design.calibration, target.known
     assert rig is not None
-    noise_v = design_readout(design).averaged_noise
+    noise_v = element_signals.reading_noise(Layout(design), alike=True)
     soft = e.stiffness / rig.load_cell_stiffness
     k, v = e.stiffness / (1.0 + soft), e.signal / (1.0 + soft)
     spread = steps * (steps**2 - 1.0) / 12.0 * rig.step**2  # even steps; the reading at 0 is left out

@@ -8,7 +8,8 @@ from typing import Any
 
 from .target import TABLES, Target
 
-# Not tried, there is no more or less of them: other sheets, alloys, gauges, known.how, another target.base.
+# Not tried, there is no more or less of them: other sheets, alloys, gauges and powers, known.how, another
+# target.base.
 # Each field that can be eased: which way one step eases it. A step is 10 %, or one of what comes in ones, or
 # 0.01 mm of a hinge.
 STEP, HINGE_STEP = 0.10, 0.01

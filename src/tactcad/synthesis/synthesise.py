@@ -375,6 +375,9 @@ def design(
     usual, in_all = (ON_BODY, ALL_ON_BODY) if target.on_layer else (SEARCHING, IN_ALL)
     searching = usual if seconds is None else min(SHARE * seconds, max(usual, seconds / 4.0))
     got = attempt(target, arrays, until=started + searching)
+    if not got.met and (smaller := bounds.compact(got.found)):
+        tried = attempt(smaller, arrays, until=started + searching)
+        got = tried if _worth(tried) > _worth(got) else got
     on = _together([partial(bounds.bound, got.found, field) for field in bounds.touched(got.found)])
     got = replace(got, bounds=tuple(each for each in on if each))
     if not got.found.in_time:

@@ -20,7 +20,7 @@ from tactcad.design.load import DEFAULT_DESIGN, MOST_BYTES, read, read_table, un
 from tactcad.design.materials import ALLOYS
 from tactcad.design.messages import InputError
 from tactcad.design.schema import table_schema, table_text
-from tactcad.design.sensing import StrainGauge
+from tactcad.design.sensing import POWERS, StrainGauge
 from tactcad.design.text_values import parse_toml
 from tactcad.design.tree import Array, Design, Element, Identity, Rating, Sheet, Tolerance
 from tactcad.lab.calibration import RUN_SCATTER
@@ -140,6 +140,9 @@ class Stock:
         None,
         "the base design's",
     )
+    powers: tuple[str, ...] = given(
+        SomeOf(POWERS, "how a converter's bridges may be fed, as readout.power"), None, "the base design's"
+    )
 
 
 @dataclass(frozen=True)
@@ -187,18 +190,20 @@ class Known:
 
 @dataclass(frozen=True)
 class Target:
-    """A whole target file, with the design that it starts from; `written` has the paths of its own values."""
+    """A whole target file, with the design that it starts from; `written` has the paths of its own values.
+    Where `base` was given the compact clamp, `own_clamp` has the screws that it came with."""
 
     target: Wish
     object: Object
     grasp: Grip
     base: Design
     room: Room = Room()
-    stock: Stock = Stock(None, None, None, None)  # type: ignore[arg-type]
+    stock: Stock = Stock(None, None, None, None, None)  # type: ignore[arg-type]
     elements: Kinds = Kinds()
     known: Known = Known()
     origin: dict[str, str] = field(default_factory=dict)
     written: frozenset[str] = frozenset()
+    own_clamp: str = ""
 
     @property
     def on_layer(self) -> bool:
@@ -301,6 +306,7 @@ def parse_target(text: str, where: str, folder: Path = Path()) -> Target:
         stock.alloys or (base.material.alloy,),
         stock.hinge_tolerances or (base.tolerance.hinge_thickness,),
         stock.gauges or (base.gauge.resistance,),
+        stock.powers or (base.readout.power,),
     )
     written = frozenset(f"{name}.{field}" for name in TABLES for field in table.get(name, {}))
     target = Target(**values, base=base, origin=_origins(table.get("origin", {}), values), written=written)

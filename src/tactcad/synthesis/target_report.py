@@ -50,7 +50,7 @@ def record(got: Synthesis) -> dict[str, Any]:
         "met": None if got.met and got.target.target.half_width is None else got.met,
         "wanted_half_width": got.wanted,
         "half_width": got.found.half_width if got.found.accepted else None,
-        "base": {"name": got.target.base.name, "half_width": got.base_half_width, "breaks": got.base_breaks},
+        "base": {"name": _base_name(got), "half_width": got.base_half_width, "breaks": got.base_breaks},
         "bounds": [asdict(bound) for bound in got.bounds],
         "yield": got.made.share,
         "yield_wanted": got.target.target.share,
@@ -102,6 +102,11 @@ def record(got: Synthesis) -> dict[str, Any]:
         "size_mm": [round(size(Layout(got.found.design)), 3) for size in SIZES.values()],
         "read_from": got.target.grasp.force / got.target.grasp.loads,
     }
+
+
+def _base_name(got: Synthesis) -> str:
+    base = got.target.base
+    return f"{base.name} with {base.clamp.screw} screws" if got.target.own_clamp else base.name
 
 
 def _object(got: Synthesis) -> str:
@@ -190,7 +195,12 @@ def _room(got: Synthesis) -> dict[str, str]:
 
 def _notes(got: Synthesis) -> list[str]:
     """What the design does not say of itself."""
-    notes = list(got.unknown)
+    notes, was = list(got.unknown), got.target.own_clamp
+    if was:
+        now = got.target.base.clamp
+        notes.append(
+            f"clamped by {now.screw} screws and {now.dowel} mm dowels: with {was} nothing fits the room"
+        )
     for left in got.scenes_left_out:
         unlike = left.scene == CALIBRATION.name and got.target.known.how == "calibrated"
         notes.append(

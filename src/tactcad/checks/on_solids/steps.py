@@ -31,6 +31,7 @@ from ..check import Check
 PLACES = 9  # on a leg, at least, from where the boxes of a pair meet to where they part; chosen
 FILM = 0.05  # mm3: what chords of two curved faces, 0.002 mm off, may share over a pin's length
 CHORD, TURN = 0.02, 0.1  # mm, rad: of the meshes
+AROUND = 0.1  # mm around what a body passes on a leg: no more of a large part is cut again and again
 REACH = 0.03  # mm that a body is shifted to find what it meets
 SLIP = 0.1  # mm, in a hole that slips over a pin: 0.075 is the play to one side that rules leave a dowel
 PATCH = 1e-3  # mm3 that it must then share: 0.03 mm2 of contact
@@ -241,6 +242,8 @@ class Trial:
         t0, t1 = max(0.0, ends[0].max()), min(1.0, ends[1].min())
         if t0 > t1 or np.any((low > 0) | (high < 0), where=~moving_along):
             return None
+        passed = boxes[0] + apart + start + np.sort([t0 * way, t1 * way], axis=0) + [[-AROUND], [AROUND]]
+        standing = manifold3d.Manifold.cube(list(passed[1] - passed[0])).translate(list(passed[0])) ^ standing
         worst = (0.0, 0.0)
         for t in np.linspace(t0, t1, max(PLACES, 1 + ceil(3 * length * (t1 - t0) / reach))):
             cut = (moving.translate(list(apart + start + t * way)) ^ standing).volume()

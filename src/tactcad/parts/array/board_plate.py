@@ -134,7 +134,7 @@ def stand_off() -> Part:
     )
     size = f"{THREAD}x{STAND_OFF:g}"
     return Part(
-        part_no=f"STAND-OFF-{size}-{STUD:g}",
+        part_no=f"STAND-OFF-{size}-{STUD:g}-bolt",
         name=f"Stand-off {size}, stud {STUD:g}",
         process="bought",
         material=BRASS,
@@ -172,7 +172,7 @@ def lead_socket(pins: int) -> Part:
     """Socket strip that the leads are soldered to, its pins along x; z = 0 lies on the header."""
     half = pins * PITCH / 2
     return Part(
-        part_no=f"SOCKET-LEADS-{pins}",
+        part_no=f"SOCKET-LEADS-{pins}-strip",
         name=f"Socket of a board's leads, {pins} pins",
         process="bought",
         material=PLASTIC,

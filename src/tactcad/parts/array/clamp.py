@@ -85,6 +85,16 @@ def clamping(layout: Layout) -> Clamping:
     return Clamping(True, float(ceil(stack + 2 * plate + 2 * ends)), None, dowel)
 
 
+def array_width(layout: Layout) -> float:
+    """Along y, mm: the carrier, and what of tie rods or of a screw's head stands out beyond it."""
+    c, d, half = clamping(layout), layout.design.clamp, layout.carrier_width / 2
+    if c.rod:
+        return max(2 * half, c.screw)
+    web = c.head_plate_web or 0.0
+    head = layout.stack / 2 + max(d.end_plate_thickness, web + METRIC[d.screw].head_height)
+    return round(half + max(half, head), 6)
+
+
 def _dowel(layout: Layout) -> float:
     plate, stack = layout.design.clamp.end_plate_thickness, layout.stack
     fitting = [

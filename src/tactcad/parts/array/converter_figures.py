@@ -1,18 +1,23 @@
-"""Figures of bridges that a sigma-delta converter reads: they stay warm, so the grids' heat sets their
-supply, and the converter takes one after the other.
+"""Figures of bridges that a sigma-delta converter reads, one after the other: the grids' heat sets their
+supply. They are on all the time (readout.power continuous), or once a period (duty):
+
+    ON ___/----- warm up ----|-- input 1 --|-- input 2 --| ... |\\________ until the period is over
 """
 
 from __future__ import annotations
 
-from tactcad.design.sensing import Converter
+from dataclasses import replace
 
-from ..bought.electronic_parts import SET_AMPERE, nearest_e192
+from ..bought.electronic_parts import SET_AMPERE, bridge_resistance, nearest_e192, regulator_gives
 from .layout import Layout
+from .leads import boards
 
 RATE = 50.0  # Hz, results while one input is read; chosen: the filter's first notch lies on the mains
 ORDER = 3  # of the filter: it needs so many of its periods after each change of input
 HEAT_LEFT = 0.98  # of what the backing bears: the LT3042's 100 uA may be 1 % more
 ANALOGUE_OHM = 33.2e3  # sets the converter's own supply: 3.32 V
+SET_FARAD = 1e-7  # across the resistor that sets a supply
+WARM = 12.0  # time constants of grid and supply until the first input is read; chosen: 6e-6 are left
 E192_STEP = 10 ** (-1 / 192)
 
 
@@ -22,20 +27,35 @@ def converter_supply() -> float:
 
 
 def supply_ohm(layout: Layout) -> float:
-    """Of the resistor that sets the bridges' supply, ohm: what a grid's backing bears all the time."""
-    from .hinge_section import design_gauge  # needs numpy, which a bill with a card does not
+    """Of the resistor that sets the bridges' supply, ohm: the most that grids' backing, the converter and the
+    regulator bear."""
+    # these need numpy, which a bill with a card does not
+    from tactcad.mechanics.gauge_signal import continuous, switched
 
-    d, gauge = layout.design, design_gauge(layout.design)
-    area = gauge.grid_length * gauge.grid_width * 1e-6
-    borne = 2 * (HEAT_LEFT * d.gauge.power_density * 1e3 * area * d.gauge.resistance) ** 0.5
-    most = min(borne, 0.99 * converter_supply()) / SET_AMPERE
+    from .bridge_figures import power_of
+    from .hinge_section import design_gauge
+
+    d, gauge, power = layout.design, design_gauge(layout.design), power_of(layout)
+    if d.readout.power == "duty":
+        on = min(on_time(layout), power.period)  # a longer one is refused
+        hot = switched(1.0, gauge, replace(power, on_time=on))
+    else:
+        hot = continuous(1.0, gauge, power)
+    borne = (HEAT_LEFT * min(d.gauge.power_density / hot.power_density, d.gauge.rise / hot.rise)) ** 0.5
+    given = regulator_gives(d.readout.supply_positive) * bridge_resistance(d) / fullest(layout)
+    most = min(borne, 0.99 * converter_supply(), given) / SET_AMPERE
     ohm = nearest_e192(most)
     return ohm if ohm <= most else nearest_e192(ohm * E192_STEP)
 
 
 def bridge_supply(layout: Layout) -> float:
-    """V, all the time."""
+    """V, while it is on."""
     return SET_AMPERE * supply_ohm(layout)
+
+
+def fullest(layout: Layout) -> int:
+    """Elements of the board that reads most."""
+    return max(len(board.places) for board in boards(layout))
 
 
 def settling() -> float:
@@ -43,7 +63,22 @@ def settling() -> float:
     return ORDER / RATE
 
 
-def round_time(layout: Layout, converter: Converter) -> float:
+def warm_up(layout: Layout) -> float:
+    """From ON to where the first input may be read, s: grids are warm, and their supply has risen."""
+    from tactcad.mechanics.gauge_signal import time_constant
+
+    from .bridge_figures import power_of
+    from .hinge_section import design_gauge
+
+    grid = time_constant(design_gauge(layout.design), power_of(layout))
+    return WARM * max(grid, ANALOGUE_OHM * SET_FARAD)
+
+
+def round_time(layout: Layout) -> float:
     """Until every element of the fullest board has one result, s."""
-    rows = [sum(p.row == row for p in layout.elements) for row in (1, 2)]
-    return max(min(n, converter.inputs) for n in rows) * settling()
+    return fullest(layout) * settling()
+
+
+def on_time(layout: Layout) -> float:
+    """By which every element has one result, from ON, s; of bridges that are always on, a round."""
+    return round_time(layout) + (warm_up(layout) if layout.design.readout.power == "duty" else 0.0)

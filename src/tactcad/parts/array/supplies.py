@@ -106,7 +106,7 @@ def electronic_supplies(layout: Layout) -> tuple[Supply, ...]:
             "regulators": on_card + 2 * on_converter,
             "card pairs": 2 * on_card,
             "diodes": 3 * on_card + 2 * on_converter,
-            "lines": 3 * on_converter + (len(part.address) + 1) * on_card,
+            "lines": 4 * on_converter + (len(part.address) + 1) * on_card,
             "links": links,
             "wire links": 0 if small else 2 * free,
         },

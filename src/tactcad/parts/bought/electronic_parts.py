@@ -37,7 +37,7 @@ FILTER_RESISTOR, ANTI_ALIAS = "RESISTOR-10R", "CAPACITOR-100P"
 FILTER_OHM = 10.0
 ON_SUPPLIES = 5  # of decoupling capacitors: two at the amplifier, two at the multiplexer, one at the decoder
 CARD_SIGNALS = 8  # of the connector to the card beside the address: supplies, ground twice, enable, output
-CONTROLLER_SIGNALS = 8  # of that to a controller: EXC, ground twice, supply, three lines and one back
+CONTROLLER_SIGNALS = 9  # of that to a controller: EXC, ground twice, supply, four lines and one back
 
 
 def lead_part(colour: str) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from ..array.converter_figures import bridge_supply, round_time
+from ..array.converter_figures import bridge_supply, on_time
 from ..array.layout import Layout
 from ..bought.electronic_parts import converter_of
 from ..language.finding import Finding
@@ -21,7 +21,7 @@ def converter_has_reference(layout: Layout) -> Iterator[Finding]:
     if volts < least:
         yield wrong(
             "gauge.resistance",
-            f"the grids bear {volts:.3g} V all the time, and the reference of the {converter.name} takes no "
+            f"the bridges bear {volts:.3g} V, and the reference of the {converter.name} takes no "
             f"less than {least:g} V",
             gauge.resistance,
             f"at least {gauge.resistance * (least / volts) ** 2 * 1.02:.3g} ohm, or a larger grid",
@@ -34,6 +34,7 @@ def converter_reads_within_period(layout: Layout) -> Iterator[Finding]:
     converter = converter_of(layout.design)
     if converter is None:
         return
-    period, needed = layout.design.readout.period, round_time(layout, converter)
-    what = f"the {converter.name} takes {needed:.3g} s for one result of each of its elements"
-    yield from at_least("readout.period", what, period, needed, f"at least {needed:.3g} s")
+    period, needed = layout.design.readout.period, on_time(layout)
+    warm = ", warmed up before," if layout.design.readout.power == "duty" else ""
+    what = f"the {converter.name} takes {needed:.3g} s for one result of each of its elements{warm}"
+    yield from at_least("readout.period", what, period, needed, f"at least {needed * 1.005:.3g} s")

@@ -67,9 +67,10 @@ def wrong(path: str, what: str, value: object, legal: str) -> Finding:
     what
         Is wrong: one clause.
     value, legal
-        The field's value, and in words what would be accepted.
+        The field's value, or what was measured of it, and in words what would be accepted.
     """
-    return Finding("", "fail", path, (), value, legal, what)
+    found = round(value, 9) if isinstance(value, float) else value  # 3.6, not 3.5999999999999996
+    return Finding("", "fail", path, (), found, legal, what)
 
 
 def at_least(path: str, what: str, value: float, least: float, legal: str = "") -> Iterator[Finding]:
