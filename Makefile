@@ -61,6 +61,7 @@ reference: environment ## the published benchmarks again, in full, on a quiet ma
 	$(BIN)/python benchmarks/bench.py --full --out exports/bench
 	$(BIN)/python benchmarks/publish.py exports/bench
 	$(BIN)/python benchmarks/interval_tables.py benchmarks/results/intervals.md
+	$(BIN)/python benchmarks/read_outs.py docs/circuit.md
 
 nightly: environment ## the long tests, a night of random tests, and the kernel's tests on the next kernel
 	@status=0; \

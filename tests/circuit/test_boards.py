@@ -26,8 +26,10 @@ from tactcad.design.messages import CheckFailure
 from tactcad.export.board_files import check_flashes
 from tactcad.parts.array.board_outline import board_outline
 from tactcad.parts.array.layout import Layout
+from tactcad.parts.bought.electronic_parts import COMPLETION
 
 KICADS_PYTHON = Path("/usr/bin/python3")
+CONVERTERS = ("card", "AD7124-8")
 LIBRARY = Path("/usr/share/kicad/footprints")
 
 
@@ -118,7 +120,7 @@ def pads_in_library(name: str) -> dict[str, tuple[float, ...]]:
 
 
 @pytest.mark.parametrize(
-    "name", [f.name for f in FOOTPRINTS.values() if f.library] + ["pin-header-11", "pin-header-26"]
+    "name", [f.name for f in FOOTPRINTS.values() if f.library] + [f"pin-header-{n}" for n in (9, 11, 26)]
 )
 def test_pads_lie_where_kicads_library_has_them(name):
     """Middles within 0.14 mm (the diode's; others 0.03), so that either's pads carry the package."""
@@ -136,8 +138,10 @@ def test_pads_lie_where_kicads_library_has_them(name):
             assert min(pad.w, w) > 0.9 * max(pad.w, w) and min(pad.h, h) > 0.9 * max(pad.h, h)
 
 
-def test_every_pin_has_a_pad():
-    for component in laid_out().netlist.components:
+@pytest.mark.parametrize("converter", CONVERTERS)
+def test_every_pin_has_a_pad(converter):
+    (board,) = boards.laid_out(Layout(variant({"readout.converter": converter})))
+    for component in board.netlist.components:
         pads = {pad.number for pad in footprint(component.footprint).pads}
         assert {pin.number for pin in component.pins} <= pads
 
@@ -215,11 +219,12 @@ def test_the_gerber_files_show_the_copper_that_kicad_plots(converter, tmp_path):
         assert not (binary_erosion(b, iterations=2) & ~a).any()
 
 
-def test_kinparse_reads_a_boards_netlist():
+@pytest.mark.parametrize("converter", CONVERTERS)
+def test_kinparse_reads_a_boards_netlist(converter):
     from kinparse import parse_netlist
 
-    for used in (1, 5):  # a second each; those between differ by what is fitted
-        circuit = board_netlist(variant({}), used, 3)
+    for used in (1, 5) if converter == "card" else (5,):  # a second each; others differ by what is fitted
+        circuit = boards.netlist_of_board(Layout(variant({"readout.converter": converter})), used)
         read = parse_netlist(kicad_bytes(circuit, "title", None, "2026-01-01", "A").decode())
         pins = {net.name.removeprefix("/"): {(p.ref, p.num) for p in net.pins} for net in read.nets}
         assert pins == {n: {(c.designator, p.number) for c, p in nodes} for n, nodes in circuit.nets.items()}
@@ -228,15 +233,21 @@ def test_kinparse_reads_a_boards_netlist():
         }
 
 
+@pytest.mark.parametrize("converter", CONVERTERS)
 @pytest.mark.parametrize("count", [1, 2, 7, 8, 9, 15, 16, 17, 20])
-def test_arrays_of_1_to_20_elements_have_their_boards(count):
+def test_arrays_of_1_to_20_elements_have_their_boards(count, converter):
     """A row or two; every element is read by one fitted channel, and what is not read is left off."""
     rows = [[4.0] * count] if count < 9 else [[4.0] * (count - count // 2), [4.0] * (count // 2)]
-    layout = Layout(variant({"array.row_arms": rows}))
+    layout = Layout(variant({"array.row_arms": rows, "readout.converter": converter}))
     fitted = {
-        b.netlist.name: sum(c.kind == "switch" and c.fitted for c in b.netlist.components)
+        b.netlist.name: sum(c.part_no == COMPLETION and c.fitted for c in b.netlist.components) / 3
         for b in boards.laid_out(layout)
     }
-    assert {f"macro-array-board-{n}" for n in fitted.values()} >= set(fitted)
+    assert {f"macro-array-board-{n:g}" for n in fitted.values()} >= set(fitted)
     circuit = netlist(layout)
-    assert sorted(c.element for c in circuit.of_kind("switch")) == list(range(1, count + 1))
+    read_by = circuit.of_kind("switch" if converter == "card" else "converter")
+    pins = {p.net for c in read_by for p in c.pins}
+    ends = ("FOOT",) if converter == "card" else ("PLUS", "MINUS")
+    assert {net for net in pins if re.fullmatch(r"E\d+_[A-Z]+", net) and not net.endswith("GATE")} == {
+        f"E{n}_{end}" for n in range(1, count + 1) for end in ends
+    }

@@ -70,7 +70,7 @@ def test_duty_is_in_both_files_and_in_the_rule():
     always = json.loads(settings_json(Layout(variant()), CHIP))
     assert always["on"] == "always" and always["chips"][0]["registers"][0]["value"] >> 2 & 15 == 0
     (found,) = broken_rules(variant({**DUTY, "readout.period": 0.35}))
-    assert found.part == "readout.period" and "warmed up before" in found.message
+    assert found.part == "readout.period" and "0.358 s for warm-up and one result" in found.message
     assert not broken_rules(variant({**DUTY, "readout.period": 0.36}))
 
 

@@ -12,8 +12,8 @@ from variants import variant
 from tactcad.circuit.bridges import netlist
 from tactcad.design.load import names, read
 from tactcad.design.messages import CheckFailure
-from tactcad.drawing import circuit_sheets as sheets
-from tactcad.drawing.circuit_sheets import CircuitOrder, circuit_written
+from tactcad.drawing.circuit_sheets import sheets
+from tactcad.drawing.circuit_sheets.sheets import CircuitOrder, circuit_written
 from tactcad.drawing.engine.layout_check import layout_faults
 from tactcad.drawing.engine.sheet_files import pdf_runs
 from tactcad.export.circuit_files import table_file, wiring_file
@@ -26,8 +26,17 @@ OTHERS = {
     "one element": {"array.row_arms": [[4.0]]},
     "rows of 3 and 20": {"array.row_arms": [[4, 8, 4], [5] * 20]},
     "a resistance of eleven letters": {"gauge.resistance": 8515.59},
+    "a converter": {"readout.converter": "AD7124-8"},
+    "converters, two wires, rows of 9 and 1": {
+        "readout.converter": "AD7124-8",
+        "readout.connection": "two-wire",
+        "array.row_arms": [[4] * 9, [5]],
+    },
     "a hundred elements": {"array.row_arms": [[4, 7, 6, 8, 6] * 10, [8, 5, 4, 5, 7] * 10]},
 }
+
+
+READ_BY = ("multiplexer", "converter")
 
 
 def everything_stands_there(design) -> None:
@@ -39,7 +48,7 @@ def everything_stands_there(design) -> None:
     nets = list(csv.DictReader(io.StringIO(table_file(design, circuit).decode())))
     # of board 1 and element 1 every component is drawn
     own = [row["designator"] for row in nets if row["board"] == "1" and row["element"] in ("", "1")]
-    channels = re.compile(r"(R[1-8]\d|Q[2-8])$")  # of others, which read no element
+    channels = re.compile(r"(R[1-8]\d|Q[2-8]|C[2-8]1)$")  # of others, which read no element
     drawn = {name.removeprefix("A1-") for name in own}
     drawn = {name for name in drawn if not channels.match(name)} | {"R11", "R12", "R13", "R14"}
     words = set(re.findall(r"\w+", " ".join([*first, *pages[1]])))
@@ -47,10 +56,14 @@ def everything_stands_there(design) -> None:
     # every gauge in the matrix, with the channel's pins as the netlist has them
     for gauge in {row["designator"] for row in nets if row["kind"] == "gauge"}:
         n = gauge[1:]
-        mux = [r for r in nets if r["net"] == f"E{n}_PLUS" and r["kind"] == "multiplexer"]
-        minus = [r for r in nets if r["net"] == f"E{n}_MINUS" and r["kind"] == "multiplexer"]
+        mux = [r for r in nets if r["net"] == f"E{n}_PLUS" and r["kind"] in READ_BY]
+        minus = [r for r in nets if r["net"] == f"E{n}_MINUS" and r["kind"] in READ_BY]
         assert gauge in said
-        assert f"{mux[0]['designator'].partition('-')[2]}.{mux[0]['pin']} +, .{minus[0]['pin']} −" in said
+        name = mux[0]["designator"].partition("-")[2]
+        if mux[0]["kind"] == "converter":
+            assert {f"{name}.{row['pin']} {row['role']}" for row in (mux[0], minus[0])} <= set(said)
+        else:
+            assert f"{name}.{mux[0]['pin']} +, .{minus[0]['pin']} −" in said
     # every lead of the wiring list, in its order of columns
     text = " ".join(said)
     for row in csv.DictReader(io.StringIO(wiring_file(design, circuit).decode())):
@@ -84,6 +97,28 @@ def test_the_card_has_what_the_boards_ask_of_it(changes, outputs, inputs):
     text = " ".join(pdf_runs(circuit_written(CircuitOrder(design)).pdf)[0])
     assert f"The card needs {outputs} digital outputs, A0 to A2" in text
     assert re.search(rf"and {inputs} differential inputs?, OUT and GND of a board", text)
+
+
+@pytest.mark.parametrize(
+    ("power", "said"), [("continuous", "ON: always high"), ("duty", "ON: every 1 s high")]
+)
+def test_a_converters_sheet_says_what_the_controller_is_asked_for(power, said):
+    """As many lines as its boards' connectors have, the supply that the resistor sets, and every pin of the
+    converter that is not another channel's input."""
+    design = variant({"readout.converter": "AD7124-8", "readout.power": power})
+    circuit = netlist(Layout(design))
+    first, around = pdf_runs(circuit_written(CircuitOrder(design)).pdf)[:2]
+    text = " ".join(first)
+    nets = {p.net for c in circuit.of_kind("connector") for p in c.pins if c.designator.endswith("J1")}
+    assert {"SCLK", "DIN", "ON", "CS1", "CS2"} <= nets and "CS1 to CS2" in text
+    (set_by,) = (c for c in circuit.components if c.designator == "A1-R2")
+    assert said in text and f"EXC, is {1e-4 * set_by.figure('ohm'):.4g} V over GND" in text
+    assert "12 REFIN1+ on EXC1" in first and "22 REFOUT, 25 PSW, 31 CLK open" in first
+    for pin in circuit.on_board("converter", 1).pins:
+        named = {f"{pin.number} {pin.role}", f"{pin.role} {pin.number}"}
+        other = pin.role.startswith("AIN") and pin.role not in ("AIN0", "AIN1")
+        assert other or any(name in run for name in named for run in first), pin
+    assert "3  enable: ON" in around and "3  enable: VPOS" in around
 
 
 def test_no_general_tolerance_on_a_sheet_without_dimensions():

@@ -119,6 +119,7 @@ def test_the_files_by_other_readers():
     assert table[0]["description"] == 'block, 4 "wide"'
     assert table[2]["description"] == "gauge adhesive, kalthärtend"
     assert [row["has_solid"] for row in table] == ["true", "true", "false", "false"]
+    assert [row["source_verified"] for row in table] == ["false", "true", "unread", "unread"]  # made, bought
     record = json.loads(as_json)
     assert (record["design"], record["revision"], record["scene"]) == ("macro", "B", "array")
     assert record["rows"][2]["mass_g"] is None

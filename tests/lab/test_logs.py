@@ -4,6 +4,7 @@ from logs to K_obj how often the interval holds."""
 from __future__ import annotations
 
 import json
+import re
 from dataclasses import replace
 
 import log_labs as labs
@@ -221,6 +222,24 @@ def test_what_would_be_wrong_is_one_line_and_nothing_is_written(what, tmp_path, 
     assert said.out == "" and len(said.err.splitlines()) == 1 and words in said.err
     assert not out.exists() and not out.with_suffix(".svg").exists()
     assert main(["stiffness", *asked, "--calibration", str(EXAMPLES / "calibration.csv")]) == 2
+
+
+@pytest.mark.parametrize("name", labs.FORMATS)
+def test_a_cell_without_a_number_is_named_by_its_line(name, tmp_path, capsys):
+    """Also where decimals have a comma, and one such cell makes texts of the whole column."""
+    lab = labs.grasp(np.random.default_rng(7))
+    hole = np.where(np.arange(len(lab.time)) == 321, np.nan, lab.columns["ai3"])
+    write, time = labs.FORMATS[name]
+    write(tmp_path / name, broken(lab, ai3=hole))
+    mapped(tmp_path, lab, "grasp", time)
+    asked = [str(tmp_path / name), "--map", str(tmp_path / "grasp.toml"), "--out", str(tmp_path / "out.csv")]
+    assert main(["readings", *asked]) == 2
+    (said,) = capsys.readouterr().err.splitlines()
+    (line,) = re.findall(rf"{name}:(\d+): ai3: no number", said)
+    if name.endswith("tdms"):
+        assert int(line) == 322
+    else:
+        assert "nan" in (tmp_path / name).read_text("latin-1").splitlines()[int(line) - 1].lower()
 
 
 def test_swapped_channels_of_a_calibration_are_refused(tmp_path):

@@ -349,13 +349,13 @@ def assembly_sheets(plan: Plan) -> Iterator[Batch]:
         yield _drawing(stem, "", key, partial(make, scene), FILES, 10 * len(scene.placements))
 
 
-@product(lambda plan: plan.options.drawings and _read(plan) and _converter(plan.design) == "card")
+@product(lambda plan: plan.options.drawings and _read(plan))
 def circuit_sheets(plan: Plan) -> Iterator[Batch]:
     """The circuit's sheets, as PDF and SVG."""
     draft, sample = plan.options.draft, plan.options.sample
 
     def make() -> Written:
-        from tactcad.drawing.circuit_sheets import CircuitOrder
+        from tactcad.drawing.circuit_sheets.sheets import CircuitOrder
 
         written = family_of(plan.design).must("readout", "export").sheets.found
         return written(CircuitOrder(plan.design, draft, sample))

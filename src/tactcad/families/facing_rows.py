@@ -50,7 +50,7 @@ FAMILY = Family(
         tracks=Late("tactcad.circuit.tracks:with_tracks"),
         supplies=Late("tactcad.parts.array.supplies:electronic_supplies"),
         wiring=Late("tactcad.circuit.netlist_files:wiring"),
-        sheets=Late("tactcad.drawing.circuit_sheets:circuit_written"),
+        sheets=Late("tactcad.drawing.circuit_sheets.sheets:circuit_written"),
         signals=Late("tactcad.review.effect:signals"),
     ),
     readings=FamilyReadings(

@@ -23,6 +23,7 @@ import numpy as np
 from scipy.special import stdtr
 
 from tactcad.design.messages import InputError
+from tactcad.lab.bow import Bow, bow, common, off_the_chord
 from tactcad.lab.load_cell import (
     Estimate,
     LoadCell,
@@ -180,10 +181,35 @@ def calibrate(
         weights([Readings(e.x, e.travel, e.y[:, k], e.run) for e in ready]) for k in (0, 1)
     )
     alarm = FALSE_ALARM / (2 * len(parts))  # each element is tested twice, for force and for signal
-    return [
-        _element(e, (w_force, w_signal), load_cell, level, drop_outliers, run_scatter, alarm)
-        for e, w_force, w_signal in zip(ready, by_force, by_signal)
+    own = [
+        [bow(e.x, e.y[:, k], e.run, w[i]) for i, e in enumerate(ready)]
+        for k, w in enumerate((by_force, by_signal))
     ]
+    of_all = [common(bows) for bows in own]
+    return [
+        _element(
+            e,
+            (by_force[i], by_signal[i]),
+            load_cell,
+            level,
+            drop_outliers,
+            run_scatter,
+            alarm,
+            [_height(own[k][i], of_all[k], alarm) for k in (0, 1)],
+        )
+        for i, e in enumerate(ready)
+    ]
+
+
+def _height(own: Bow | None, of_all: Bow | None, alarm: float) -> float:
+    """Height of the bow that an element's slope is held to have: of all elements together, or its own, where
+    noise does not explain it; else 0."""
+    heights = [0.0]
+    if of_all and of_all.told(FALSE_ALARM / 2):  # tested twice, for force and for signal
+        heights.append(of_all.most)
+    if own and own.told(alarm):
+        heights.append(own.most)
+    return max(heights)
 
 
 @dataclass(frozen=True)
@@ -228,6 +254,7 @@ def _element(
     drop: bool,
     run_scatter: float | None,
     alarm: float,
+    heights: list[float],
 ) -> ElementCalibration:
     notes = list(e.notes)
     x, y, run, by_force, time = e.x, e.y, e.run, weight[0], e.time
@@ -246,6 +273,7 @@ def _element(
     covariance, dof = _covariance(lines, run_scatter, notes)
     t = t_quantile(level, dof)
     k, v = lines.slope
+    covariance = _bowed(e, heights, lines.slope, covariance, t, notes)
     far = [str(o.line) for o in outliers if o.quantity == "force"]
     require_spring(e.where, x, y, lines.slope, t * covariance[0, 0] ** 0.5, load_cell, far)
     stiffness = element_stiffness(k, covariance[0, 0] ** 0.5, load_cell, t, notes)
@@ -270,6 +298,24 @@ def _element(
         outliers,
         tuple(notes),
     )
+
+
+def _bowed(
+    e: _InContact, heights: list[float], slope: np.ndarray, covariance: np.ndarray, t: float, notes: list[str]
+) -> np.ndarray:
+    """The slopes' covariance, widened so that t standard errors reach further by what a bow puts a slope off
+    its chord."""
+    start, first = float((e.x - e.travel)[0]), float(e.x.min())
+    start -= (first - start) if start > 0 else 0.0  # a file that leaves out zero begins a step after contact
+    off = np.array([off_the_chord(height, e.x, start) for height in heights])
+    for name, height, share in zip(("force", "signal"), heights, off):
+        if height:
+            notes.append(
+                f"the {name} bows by up to {height:.1%} of its full scale (hysteresis, friction): the "
+                f"interval of its slope is {share:.1%} wider either way; readings of the way back would tell"
+            )
+    se = np.sqrt(np.diag(covariance))
+    return covariance + np.diag((se + off * np.abs(slope) / t) ** 2 - se**2)
 
 
 def _touching(all_: CalibrationReadings, rows: np.ndarray, notes: list[str]) -> np.ndarray:

@@ -15,7 +15,7 @@ from math import floor
 import numpy as np
 from scipy.ndimage import maximum_filter1d, minimum_filter1d
 
-from tactcad.design.csv_table import Table
+from tactcad.design.csv_table import Table, number
 from tactcad.design.messages import InputError, one_of
 from tactcad.lab import readings
 from tactcad.lab.column_units import VOLTAGES
@@ -138,7 +138,8 @@ def _numbers(log: LabLog, name: str, by: LogMap) -> np.ndarray:
         raise InputError(f"{log.path}", f"has no column {name!r}", legal=one_of(name, log.columns))
     values = log.columns[name]
     if values.dtype.kind == "U":
-        raise InputError(f"{log.path}: {name}", "holds text, no numbers", value=str(values[0]))
+        row = next((i for i, v in enumerate(values) if v and np.isnan(number(v.replace(",", ".")))), 0)
+        raise InputError(log.where(row, name), "no number", value=str(values[row]), legal="numbers alone")
     return values
 
 

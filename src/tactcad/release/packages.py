@@ -19,6 +19,7 @@ from tactcad.parts.bought.electronic_parts import BOARD
 from tactcad.parts.bought.supply import BARE_BOARD, ELECTRONIC, MECHANICAL
 from tactcad.parts.language.description import Part
 from tactcad.parts.language.stock import cut_section, own_thickness, stock_of
+from tactcad.scenes.bom import read_in_sheet
 
 from .nest import Nest, nest_dxf, nest_svg, nests
 from .release_contents import OrderLine, ReleaseContents
@@ -233,7 +234,10 @@ def _bought_row(line: OrderLine, taken: Mapping[str, str], shop: Shop) -> Row:
     row = line.row
     texts = ("material", "manufacturer", "mpn", "supplier", "alternates")
     told = {"designation": row.standard_designation} | {name: getattr(row, name) for name in texts}
-    return told | {n: str(getattr(row, n)).lower() for n in ("consumable", "source_verified")}
+    return told | {
+        "consumable": str(row.consumable).lower(),
+        "source_verified": str(read_in_sheet(row)).lower(),
+    }
 
 
 WIRE = Package("wire-cutting", "wire cutting", ("wire-cut",), ("dxf", "pdf"), _wire_row)

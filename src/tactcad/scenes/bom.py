@@ -120,12 +120,19 @@ def _filled(*records: object, **told: object) -> BomRow:
 
 
 def csv_bytes(rows: Sequence[BomRow]) -> bytes:
-    """The rows as CSV (RFC 4180, UTF-8), numbers by repr, truth values as true and false."""
+    """The rows as CSV (RFC 4180, UTF-8), numbers by repr, truth values as true and false; what nobody read in
+    a maker's own sheet as unread."""
     text = io.StringIO(newline="")
     writer = csv.writer(text)
     writer.writerow(COLUMNS)
-    writer.writerows([_cell(value) for value in asdict(row).values()] for row in rows)
+    told = (asdict(row) | {"source_verified": read_in_sheet(row)} for row in rows)
+    writer.writerows([_cell(value) for value in row.values()] for row in told)
     return text.getvalue().encode()
+
+
+def read_in_sheet(row: BomRow) -> bool | str:
+    """Whether the figures of a bought line were read in the maker's own sheet, as a bill says it."""
+    return row.source_verified if row.source_verified or row.make_buy == "make" else "unread"
 
 
 def _cell(value: object) -> str:
@@ -150,7 +157,7 @@ def _row(line: list[str]) -> BomRow:
 def _parsed(column: Any, cell: str) -> object:
     match column.type:
         case "bool":
-            return {"true": True, "false": False}[cell]
+            return {"true": True, "false": False, "unread": False}[cell]
         case "int":
             return as_whole(cell)
         case "float":

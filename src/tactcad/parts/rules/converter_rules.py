@@ -35,6 +35,6 @@ def converter_reads_within_period(layout: Layout) -> Iterator[Finding]:
     if converter is None:
         return
     period, needed = layout.design.readout.period, on_time(layout)
-    warm = ", warmed up before," if layout.design.readout.power == "duty" else ""
-    what = f"the {converter.name} takes {needed:.3g} s for one result of each of its elements{warm}"
+    warm = "warm-up and " if layout.design.readout.power == "duty" else ""
+    what = f"the {converter.name} takes {needed:.3g} s for {warm}one result of each of its elements"
     yield from at_least("readout.period", what, period, needed, f"at least {needed * 1.005:.3g} s")

@@ -1,0 +1,181 @@
+"""The circuit's sheets, in frame and title block as all others: one channel in full, a matrix of all
+channels, the leads' way, the wiring list. As PDF, read back, and SVG.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from math import ceil
+
+from tactcad.circuit.bridges import netlist
+from tactcad.circuit.netlist import Component, Netlist
+from tactcad.circuit.netlist_files import wiring
+from tactcad.design.family import taken_as
+from tactcad.design.messages import CheckFailure
+from tactcad.design.sensing import MULTIPLEXERS
+from tactcad.design.tree import CommonTables, Design
+from tactcad.parts.array.bridge_figures import instants, jitter, settling_time
+from tactcad.parts.array.layout import Layout
+from tactcad.parts.array.leads import boards
+from tactcad.parts.bought.electronic_parts import TO_LEADS, converter_of
+
+from ..engine.ink import FRAME, LETTERS, THIN, DrawnSheet, Item, Text, rectangle, segment, width
+from ..engine.layout_check import sheets_of
+from ..engine.paper import A3, HEIGHT, MARGIN, Page, block_of
+from ..engine.sheet_files import Written, files_of, pdf_runs
+from .around import around_page
+from .channel import channel_page
+from .converter import HEADS, converter_channels, converter_notes, converter_page
+from .plan import plan_notes, plan_page
+from .symbols import printed
+
+ROW = 5.5  # mm
+CHANNELS = (
+    "Board, Channel, Element, Gauge, Arms, Leads, Terminals, Lead connector, Switch, Multiplexer, Decoder"
+)
+CHANNEL_HEADS = (*CHANNELS.split(", "), "Read at")
+DESIGNATORS = (
+    "Symbols IEC 60617, letters of designators IEC 81346-2: B gauge, C capacitor, D diode, J connector, "
+    "Q transistor, R resistor, U circuit, W lead, X terminal"
+)
+LEAD_HEADS = ("Lead", "Element", "From", "To", "Colour", "Wire", "Cut to, mm", "Bundle")
+
+
+@dataclass(frozen=True)
+class CircuitOrder:
+    """The circuit of a design to draw."""
+
+    design: CommonTables
+    draft: bool = False
+    sample: bool = False
+
+    @property
+    def name(self) -> str:
+        return f"{self.design.name}-circuit"
+
+
+def circuit_written(order: CircuitOrder) -> Written:
+    """All its sheets as PDF and SVG.
+
+    Raises CheckFailure where a layout is not clean, or the PDF lacks a component when read back.
+    """
+    design = taken_as(order.design, Design, "the circuit's sheets")
+    sheets = circuit_sheets(design, order.draft, order.sample)
+    made = files_of(sheets, order.name, "circuit", design.design)
+    runs = " ".join(run for page in pdf_runs(made.pdf) for run in page)
+    for gauge in netlist(Layout(design)).of_kind("gauge"):
+        if gauge.designator not in runs:
+            raise CheckFailure(
+                f"drawings: {order.name}: {gauge.designator} is missing; no drawing was written"
+            )
+    return made
+
+
+def circuit_sheets(design: Design, draft: bool = False, sample: bool = False) -> list[DrawnSheet]:
+    """Every sheet, its layout clean; raises CheckFailure where it is not."""
+    layout = Layout(design)
+    circuit = netlist(layout)
+    rows = [
+        (e.designator, f"E{e.element}", e.start, e.end, e.colour, e.wire, f"{e.length:g}", f"{e.bundle}")
+        for e in wiring(layout, circuit)
+    ]
+    if converter := converter_of(design):
+        first = converter_page(circuit, converter_notes(layout, converter, DESIGNATORS))
+        heads: tuple[str, ...] = HEADS
+        channels = [*converter_channels(circuit, wiring(layout, circuit))]
+    else:
+        first = channel_page(circuit, _channel_notes(layout))
+        heads, channels = CHANNEL_HEADS, [*_channels(circuit)]
+    pages = [
+        first,
+        around_page(circuit),
+        *_tables(heads, channels, "Circuit, all channels"),
+        plan_page(layout, plan_notes(layout)),
+        *_tables(LEAD_HEADS, rows, "Wiring list"),
+    ]
+    block = block_of(design.design, f"{design.name}-circuit", "Circuit and wiring", draft, sample)
+    return sheets_of(replace(block, dimensioned=False), pages, draft)
+
+
+def _channel_notes(layout: Layout) -> list[str]:
+    r, inputs = layout.design.readout, len(boards(layout))
+    address = len(MULTIPLEXERS[r.multiplexer].address)
+    settled, at = ceil(settling_time(layout.design) * 1e6), instants(layout.design) * 1e3
+    return [
+        DESIGNATORS,
+        f"The bridges' supply, EXC, is {r.excitation:g} V over GND, made from VPOS on each board; "
+        f"VPOS {r.supply_positive:g} V, VNEG "
+        f"{r.supply_negative:g} V, V5 5 V",
+        "The address names the channel whose bridge is led to the amplifier; ENABLE high turns its switch "
+        "on, all others are off; with ENABLE low no gauge is warm, and the amplifier's inputs rest at EXC",
+        f"The card needs {inputs + address} digital outputs, A0 to A{address - 1} for all boards and one "
+        f"ENABLE a board; and {inputs} differential input{'s' if inputs > 1 else ''}, OUT and GND of a board",
+        f"{r.samples} samples a reading, {at[0]:.4g} to {at[-1]:.4g} ms after ENABLE, always at "
+        f"the same instant within {jitter(layout.design) * 1e6:g} us"
+        + (", by a clocked line of the card" if r.timing == "hardware" else ", by a program")
+        + f": the gauge warms meanwhile; the output has settled after {settled} us",
+        "All other channels are alike; of channels that are not used the switch and the third arm are left "
+        "off, the other arms are links, so that their inputs lie at EXC",
+    ]
+
+
+def _channels(circuit: Netlist) -> Iterator[tuple[str, ...]]:
+    """Every channel of every board, a row each."""
+    leads: dict[int, list[Component]] = {}
+    arms: dict[int, list[Component]] = {}
+    connectors = {c.board: c for c in circuit.of_kind("connector") if c.part_no == TO_LEADS}
+    for by_element, kind in ((leads, "lead"), (arms, "resistor")):
+        for c in circuit.components:
+            if c.kind == kind and c.element:
+                by_element.setdefault(c.element, []).append(c)
+    for gauge in circuit.of_kind("gauge"):
+        n, b = gauge.element, gauge.board
+        multiplexer, decoder = circuit.on_board("multiplexer", b), circuit.on_board("decoder", b)
+        pair = [p for p in multiplexer.pins if p.net in (f"E{n}_PLUS", f"E{n}_MINUS")]
+        ends = {lead.net("2") for lead in leads[n]}
+        pins = [p.number for p in connectors[b].pins if p.net in ends]
+        gate = next(p for p in decoder.pins if p.net == f"E{n}_GATE")
+        yield (
+            f"{b}",
+            pair[0].role[1:-1],
+            f"E{n}",
+            gauge.designator,
+            f"{printed(arms[n][0])} to {printed(arms[n][2])}",
+            f"{leads[n][0].designator} to {leads[n][-1].designator}",
+            f"X{n}",
+            f"{printed(connectors[b])}.{pins[0]} to {pins[-1]}",
+            printed(circuit.of_element("switch", n)),
+            f"{printed(multiplexer)}.{pair[0].number} +, .{pair[1].number} −",
+            f"{printed(decoder)}.{gate.number} {gate.role}",
+            circuit.on_board("amplifier", b).net("out"),
+        )
+
+
+def _tables(heads: Sequence[str], rows: Sequence[tuple[str, ...]], kind: str) -> list[Page]:
+    """The rows as tables over the width of as many A3 pages as they need, above the title block."""
+    x0, y0, x1, y1 = A3.area
+    widths = [3.0 + max(width(text, LETTERS) for text in column) for column in zip(heads, *rows, strict=True)]
+    spare = (x1 - x0 - 2 * MARGIN - sum(widths)) / len(widths)
+    widths = [w + min(spare, 8.0) for w in widths]
+    most = int((y1 - y0 - HEIGHT - 3 * MARGIN) / ROW) - 1
+    parts = [rows[i : i + most] for i in range(0, len(rows), most)]
+    return [Page(A3, "", tuple(_table(heads, part, widths)), kind) for part in parts]
+
+
+def _table(heads: Sequence[str], rows: Sequence[tuple[str, ...]], widths: Sequence[float]) -> list[Item]:
+    left, top = A3.area[0] + MARGIN, A3.area[3] - MARGIN
+    high = ROW * (len(rows) + 1)
+    items: list[Item] = [rectangle(left, top - high, sum(widths), high, FRAME, "table")]
+    for i, row in enumerate((heads, *rows)):
+        y, x = top - ROW * (i + 1), left
+        if i:
+            items.append(segment((left, y + ROW), (left + sum(widths), y + ROW), THIN, "table"))
+        for text, w in zip(row, widths):
+            items.append(Text((x + 1.5, y + 1.5), text, LETTERS, role="table"))
+            x += w
+    x = left
+    for w in widths[:-1]:
+        x += w
+        items.append(segment((x, top - high), (x, top), THIN, "table"))
+    return items
