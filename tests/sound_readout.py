@@ -82,7 +82,8 @@ def _leads(d: Draw) -> float:
     """Wiring; returns the share of the gauge's resistance that its leads add on one side."""
     d.put("wiring.wire", d.choice("AWG38", "AWG36"))
     d.number("wiring.bonded", 2.6, d.recess - 1.1)
-    way = d.number("wiring.gather") + d.number("wiring.to_board") + 2 * d.longest_way
+    # boards beside the widest carrier, 100 mm and more under the leads of the highest array
+    way = d.number("wiring.gather") + d.number("wiring.to_board", 190.0) + 2 * d.longest_way
     share = 2 * COPPER * (way * (1 + d.number("wiring.slack")) + 5) / d.table["gauge.resistance"]
     thin = share < 0.05
     d.put("readout.connection", d.choice("two-wire", "three-wire") if thin else "three-wire")

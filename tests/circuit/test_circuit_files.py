@@ -12,6 +12,7 @@ import sys
 from collections import Counter
 from dataclasses import replace
 
+import numpy as np
 import pytest
 from variants import variant
 
@@ -24,6 +25,7 @@ from tactcad.export import circuit_files
 from tactcad.parts.array.layout import Layout
 from tactcad.parts.array.leads import lead_routes
 from tactcad.scenes import make_scene
+from tactcad.scenes.moves import box
 
 WORD = re.compile(r'[()]|"(?:\\.|[^"\\])*"|[^\s()"]+')
 
@@ -190,6 +192,30 @@ def test_leads_are_as_long_as_their_way_on_the_scene(name, connection):
         assert float(row_listed["cut_length_mm"]) == routes[f"E{row_listed['element']}"].cut
 
 
+@pytest.mark.parametrize("rows", [None, [[6.0] * 20, [5.0] * 3]])
+def test_leads_run_by_clamp_and_socket_of_scene_wiring(rows):
+    """Points of the ways, in the frame of an array that lies on its back, against the parts placed there;
+    a lead of a board in line is as long from tie to socket as the design says, one aside is longer."""
+    design = variant({"array.row_arms": rows} if rows else {})
+    wired = make_scene(design, "wiring")
+    bench = max(box(p)[1][2] for p in make_scene(design, "array").placements)
+    ends = {
+        kind: np.array([box(p) for p in wired.placements if p.designator.rstrip("0123456789") == kind])
+        for kind in ("LC", "XS")
+    }
+    to_board = []
+    for route in lead_routes(Layout(design)):
+        tie, clamp, socket = np.array(route.points[2:]) * (1, -1, -1) + (0, 0, bench)
+        middles = {kind: (e[:, 0] + e[:, 1]) / 2 for kind, e in ends.items()}
+        n = np.argmin(np.linalg.norm(middles["XS"] - socket, axis=1))
+        assert middles["LC"][n][:2] == pytest.approx(clamp[:2], abs=1e-5)
+        assert ends["LC"][n][0][2] == pytest.approx(clamp[2])
+        assert [*middles["XS"][n][:2], ends["XS"][n][1][2]] == pytest.approx(socket, abs=1e-5)
+        to_board.append(math.dist(tie, clamp) + math.dist(clamp, socket))
+    assert min(to_board) == pytest.approx(design.wiring.to_board, abs=1e-5)
+    assert (max(to_board) > design.wiring.to_board + 10) == bool(rows)
+
+
 def _middle(placement) -> float:
     """y of an element's mid-plane: half its thickness along its third axis from its origin."""
     half = placement.part.extrusion.thickness / 2
@@ -217,14 +243,14 @@ def test_every_lead_joins_a_terminal_and_a_pin_of_its_own():
 )
 def test_the_bill_counts_the_netlist(changes):
     """Every component but a lead is a piece of its line of the bill, and no line has more; a board has a
-    bare board, standoffs and a cable; each colour's wire is as long as its leads."""
+    bare board and a cable; each colour's wire is as long as its leads."""
     design = variant(changes)
     layout = Layout(design)
     circuit = netlist(layout)
     counted = Counter(c.part_no for c in circuit.components if c.kind != "lead" and c.fitted)
     bill = {s.part_no: s for s in make_scene(design, "array").supplies}
     boards = counted["HEADER-CARD"]
-    counted |= {name: boards for name in ("CIRCUIT-BOARD", "STANDOFFS", "CABLE-CARD")}
+    counted |= {name: boards for name in ("CIRCUIT-BOARD", "CABLE-CARD")}
     used_up = ("ADHESIVE", "COATING", "ASSEMBLY-OIL", "THREAD-LACQUER")
     billed = {n: s.qty for n, s in bill.items() if n not in used_up and "LEAD-WIRE" not in n}
     assert counted == billed

@@ -271,6 +271,10 @@ WITNESSES = {
             "clamp.end_plate_thickness",
         ),
     ],
+    "boards_stand_clear": [
+        ({"wiring.to_board": 48.0}, "wiring.to_board"),
+        ({"wiring.to_board": 60.0, "clamp.carrier_margin": 20.0}, "wiring.to_board"),
+    ],
     "carrier_can_be_screwed": [
         ({"clamp.mount_thread": "M5"}, "clamp.carrier_thickness"),
         ({"clamp.carrier_thickness": 9.1, "clamp.stop_plate_thickness": 7.0}, "clamp.carrier_thickness"),

@@ -222,7 +222,13 @@ def test_one_set_or_all(macro):
     """Counted by designators: one set is the largest set-up's, all are every rig's own and the array once."""
     scenes = [make_scene(macro, name) for name in scene_names(macro)]
     counts = {s.name: Counter(p.part.part_no for p in s.placements) for s in scenes}
-    holds_the_array = {"setting", "calibration", "grasping", "bonding"}  # the last one element of it
+    holds_the_array = {
+        "setting",
+        "wiring",
+        "calibration",
+        "grasping",
+        "bonding",
+    }  # the last one element of it
     rigs = [c - counts["array"] if n in holds_the_array else c for n, c in counts.items() if n != "array"]
     counts = {n: Counter({p: k for p, k in c.items() if "-MOVING" not in p}) for n, c in counts.items()}
     for sets, count in (("one", lambda n: max(c[n] for c in counts.values())), ("all", None)):
@@ -232,7 +238,7 @@ def test_one_set_or_all(macro):
             assert lines[number].qty == meant, (sets, number)
         assert lines["STRAIN-GAUGE"].qty == len(Layout(macro).elements)
         assert lines[f"{macro.name}-base"].qty == (1 if sets == "one" else 3), "none in the bonding fixture"
-    assert [s.name for s in scenes if s.ready] == ["setting", "calibration", "grasping"]
+    assert [s.name for s in scenes if s.ready] == ["setting", "wiring", "calibration", "grasping"]
 
 
 def test_the_element_in_the_bonding_fixture_is_one_of_the_arrays():

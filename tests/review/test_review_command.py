@@ -42,7 +42,7 @@ def made(work):
         assert done.returncode == 0, done.stderr
         said = json.loads(done.stdout)
         assert said["files"] == {f"{n}.html": (work / f"{n}.html").stat().st_size}
-        assert said["scenes"] == ["array", "setting"]
+        assert said["scenes"] == ["array", "setting", "wiring"]
         pages.append((work / f"{n}.html").read_bytes())
     return pages
 

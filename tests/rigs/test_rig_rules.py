@@ -104,6 +104,7 @@ def test_the_shipped_rigs_keep_all(name):
     assert scene_names(design) == (
         "array",
         "setting",
+        "wiring",
         "calibration",
         "sample-stiffness",
         "grasping",
@@ -120,6 +121,6 @@ def test_arrays_of_any_length_are_still_built(rows):
 
 
 def test_a_design_without_the_tables_has_no_rigs():
-    assert scene_names(load("soft-tissue")) == ("array", "setting", "bonding")
-    assert scene_names(variant({"bonding": DROP}, "soft-tissue")) == ("array", "setting")
+    assert scene_names(load("soft-tissue")) == ("array", "setting", "wiring", "bonding")
+    assert scene_names(variant({"bonding": DROP}, "soft-tissue")) == ("array", "setting", "wiring")
     assert set(names()) >= {"macro-array", "double-sample", "smallest-bearing", "soft-tissue"}

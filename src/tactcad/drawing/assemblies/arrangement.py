@@ -192,13 +192,15 @@ def notes_of(design: CommonTables, scene: Scene) -> tuple[str, ...]:
             f"Assemble in the {len(scene.steps)} steps of the assembly guide, {page_path(scene)} "
             "(tactcad export --guide)"
         )
-    placed = {p.designator for p in scene.placements}
+    placed = {p.designator: p for p in scene.placements}
     layout = family_of(design).layout(design)
     for row, side in ((1, "+"), (2, "-")):  # of long rows the bill's designators alone say it
         own = [p for p in layout.elements if p.row == row and p.designator in placed]
         if 0 < len(own) <= LONGEST_ROW:
+            ys = [placed[p.designator].origin[1] for p in own]
+            way = "from +y to -y" if ys[0] > ys[-1] else "from -y to +y"
             order = ", ".join(f"{p.designator} arm {p.arm:g}" for p in own)
-            lines.append(f"Row {row}, its bodies on the side of {side}x, from -y to +y: {order}")
+            lines.append(f"Row {row}, its bodies on the side of {side}x, {way}: {order}")
     if torques := _torques(design, scene, "cap screw"):
         lines.append(f"Tighten cap screws of property class A2-70, lubricated, to {torques}")
     if torques := _torques(design, scene, "nut"):

@@ -48,7 +48,7 @@ def plan_page(layout: Layout, says: list[str]) -> Page:
     for route in lead_routes(layout):
         place = route.place
         items += _element(layout, place, on, d.array.pitch * f > LETTERS + 2 or place.number in ends)
-        flat = [on(x, y) for x, y, _ in route.points[:-1]]
+        flat = [on(x, y) for x, y, _ in route.points[:3]]
         items += [segment(a, b, LEAD, "leader") for a, b in zip(flat, flat[1:]) if a != b]
         items.append(DrawnArc(flat[0], 0.6, line=VISIBLE, role="leader"))
     named: dict[float, float] = {}
@@ -81,7 +81,8 @@ def plan_notes(layout: Layout) -> list[str]:
         "Terminals lie in the recess, behind its wall (a), leads from there to the rear end (c); "
         "bonded from b to c, "
         f"{w.bonded:g} mm: strain relief",
-        f"Tied {w.gather:g} mm behind (d), a bundle a board; from there {w.to_board:g} mm to the board",
+        f"Tied {w.gather:g} mm behind (d), a bundle a board; from there {w.to_board:g} mm to the board, by "
+        "the clamp on its plate (scene wiring)",
         "Number both ends of every lead; colours after IEC 60757",
     ]
 

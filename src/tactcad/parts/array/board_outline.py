@@ -18,13 +18,12 @@ from tactcad.design.sensing import MULTIPLEXERS
 
 from ..bought.electronic_parts import CARD_SIGNALS, CONTROLLER_SIGNALS, converter_of
 from .layout import Layout
-from .leads import channels_of
 
 Place = tuple[float, float]
 
 THICKNESS = 1.6  # mm; chosen: what every board house has in stock
 PITCH = 2.54  # of the headers' pins, mm
-HOLE, AT_CORNER = 3.2, 4.0  # mm: a hole for M3 (ISO 273, fine), from both edges of its corner
+HOLE, AT_CORNER = 3.4, 4.0  # mm: a hole for M3 (ISO 273, medium), from both edges of its corner
 LEADS_FROM_EDGE = 10.0  # mm, the lead connector's pins from the upper edge: before them are the ties' holes
 CARD_FROM_EDGE = 5.0  # mm, the other connector's pins from the lower edge: their names are printed below
 HIGHEST = 8.5  # mm, pin headers: insulator 2.54 and pins of 6; the foil resistors are 8.3
@@ -50,6 +49,12 @@ class BoardOutline:
     connector_direction: Place
     highest: float
     lowest: float
+
+
+def channels_of(layout: Layout) -> int:
+    """Of a board: of its multiplexer, or of the converter that takes the bridges themselves."""
+    converter = converter_of(layout.design)
+    return converter.inputs if converter else MULTIPLEXERS[layout.design.readout.multiplexer].channels
 
 
 def lead_pins(layout: Layout) -> int:

@@ -1,22 +1,23 @@
-"""Boards and leads: which element is read by which board, and the way of each element's leads: from the
-terminal on the floor of its wire recess to the rear end, to the tie around the leads of its board, to the
-board.
+"""Boards and leads: which element is read by which board, where that stands beside the array on its back, and
+the way of each element's leads: from the terminal on the floor of its wire recess to the rear end, to the tie
+around the leads of its board, to the clamp on the board's plate, to the board's socket.
 
-    gauge           recess                          rear end      tie           connector
-    =====----.                                                    .-----------[]
+    gauge           recess                          rear end      tie       clamp   connector
+    =====----.                                                    .---------[##]----[]
              |  o_________///bonded: strain relief ____________.'
     hinge       terminal                            gather          to board
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from math import ceil, dist
+from dataclasses import dataclass, replace
+from math import ceil, dist, hypot, sqrt
 
-from tactcad.design.sensing import MULTIPLEXERS, WIRES
+from tactcad.design.sensing import WIRES
 
-from ..bought.electronic_parts import converter_of
 from ..language.description import Vector
+from .board_outline import WIDTH, channels_of
+from .board_plate import CLAMP_AHEAD, EDGE, PLATE, PLATE_AHEAD, socket_top
 from .layout import ElementPlace, Layout
 
 # Codes of IEC 60757. Red and white are both soldered to the gauge's first tab, black to its second, as in
@@ -24,30 +25,79 @@ from .layout import ElementPlace, Layout
 COLOURS = {"three-wire": ("RD", "WH", "BK"), "two-wire": ("RD", "BK")}
 AHEAD_OF_LEADS = 0.5  # terminals behind the recess's wall, mm; chosen: a tool to press them down
 WHOLE = 5.0  # leads are cut to whole steps of so many mm; chosen: what a rule is read to
+BESIDE = 10.0  # mm between boards, and from the array to a plate; chosen: fingers
+LAST = hypot(CLAMP_AHEAD, socket_top() - PLATE)  # mm from the clamp to the socket's tails
+NEAR = 300.0  # mm; chosen: boards stand within a hand's reach, and what leads are longer hangs in a loop
 
 
 @dataclass(frozen=True)
 class LeadRoute:
-    """The way of one element's leads, mm in the scene's frame, and what each is cut to."""
+    """The way of one element's leads, mm in the array's frame, what hangs in a loop, and what each is cut
+    to."""
 
     place: ElementPlace
     points: tuple[Vector, ...]
+    loop: float
     cut: float
 
     @property
     def length(self) -> float:
         """mm, without slack."""
-        return sum(dist(a, b) for a, b in zip(self.points, self.points[1:]))
+        return self.loop + sum(dist(a, b) for a, b in zip(self.points, self.points[1:]))
 
 
 def lead_routes(layout: Layout) -> tuple[LeadRoute, ...]:
     """Every element's leads, by number."""
-    found = [_route(layout, board, place) for board in boards(layout) for place in board.places]
+    stood = zip(boards(layout), stands(layout))
+    found = [_route(layout, board, stand, place) for board, stand in stood for place in board.places]
     return tuple(sorted(found, key=lambda route: route.place.number))
 
 
-def _route(layout: Layout, board: ReadBoard, place: ElementPlace) -> LeadRoute:
-    d, side = layout.design, 1.0 if place.row == 1 else -1.0
+@dataclass(frozen=True)
+class BoardStand:
+    """Where a board's lead connector has its middle beside the array, mm in the array's frame: |x|, y; on the
+    side of row one (1) or row two (-1)."""
+
+    side: float
+    x: float
+    y: float
+
+
+def stands(layout: Layout) -> tuple[BoardStand, ...]:
+    """Of every board, by number: a row's boards side by side along it, about the middle of their elements, so
+    far off that the way from tie to connector is wiring.to_board."""
+    w, found = layout.design.wiring, []
+    along = min(w.to_board, NEAR) - LAST
+    run = sqrt(max(along**2 - _drop(layout) ** 2, 0.0))
+    x = layout.rear_end + w.gather + run + CLAMP_AHEAD
+    for row, side in ((1, 1.0), (2, -1.0)):
+        own = [b for b in boards(layout) if b.places[0].row == row]
+        ends = [p.y for b in own for p in (b.places[0], b.places[-1])]
+        for n in range(len(own)):
+            off = (n - (len(own) - 1) / 2) * (WIDTH + 2 * EDGE + BESIDE)
+            found.append(BoardStand(side, round(x, 6), round((min(ends) + max(ends)) / 2 + off, 6)))
+    return tuple(found)
+
+
+def least_to_board(layout: Layout) -> float:
+    """mm: no board's plate stands over the array, and the tie is before it."""
+    over = layout.carrier_length / 2 + BESIDE - layout.rear_end - layout.design.wiring.gather
+    least = LAST + hypot(max(over, 0.0) + PLATE_AHEAD - CLAMP_AHEAD, _drop(layout))
+    return ceil(10 * least - 1e-6) / 10
+
+
+def _drop(layout: Layout) -> float:
+    """From the leads in their recess to the clamp's groove, mm; the array lies on its back."""
+    return carrier_top(layout) - PLATE - layout.design.element.recess_depth
+
+
+def carrier_top(layout: Layout) -> float:
+    """z of the bench on which the array lies on its back, mm."""
+    return round(layout.carrier_bottom + layout.design.clamp.carrier_thickness, 9)
+
+
+def _route(layout: Layout, board: ReadBoard, stand: BoardStand, place: ElementPlace) -> LeadRoute:
+    d, side = layout.design, stand.side
     terminal, recess = layout.recess_start + AHEAD_OF_LEADS, d.element.recess_depth
     middle = (board.places[0].y + board.places[-1].y) / 2
     tie = layout.rear_end + d.wiring.gather
@@ -55,10 +105,11 @@ def _route(layout: Layout, board: ReadBoard, place: ElementPlace) -> LeadRoute:
         (side * terminal, place.y, recess),
         (side * layout.rear_end, place.y, recess),
         (side * tie, middle, recess),
-        (side * (tie + d.wiring.to_board), middle, recess),
+        (side * (stand.x - CLAMP_AHEAD), stand.y, carrier_top(layout) - PLATE),
+        (side * stand.x, stand.y, carrier_top(layout) - socket_top()),
     )
-    way = LeadRoute(place, points, 0.0).length
-    return LeadRoute(place, points, WHOLE * ceil(way * (1 + d.wiring.slack) / WHOLE - 1e-9))
+    way = LeadRoute(place, points, max(0.0, d.wiring.to_board - NEAR), 0.0)
+    return replace(way, cut=WHOLE * ceil(way.length * (1 + d.wiring.slack) / WHOLE - 1e-9))
 
 
 def recess_length(layout: Layout) -> float:
@@ -92,12 +143,6 @@ class ReadBoard:
 
     number: int
     places: tuple[ElementPlace, ...]
-
-
-def channels_of(layout: Layout) -> int:
-    """Of a board: of its multiplexer, or of the converter that takes the bridges themselves."""
-    converter = converter_of(layout.design)
-    return converter.inputs if converter else MULTIPLEXERS[layout.design.readout.multiplexer].channels
 
 
 def boards(layout: Layout) -> tuple[ReadBoard, ...]:

@@ -4,8 +4,9 @@ leads, and the boards' parts; what the guides use up. They are rows of data/supp
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
+from math import ceil
 
 from tactcad.design.materials import family
 from tactcad.design.sensing import AMPLIFIERS, COMPLETIONS, MULTIPLEXERS, SWITCHES, WIRES
@@ -23,18 +24,19 @@ from ..bought.electronic_parts import (
 )
 from ..bought.supply import Supply, board_spares, bonded_spares
 from ..language.tables import rows
-from .board_outline import board_outline, card_pins, lead_pins
+from .board_outline import board_outline, card_pins, channels_of, lead_pins
+from .board_plate import BRAID, bundle
 from .converter_figures import ANALOGUE_OHM, bridge_supply, supply_ohm
 from .layout import Layout
-from .leads import boards, channels_of, colours, lead_routes, leads
+from .leads import boards, colours, lead_routes, leads
 
 COLOUR_NAMES = {"RD": "red", "WH": "white", "BK": "black"}
 ROWS = rows(__file__, "supplies")
 # Spares of so many.
-SPARES: dict[str, Callable[[int], int]] = {"": lambda _: 0, "bonded": bonded_spares, "board": board_spares}
+SPARES: dict[str, Callable[[float], int]] = {"": lambda _: 0, "bonded": bonded_spares, "board": board_spares}
 
 
-def supplies(group: str, counts: dict[str, int], **figures: object) -> Iterator[Supply]:
+def supplies(group: str, counts: Mapping[str, float], **figures: object) -> Iterator[Supply]:
     """The rows of a group: quantities from `counts` by what is counted, texts with these figures."""
     for row in (row for row in ROWS if row["group"] == group):
         said = {name: text.format(**figures) for name, text in row.items()}
@@ -130,6 +132,16 @@ def electronic_supplies(layout: Layout) -> tuple[Supply, ...]:
     gain = None if converter else gain_resistance(d)
     set_by = () if gain is None else supplies("gain", {"boards": count}, ohm=gain, code=value_code(gain))
     return (*completion, *lead_supplies(layout), *fitted, *set_by)
+
+
+def wiring_supplies(layout: Layout) -> tuple[Supply, ...]:
+    """What the scene of the wiring uses up beside the leads: braid and wire as long as each board's."""
+    d, count = layout.design, len(boards(layout))
+    metres = ceil(10 * count * max(route.cut for route in lead_routes(layout)) * 1e-3) / 10
+    outer = bundle(d, channels_of(layout) * leads(layout))
+    counts = {"boards": count, "braid": metres, "array wire": metres}
+    sizes = {"bore": ceil(outer - 2 * BRAID), "tube": ceil(1.5 * outer)}
+    return tuple(supplies("wiring", counts, screw=d.clamp.screw, **sizes))
 
 
 def wire_metres(layout: Layout) -> float:

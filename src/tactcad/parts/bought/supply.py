@@ -40,12 +40,12 @@ def spare_elements(count: int) -> int:
     return ceil(count / LOST_IN)
 
 
-def bonded_spares(n: int) -> int:
+def bonded_spares(n: float) -> int:
     """Spares of n that are bonded or soldered to elements: one in five, at least one; chosen: the paper lost
     one of ten, and a second trial is likely."""
     return max(1, ceil(n / 5))
 
 
-def board_spares(n: int) -> int:
+def board_spares(n: float) -> int:
     """Spares of n that are soldered on boards: one in ten, at least one; chosen: usual practice."""
     return max(1, ceil(n / 10))

@@ -303,7 +303,9 @@ def stage_fixed(stage: Stage) -> Part:
         colour="#3f4650",
         purchase=Purchase(
             f"crossed roller stage {stage.size:g} x {stage.size:g} x {stage.height:g} mm, "
-            f"travel +-{stage.travel:g} mm, M4 at {2 * stage.hole:g} x {2 * stage.hole:g}",
+            f"travel +-{stage.travel:g} mm, M4 at {2 * stage.hole:g} x {2 * stage.hole:g}, screwed down from "
+            "its slideway, two screws at each end of its travel"
+            + ("" if stage.verified else "; no maker's drawing read: compare size, holes and travel"),
             manufacturer=stage.maker,
             mpn=stage.part_no,
             alternates="any stage of that travel and hole pattern",

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 from functools import wraps
-from math import ceil, floor, log10
+from math import ceil, dist, floor, log10, sqrt
 from typing import Any
 
 from tactcad.design.sensing import AMPLIFIERS, MULTIPLEXERS, SWITCHES, WIRES, Readout, StrainGauge, Wiring
@@ -14,7 +14,16 @@ from tactcad.design.tree import Design
 from ..array.bridge_figures import bridge_signal, heating, imbalance, sample_spacing, settling_time
 from ..array.hinge_section import design_readout
 from ..array.layout import Layout
-from ..array.leads import AHEAD_OF_LEADS, WHOLE, boards, lead_routes, longest_lead_resistance, recess_length
+from ..array.leads import (
+    AHEAD_OF_LEADS,
+    LAST,
+    WHOLE,
+    boards,
+    lead_routes,
+    least_to_board,
+    longest_lead_resistance,
+    recess_length,
+)
 from ..bought.electronic_parts import completion_resistance, completion_tolerance, converter_of
 from ..language.finding import SAME, Finding
 from .gauge_rules import lead
@@ -282,9 +291,14 @@ def _causes(layout: Layout, arm: float) -> Iterator[_Cause]:
 def _shorter(layout: Layout, share: float) -> str:
     """Leads cut to a share of their length; they are cut to whole steps."""
     w, longest = layout.design.wiring, max(lead_routes(layout), key=lambda route: route.cut)
-    most = w.to_board - longest.length + (share * longest.cut - WHOLE) / (1 + w.slack)
+    less = longest.length - (share * longest.cut - WHOLE) / (1 + w.slack)
+    most = w.to_board - less
+    if less > longest.loop:  # then the stretch from tie to clamp, which may run aslant
+        tie, clamp = longest.points[2:4]
+        run = max(dist(tie, clamp) - (less - longest.loop), 0.0)
+        most = LAST + sqrt(max(run**2 - (clamp[1] - tie[1]) ** 2, 0.0))
     three = 'readout.connection = "three-wire"'
-    return f"at most {floor(most)} mm, or {three}" if most >= 1 else three
+    return f"at most {floor(most)} mm, or {three}" if most >= least_to_board(layout) else three
 
 
 def _too_much_gain(design: Design, said: str, share: float) -> Finding:

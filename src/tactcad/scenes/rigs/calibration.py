@@ -125,17 +125,15 @@ def _stages(b: Builder, rig: StandLayout, dx: float, dy: float) -> str:
     t, half = stage.plate, stage.size / 2
     below, at = STAND, (0.0, 0.0)
     stages: list[tuple[str, ...]] = []
-    fixings: list[list[tuple[int, str]]] = []
+    seats: list[
+        tuple[str, str, Vector]
+    ] = []  # fixed half, what it lies on, where its threads have their middle
     for level, (axis, out, side) in enumerate((("x", OUT_OF_X, (-1, 0)), ("y", AGAINST_Y, (0, -1)))):
         z = 2 * t * level
         b.group(None if axis == "x" else "stage-x")
         low = b.place("SF", fixed, (*at, z))
         b.meet(below, low)
-        screws = []
-        for sx, sy in CORNERS:
-            place = (at[0] + sx * stage.hole, at[1] + sy * stage.hole, z + UNDER)
-            name = b.screw(THREAD, LENGTH, place, (0, 0, -1), low, below)
-            screws.append((sx if axis == "x" else sy, name))
+        seats.append((low, below, (*at, z + UNDER)))
         micrometer = b.place("MM", head, (at[0] + side[0] * half, at[1] + side[1] * half, z + t / 2), out)
         b.meet(low, micrometer)
         at = (dx, 0.0) if axis == "x" else (dx, dy)
@@ -143,9 +141,21 @@ def _stages(b: Builder, rig: StandLayout, dx: float, dy: float) -> str:
         high = b.place("SM", moving, (*at, z + t))
         b.meet(low, high)
         stages.append((low, high, micrometer))
-        fixings.append(screws)
         below = high
+
+    def fixed_by(level: int) -> list[tuple[int, str]]:
+        """Screws of a stage, each with the side along its travel that it is on."""
+        low, on, (x, y, z) = seats[level]
+        screws = []
+        for sx, sy in CORNERS:
+            place = (x + sx * stage.hole, y + sy * stage.hole, z)
+            screws.append(((sx, sy)[level], b.screw(THREAD, LENGTH, place, (0, 0, -1), low, on)))
+        return screws
+
+    b.group("stage-x")
+    upper_fixings = fixed_by(1)  # first on the bench, so first by number
     b.group(None)
+    fixings = [fixed_by(0), upper_fixings]
     (x_fixed, x_moving, x_micrometer), upper = stages
     on_x, on_base = ([name for _, name in screws] for screws in reversed(fixings))
     b.step(

@@ -1,0 +1,181 @@
+"""Wiring: the array on its back, a board on its plate beside each row, the leads from one to the other; the
+socket on the leads is plugged last, and is pulled off the same way."""
+
+from __future__ import annotations
+
+from tactcad.design.tree import Design
+from tactcad.parts.array.board_outline import board_outline, channels_of, lead_pins
+from tactcad.parts.array.board_plate import (
+    BOARD_SCREW,
+    CLAMP,
+    CLAMP_AHEAD,
+    CLAMP_SCREW,
+    CLAMP_SCREW_X,
+    FLATS,
+    INSULATOR,
+    PLATE,
+    STAND_OFF,
+    THREAD,
+    UNPLUGGED,
+    board_plate,
+    fitted_board,
+    lead_clamp,
+    lead_socket,
+    stand_off,
+)
+from tactcad.parts.array.layout import Layout
+from tactcad.parts.array.leads import BoardStand, carrier_top, leads, stands
+from tactcad.parts.array.supplies import wiring_supplies
+from tactcad.parts.language.description import Vector, vector
+
+from ..builder import Builder
+from ..rig import Rig, none
+from ..scene import DOWN, REST, STILL, Move, Need, Pose, Rotation, Scene
+from .array import array
+
+# A board's frame, and its clamp's: the edge with the leads towards the array.
+BOARD: dict[float, Rotation] = {
+    1.0: ((0, -1, 0), (1, 0, 0), (0, 0, 1)),
+    -1.0: ((0, 1, 0), (-1, 0, 0), (0, 0, 1)),
+}
+BAR: dict[float, Rotation] = {
+    1.0: ((0, 0, 1), (1, 0, 0), (0, 1, 0)),
+    -1.0: ((0, 0, -1), (-1, 0, 0), (0, 1, 0)),
+}
+PARKED = (
+    14.0  # mm before its header a socket lies on the plate while its leads are soldered: clear of the clamp
+)
+LIFTED = 40.0  # mm that what comes from above starts over its place; chosen: fingers
+SOLDERING = "soldering iron with a 0.4 mm tip, temperature controlled"
+
+
+def wiring(design: Design, pose: Pose = REST) -> Scene:
+    """Scene `wiring`, on the bench at z = 0; it has no pose but rest."""
+    layout, whole = Layout(design), array(design)
+    outline, pins = board_outline(layout), lead_pins(layout)
+    stood = stands(layout)
+    b = Builder()
+    b.supplies += wiring_supplies(layout)
+    level = PLATE + STAND_OFF
+
+    def at(stand: BoardStand, x: float, y: float, z: float) -> Vector:
+        """A place on a board, from its lead connector: x along that, y towards the array."""
+        return vector((stand.side * (stand.x - y), -stand.y + stand.side * x, z))
+
+    def corner(stand: BoardStand, z: float) -> Vector:
+        return at(stand, -outline.connector[0], -outline.connector[1], z)
+
+    plates = [b.place("BH", board_plate(design, outline), corner(s, 0.0), BOARD[s.side]) for s in stood]
+    b.step(
+        "Board plates",
+        (0, 0, 0),
+        "Lay a board plate on the bench for each board, at the side of the row that it reads, its edge "
+        "with the lead clamp's two threads towards the array's place.",
+    )
+    screws: list[tuple[BoardStand, str, Vector]] = []
+    for stand, plate in zip(stood, plates):
+        for x, y, _ in outline.holes:
+            where = at(stand, x - outline.connector[0], y - outline.connector[1], PLATE)
+            name = b.place("BS", stand_off(), where)
+            b.meet(name, plate, "thread")
+            screws.append((stand, name, where))
+    b.step(
+        "BoardStand-offs",
+        (0, 0, 30),
+        f"Turn four stand-offs into each plate until they lie on it, and a little further by a {FLATS:g} mm "
+        "spanner.",
+        tools=(f"spanner {FLATS:g} mm",),
+    )
+    fitted = [b.place("A", fitted_board(design, outline), corner(s, level), BOARD[s.side]) for s in stood]
+    names = dict(zip(stood, fitted))
+    for stand, name, where in screws:
+        b.meet(names[stand], name)
+        under = vector((*where[:2], level + outline.thickness))
+        b.screw(THREAD, BOARD_SCREW, under, (0, 0, -1), names[stand], name)
+    b.step(
+        "Boards",
+        (0, 0, 60),
+        "Lay each board, its parts soldered and its flux washed off, on its stand-offs, J2 towards the "
+        "array's place, and screw it down crosswise. Plug the cable to card or controller on its J1, the "
+        "other end still free.",
+    )
+    b.subassembly(whole, DOWN, (0, 0, carrier_top(layout)))
+    b.step(
+        "Array on its back",
+        (0, 0, 60),
+        "Lay the finished array on the bench on its carrier, pads up, row 1 to the right (+x): each row's "
+        "leads come out towards its board. Nothing may lie on the pads.",
+        order=[Move(tuple(p.designator for p in whole.placements), (0.0, 0.0, LIFTED), (STILL,))],
+        sets=("array on the bench: along z, turn about x and y",),
+        leaves=("array: along x and y, turn about z, by the leads' slack",),
+    )
+    plug = level + outline.thickness + INSULATOR
+    sockets = {s: b.place("XS", lead_socket(pins), at(s, 0, 0, plug), BOARD[s.side]) for s in stood}
+    parked = {s: vector((-s.side * PARKED, 0.0, PLATE - plug)) for s in stood}
+    over = {s: vector((*parked[s][:2], UNPLUGGED)) for s in stood}
+    b.step(
+        "Leads to their socket",
+        (0, 0, 90),
+        f"Push the braid over each board's leads up to the rear ends and tie both, {design.wiring.gather:g} "
+        "mm behind these. Lay the board's socket on its plate before the board, tails towards the array, a "
+        "sleeve on every lead. Solder each lead to the tail that harness.csv gives it, the braid and the "
+        "wire from the array's metal to the last two, and shrink the sleeves over the joints. Measure at the "
+        "socket: from red to black a gauge, from black to the array's metal nothing.",
+        order=[Move((name,), vector((*parked[s][:2], LIFTED)), (parked[s],)) for s, name in sockets.items()],
+        tools=(SOLDERING, "ohmmeter, four wires, 0.01 ohm"),
+        sets=("leads in their socket: all, by solder",),
+        leaves=("sockets: lie loose on their plates",),
+        needs=(Need((*fitted,), "leads are as long as the way to their board"),),
+    )
+    for stand, plate in zip(stood, plates):
+        middle = at(stand, 0.0, CLAMP_AHEAD + CLAMP[1] / 2, PLATE)
+        origin = vector((middle[0], middle[1], PLATE))
+        bar = b.place("LC", lead_clamp(design, channels_of(layout) * leads(layout)), origin, BAR[stand.side])
+        b.meet(bar, plate)
+        for side in (-1, 1):
+            under = at(stand, side * CLAMP_SCREW_X, CLAMP_AHEAD, PLATE + CLAMP[2])
+            b.screw(THREAD, CLAMP_SCREW, under, (0, 0, -1), bar, plate)
+    b.step(
+        "Lead clamps",
+        (0, 0, 60),
+        "Shrink a sleeve over each bundle where it is clamped, lay it on the plate between the two threads, "
+        "and screw the clamp over it, its groove on the sleeve. Leave the slack between clamp and socket, in "
+        "a loop that lets the socket be lifted off. Pull at the bundle with two fingers: nothing may move "
+        "behind the clamp.",
+        needs=(Need(tuple(sockets.values()), "joints are soldered before the bundle is held"),),
+    )
+    plugging: list[Move | tuple[str, ...]] = []
+    for s, name in sockets.items():
+        up = vector((0.0, 0.0, UNPLUGGED))
+        plugging += [
+            Move((name,), parked[s], (over[s], up, STILL)),
+            Move((name,), STILL, (up,)),
+            Move((name,), up, (STILL,)),
+        ]
+    b.step(
+        "Plug the leads",
+        (0, 0, 0),
+        "Last of all, supplies off: plug each socket on its board's J2, first pin to first pin; pull it off "
+        "and plug it again, which shows that the loop is long enough. So the array is unplugged: supplies "
+        f"off, the socket straight up by both ends, {UNPLUGGED:g} mm, then the two screws of the lead clamp.",
+        order=plugging,
+        sets=("sockets on J2: all, by the header's pins",),
+        leaves=("sockets: up, by hand",),
+        needs=(
+            Need(tuple(p.designator for p in b.placements if p.designator.startswith("LC")), "no pull on J2"),
+        ),
+    )
+    return b.scene("wiring", cover=[p.designator for p in whole.placements if p.designator in whole.cover])
+
+
+RIG = Rig(
+    name="wiring",
+    tables=(),
+    make=wiring,
+    poses=none,
+    under_sensor=none,
+    rules=(),
+    deflections=lambda _design: iter(()),
+    requirements=lambda _layout, _known: [],  # its screws only
+    checks=(),
+)
