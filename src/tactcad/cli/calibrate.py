@@ -28,7 +28,9 @@ EXAMPLES = """\
 FILE is CSV with the columns element, run, displacement, force, signal: the stage's displacement, in mm, N
 and V; or with the unit in the name: displacement_um, force_mN, signal_mV. Lines that start with # are
 comments; semicolons or tabs between columns, and decimal commas with them, are read too. With a column
-time_s a displacement may be read any number of times, and where it returns later the drift is estimated."""
+time_s a displacement may be read any number of times, and where it returns later the drift is estimated.
+Of a planar design (--design): element, run, fx, fy, fz (N, fz down on the pad), bx, by, bz (mT), and sink
+(mm) to measure K; every run along one axis, two at least along each."""
 
 
 def configure(parser: argparse.ArgumentParser) -> None:

@@ -22,7 +22,7 @@ EXAMPLES = """\
 FILE is CSV with the columns load, element, signal (N and V, or load_mN, signal_mV), and where there are
 several, run and sample: every element at every load. With a column time_s a load may be read any number of
 times, and where it returns later the drift is estimated. The calibration is the file of `tactcad calibrate`
-(--out, or --json)."""
+(--out, or --json). Of a planar design: load, element, bx, by, bz (mT), without load too."""
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -69,6 +69,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--nu", type=float, default=None, metavar="NU", help="Poisson's ratio of the layer (default 0.49)"
     )
+    parser.add_argument(
+        "--picture", metavar="FILE.svg", help="of planar designs: draw forces and K_obj over the plane"
+    )
     parser.add_argument("--json", action="store_true", help="print as JSON")
     add_needless_allowance(parser)
 
@@ -91,6 +94,9 @@ def stiffness_rows(args: argparse.Namespace, design: Design) -> int:
 
     from .streams import slow_work
 
+    if args.picture:
+        legal = "a planar design; grasp --out draws the pressure under facing rows"
+        raise InputError("--picture", "does not take designs of this family", value=args.picture, legal=legal)
     if args.coupling is not None and (args.thickness or args.nu) is not None:
         raise InputError("--coupling", "takes the object as springs", legal="without --thickness and --nu")
     known = calibration_file.read(args.calibration)

@@ -3,7 +3,15 @@ three-axis Hall chip (the paper's Figure 1(b))."""
 
 from __future__ import annotations
 
-from tactcad.design.family import Family, FamilyEstimate, FamilyRobot, FamilyStack, Late
+from tactcad.design.family import (
+    Family,
+    FamilyEstimate,
+    FamilyPads,
+    FamilyReadings,
+    FamilyRobot,
+    FamilyStack,
+    Late,
+)
 
 from .cell_tables import PlanarDesign
 
@@ -34,9 +42,15 @@ FAMILY = Family(
         figures=Late(f"{HERE}.cell_array:figures"),
         elements=Late("tactcad.scenes.rig:none"),
     ),
-    pads=None,
+    pads=FamilyPads(
+        places=Late(f"{HERE}.cell_pads:places"),
+        springs=Late(f"{HERE}.cell_pads:springs"),
+        limit=Late(f"{HERE}.cell_pads:limit"),
+    ),
     readout=None,
-    readings=None,
+    readings=FamilyReadings(
+        calibrate=Late(f"{HERE}.cell_commands:calibrate"), stiffness=Late(f"{HERE}.cell_commands:stiffness")
+    ),
     variables=None,
     checks=f"{HERE}.checks",
     robot=FamilyRobot(

@@ -167,6 +167,7 @@ class PlanarRating:
     shear: float = given(Number("", 0, 2, "largest tangential force, a share of the normal one"), 0.3)
     yield_factor: float = given(Number("", 1, 10, "safety against yield of the rated force"), 1.5)
     linearity: float = given(Number("", 0.001, 0.5, "change of K that counts as linear, relative"), 0.05)
+    slip: float = given(Number("", 0.01, 5, "tangential over normal force from which on a pad slips"), 0.5)
 
 
 @dataclass(frozen=True)

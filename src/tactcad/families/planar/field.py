@@ -9,6 +9,7 @@ lengths in mm.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 from math import pi
 
 import numpy as np
@@ -28,18 +29,24 @@ class Magnet:
     remanence: float
 
 
+@lru_cache(maxsize=16)
+def _charges(radius: float) -> tuple[Array, Array, Array]:
+    """x, y and area of the points that stand for a disc of charge, mm and mm2."""
+    q, weight = np.polynomial.legendre.leggauss(RADII)
+    r = radius * (q + 1.0) / 2.0
+    area = (weight * radius / 2.0 * r)[:, None] * np.full(ANGLES, 2.0 * pi / ANGLES)
+    phi = 2.0 * pi * np.arange(ANGLES) / ANGLES
+    return np.multiply.outer(r, np.cos(phi)).ravel(), np.multiply.outer(r, np.sin(phi)).ravel(), area.ravel()
+
+
 def field(magnet: Magnet, at: NDArray) -> NDArray:
     """Field (mT) of a magnet whose lower face's middle is the origin, at points (..., 3)."""
-    q, weight = np.polynomial.legendre.leggauss(RADII)
-    radius = magnet.radius * (q + 1.0) / 2.0
-    area = (weight * magnet.radius / 2.0 * radius)[:, None] * np.full(ANGLES, 2.0 * pi / ANGLES)
-    phi = 2.0 * pi * np.arange(ANGLES) / ANGLES
-    x, y = np.multiply.outer(radius, np.cos(phi)).ravel(), np.multiply.outer(radius, np.sin(phi)).ravel()
+    x, y, area = _charges(magnet.radius)
     total = np.zeros(at.shape, dtype=at.dtype)
     for z, sign in ((magnet.height, 1.0), (0.0, -1.0)):
         d = at[..., None, :] - np.stack([x, y, np.full_like(x, z)], axis=-1)
         distance = np.sqrt((d * d).sum(axis=-1))
-        total += sign * np.einsum("...qi,q->...i", d / distance[..., None] ** 3, area.ravel())
+        total += sign * np.einsum("...qi,q->...i", d / distance[..., None] ** 3, area)
     return 1e3 * magnet.remanence / (4.0 * pi) * total
 
 
@@ -50,8 +57,10 @@ def on_axis(magnet: Magnet, z: float) -> float:
     return 500.0 * magnet.remanence * (far / np.hypot(far, R) - z / np.hypot(z, R))
 
 
-def felt(magnet: Magnet, gap: float, lever: float, motion: NDArray) -> NDArray:
-    """Field at a chip `gap` below a magnet at rest, for island motions (..., 6): mm and rad.
+def felt(
+    magnet: Magnet, gap: float, lever: float, motion: NDArray, beside: tuple[float, float] = (0.0, 0.0)
+) -> NDArray:
+    """Field at a chip `gap` below a magnet at rest and `beside` it, for island motions (..., 6): mm and rad.
 
     The magnet's lower face is `lever` below the island's middle. A turn moves it and tips it; to first
     order of the turn, the field is that of the upright magnet at the chip's place as the magnet sees it,
@@ -60,15 +69,18 @@ def felt(magnet: Magnet, gap: float, lever: float, motion: NDArray) -> NDArray:
     d, a = motion[..., :3], motion[..., 3:]
     arm = np.array([0.0, 0.0, -lever])
     origin = d + np.cross(a, arm)
-    chip = np.array([0.0, 0.0, -gap]) - origin
+    chip = np.array([*beside, -gap]) - origin
     seen = chip - np.cross(a, chip)
     b = field(magnet, seen)
     return b + np.cross(a, b)
 
 
-def sensitivity(magnet: Magnet, gap: float, lever: float) -> tuple[Array, Array]:
+@lru_cache(maxsize=256)
+def sensitivity(
+    magnet: Magnet, gap: float, lever: float, beside: tuple[float, float] = (0.0, 0.0)
+) -> tuple[Array, Array]:
     """Field at rest (mT) and its derivatives by the island's six freedoms, (3, 6): mT/mm and mT/rad, by
     complex steps."""
-    at_rest = felt(magnet, gap, lever, np.zeros(6))
-    slope = felt(magnet, gap, lever, 1j * STEP * np.eye(6)).imag / STEP
+    at_rest = felt(magnet, gap, lever, np.zeros(6), beside)
+    slope = felt(magnet, gap, lever, 1j * STEP * np.eye(6), beside).imag / STEP
     return at_rest, slope.T

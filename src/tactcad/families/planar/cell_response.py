@@ -1,0 +1,74 @@
+"""What every chip feels of forces on the pads: its own cell's, beyond a straight line too, and of others.
+
+Forces as readings give them (N, [..., 3]): along x and y of the design, and z down on the pad. Fields are
+changes from rest, mT.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .cell import wrench
+from .cell_layout import CellPlace, Kind, PlanarLayout
+from .field import felt, sensitivity
+from .sensor import NEIGHBOURS, chip_matrix, magnet_lever
+
+Array = NDArray[np.float64]
+DOWN = np.array([1.0, 1.0, -1.0])  # a pressing force is along -z of the design
+NEWTON = 8  # steps to the root of a cubic that hardly bends
+
+
+def matrix(layout: PlanarLayout, kind: Kind) -> Array:
+    """The field by a force on the cell's own pad about rest, mT/N."""
+    return chip_matrix(layout, kind) * DOWN
+
+
+def bend(layout: PlanarLayout, kind: Kind, force: Array) -> Array:
+    """What the field differs from `matrix` times forces, [n, 3]: the cell stiffens as it sinks, and a
+    magnet's field is no straight line."""
+    inner = force * DOWN
+    load = np.stack([wrench(f, layout.pad_height) for f in np.eye(3)], axis=1)
+    motion = inner @ (kind.cell.compliance @ load).T
+    motion[:, 2] = stiffened(kind, motion[:, 2])
+    gap, lever = layout.design.hall.gap, magnet_lever(layout)
+    change = felt(layout.magnet, gap, lever, motion) - sensitivity(layout.magnet, gap, lever)[0]
+    return np.asarray(change - inner @ chip_matrix(layout, kind).T)
+
+
+def all_bends(layout: PlanarLayout, kinds: Sequence[Kind], force: Array) -> Array:
+    """`bend` of a force (or several, [..., 3]) on each of these kinds of cells, one after another."""
+    out, names = np.empty_like(force), np.array([kind.name for kind in kinds])
+    for kind in layout.used:
+        own = names == kind.name
+        out[own] = bend(layout, kind, force[own].reshape(-1, 3)).reshape(force[own].shape)
+    return out
+
+
+def stiffened(kind: Kind, straight: Array) -> Array:
+    """Sink u of a cell that would sink by `straight` if its stiffness stayed: u (1 + c u^2) = straight."""
+    c, u = kind.cell.stiffening, straight.copy()
+    for _ in range(NEWTON):
+        u -= (u * (1.0 + c * u * u) - straight) / (1.0 + 3.0 * c * u * u)
+    return u
+
+
+def neighbours(layout: PlanarLayout, cells: Sequence[CellPlace]) -> Array:
+    """The field at every chip by forces on the other pads, mT/N, [3 cell, 3 cell]; its own pad left out."""
+    p, gap, lever = layout.design.planar, layout.design.hall.gap, magnet_lever(layout)
+    load = np.stack([wrench(f, layout.pad_height) for f in np.eye(3)], axis=1)
+    moves = {kind.name: kind.cell.compliance @ load * DOWN for kind in layout.used}
+    slopes: dict[tuple[int, int], Array] = {}
+    out = np.zeros((len(cells), 3, len(cells), 3))
+    for i, own in enumerate(cells):
+        for j, other in enumerate(cells):
+            away = (own.column - other.column, own.row - other.row)
+            if away == (0, 0) or max(map(abs, away)) > NEIGHBOURS:
+                continue
+            if away not in slopes:
+                beside = (away[0] * p.pitch, away[1] * p.pitch)
+                slopes[away] = sensitivity(layout.magnet, gap, lever, beside)[1]
+            out[i, :, j] = slopes[away] @ moves[other.kind.name]
+    return out.reshape(3 * len(cells), 3 * len(cells))

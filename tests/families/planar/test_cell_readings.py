@@ -1,0 +1,287 @@
+"""Matrices, forces and K_obj from simulated readings: noise, set-ups, tilted magnets, neighbours."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+
+import cell_labs
+import numpy as np
+import pytest
+from cell_labs import Errors
+
+from tactcad.cli.main import main
+from tactcad.contact.elastic_body import Body
+from tactcad.contact.press import PadsOnBody, pad_stiffness
+from tactcad.families.planar import cell_calibration, cell_grasp, cell_matrices, cell_pads, cell_response
+from tactcad.families.planar.cell_layout import PlanarLayout
+from tactcad.families.planar.sensor import chip_matrix
+from tactcad.parts.designs import load
+
+PLANAR = Path(__file__).parent / "designs" / "planar-array.toml"
+LOADS = np.linspace(0.1, 0.5, 5)
+
+
+@cache
+def small(rows: int = 2, columns: int = 2) -> PlanarLayout:
+    design = load(str(PLANAR))
+    return PlanarLayout(replace(design, planar=replace(design.planar, rows=rows, columns=columns)))
+
+
+@cache
+def lab(seed: int = 3) -> cell_labs.Lab:
+    return cell_labs.made(small(), np.random.default_rng(seed))
+
+
+def calibrated(tmp_path, rng, made, errors, runs=4, sinks=False):
+    file = tmp_path / "calibration.csv"
+    file.write_text(cell_labs.calibration_csv(made, rng, errors, 0.3, runs, sinks))
+    return cell_calibration.calibrate(made.layout, file, 0.95)
+
+
+def known_of(tmp_path, cells):
+    (tmp_path / "cal.csv").write_text(cell_matrices.to_csv(cells))
+    return cell_matrices.read_matrices(str(tmp_path / "cal.csv"))
+
+
+def test_the_simulator_and_the_program_agree_on_a_perfect_array():
+    """Loops of current against discs of charge; bends within what first-order turns leave."""
+    perfect = cell_labs.made(small(), np.random.default_rng(0), spread=0.0)
+    every = cell_response.neighbours(small(), small().elements).reshape(4, 3, 4, 3)
+    for i, e in enumerate(small().elements):
+        own = perfect.straight[i, :, i]
+        assert own == pytest.approx(cell_response.matrix(small(), e.kind), abs=1e-4 * np.abs(own).max())
+        assert own == pytest.approx(chip_matrix(small(), e.kind) * [1, 1, -1], abs=1e-4 * np.abs(own).max())
+        force = np.zeros((1, 4, 3))
+        force[0, i] = (0.05, -0.03, 0.3)
+        off = perfect.fields(force)[0, i] - perfect.rest[i] - own @ force[0, i]
+        assert off == pytest.approx(cell_response.bend(small(), e.kind, force[0, i : i + 1])[0], abs=0.02)
+        for j in range(4):
+            if i != j:
+                limit = 2e-4 * np.abs(perfect.straight[i, :, j]).max()
+                assert perfect.straight[i, :, j] == pytest.approx(every[i, :, j], abs=limit)
+
+
+def test_without_errors_matrix_and_forces_come_back(tmp_path):
+    """Magnets are tilted and off their places all the same."""
+    made, rng = lab(), np.random.default_rng(1)
+    none = Errors((0.0, 0.0, 0.0), 0.0, 0.0, 0.0)
+    cells = calibrated(tmp_path, rng, made, none, runs=2, sinks=True)
+    for i, c in enumerate(cells):
+        assert c.matrix == pytest.approx(chords(made)[i], abs=1e-3 * np.abs(c.matrix).max())
+        assert c.stiffness == pytest.approx(made.stiffness[i], rel=2e-3)
+    known = known_of(tmp_path, cells)
+    force = np.stack(
+        [
+            0.03 * LOADS[:, None] * [1, -1, 2, 0],
+            -0.02 * LOADS[:, None] * [1, 1, 1, 3],
+            cell_labs.pressed(made, LOADS, 3.0),
+        ],
+        axis=-1,
+    )
+    (tmp_path / "grasp.csv").write_text(cell_labs.grasp_csv(made, rng, none, LOADS, force))
+    (read,) = cell_grasp.fields(small(), tmp_path / "grasp.csv")
+    found = cell_grasp.forces(small(), read, known, 0.95)
+    assert found.force.swapaxes(0, 1) == pytest.approx(force, abs=2e-3)
+
+
+def chords(made) -> np.ndarray:
+    """Each cell's field by the largest load along each axis over that load, without the design's bend."""
+    out = np.empty((4, 3, 3))
+    for i, e in enumerate(made.layout.elements):
+        for k, full in enumerate((0.12, 0.12, 0.3)):
+            force = np.zeros((4, 3))
+            force[i, k] = full
+            change = (made.fields(force) - made.rest)[i]
+            out[i, :, k] = (change - cell_response.bend(made.layout, e.kind, force[i : i + 1])[0]) / full
+    return out
+
+
+def covered(tmp_path, draws: int, errors: Errors, seed: int) -> dict[str, float]:
+    """Shares of intervals that hold the truth, and the median half-width over what 1.96 true standard
+    deviations of the forces are."""
+    made, rng = lab(), np.random.default_rng(seed)
+    force = np.zeros((len(LOADS), 4, 3))
+    force[..., 2] = cell_labs.pressed(made, LOADS, 3.0)
+    force[..., 0], force[..., 1] = 0.1 * force[..., 2], -0.05 * force[..., 2]
+    hits: dict[str, list] = {"matrix": [], "force": [], "pair": []}
+    widths, errors_of_force = [], []
+    truth = chords(made)
+    for _ in range(draws):
+        cells = calibrated(tmp_path, rng, made, errors, sinks=True)
+        hits["matrix"] += [np.abs(c.matrix - m) <= c.half_width for c, m in zip(cells, truth)]
+        known = known_of(tmp_path, cells)
+        (tmp_path / "grasp.csv").write_text(cell_labs.grasp_csv(made, rng, errors, LOADS, force))
+        (read,) = cell_grasp.fields(small(), tmp_path / "grasp.csv")
+        found = cell_grasp.forces(small(), read, known, 0.95)
+        off = found.force[:, -1] - force[-1]
+        hits["force"].append(np.abs(off) <= found.half_width[:, -1])
+        errors_of_force.append(off)
+        widths.append(found.half_width[:, -1])
+        around = cell_grasp.by_neighbours(small(), read, found, known, 0.95)
+        hits["pair"] += [i.low <= 3.0 <= i.high for i in around]
+    ideal = 1.96 * np.std(errors_of_force, axis=0)
+    shares = {name: float(np.mean(v)) for name, v in hits.items()}
+    return shares | {"width": float(np.median(np.array(widths) / ideal))}
+
+
+def test_intervals_hold_as_often_as_they_say(tmp_path):
+    """30 draws of four cells of nine entries and three forces; the nightly one has 500 and tighter bounds."""
+    found = covered(tmp_path, 30, Errors(), 11)
+    assert 0.93 <= found["matrix"] <= 0.97 and 0.92 <= found["force"] <= 0.98 and found["pair"] >= 0.92
+    assert found["width"] < 1.3
+
+
+@pytest.mark.nightly
+def test_intervals_of_2000_cells(tmp_path):
+    """500 draws of four cells, a minute: of errors that are each cell's own, and that a run shares."""
+    for errors in (Errors(), Errors(own=2e-3, shared=2e-3)):
+        found = covered(tmp_path, 500, errors, 7)
+        assert 0.93 <= found["matrix"] <= 0.97 and 0.93 <= found["force"] <= 0.97, found
+        assert found["pair"] >= 0.93 and found["width"] < 1.3, found
+
+
+@pytest.fixture(scope="module")
+def bench(tmp_path_factory):
+    """The small design as a file, its calibration, and a grasp in which the last pad is pushed sideways."""
+    folder, rng = tmp_path_factory.mktemp("cells"), np.random.default_rng(2)
+    text = PLANAR.read_text("utf-8").replace("rows = 6", "rows = 2").replace("columns = 6", "columns = 2")
+    (folder / "small.toml").write_text(text.replace('"planar-array"', '"small"'))
+    (folder / "calibration.csv").write_text(cell_labs.calibration_csv(lab(), rng, Errors(), 0.3, sinks=True))
+    force = np.zeros((len(LOADS), 4, 3))
+    force[..., 2] = cell_labs.pressed(lab(), LOADS, 3.0)
+    force[:, 3, 0] = 0.8 * force[:, 3, 2]
+    (folder / "grasp.csv").write_text(cell_labs.grasp_csv(lab(), rng, Errors(), LOADS, force))
+    return folder, force
+
+
+def run(*words) -> int:
+    return main([str(w) for w in words])
+
+
+def test_from_readings_to_a_map(bench, capsys):
+    folder, force = bench
+    design, cal, map_ = (folder / name for name in ("small.toml", "cal.csv", "map.svg"))
+    assert run("calibrate", folder / "calibration.csv", "--design", design, "--out", cal) == 0
+    said = capsys.readouterr().out
+    assert "crosstalk" in said and said.count("measuring") == 2
+    asked = ("stiffness", folder / "grasp.csv", "--calibration", cal, "--design", design)
+    assert run(*asked, "--json", "--picture", map_) == 0
+    (sample,) = json.loads(capsys.readouterr().out)["samples"]
+    assert [c["kind"] for c in sample["cells"]] == ["reference", "measuring", "measuring", "reference"]
+    for i, cell in enumerate(sample["cells"]):
+        last = cell["states"][-1]
+        off = np.abs(np.array(last["force"]) - force[-1, i])
+        assert (off <= 2.0 * np.array(last["half_width"])).all(), cell
+        assert last["slips"] is (i == 3) and last["stopped"] is False
+        assert cell["object"]["low"] <= 3.0 <= cell["object"]["high"]
+    assert sample["combined"]["low"] <= 3.0 <= sample["combined"]["high"]
+    drawn = map_.read_text("utf-8")
+    assert drawn.startswith("<svg")
+    assert run(*asked) == 0
+    assert "slips" in capsys.readouterr().out
+
+
+@pytest.mark.nightly
+def test_a_layer_s_modulus_comes_back(bench, capsys, tmp_path):
+    """Forces by every patch of round pads on the layer; the estimator has squares and few numbers each, whose
+    tables take 15 s."""
+    folder, _ = bench
+    pads, _ = cell_pads.springs(small().design)
+    round_ = replace(pads, length=2.4, width=2.4, disc=True, compliance=pads.compliance.copy())
+    round_.compliance[:, 0, 0] = 1 / lab().stiffness
+    on = PadsOnBody(round_, Body(0.15, 0.49, 6.0))
+    force = np.zeros((len(LOADS), 4, 3))
+    force[..., 2] = [on.press(load=p).force for p in LOADS]
+    rng, design, cal = np.random.default_rng(5), folder / "small.toml", tmp_path / "cal.csv"
+    (tmp_path / "grasp.csv").write_text(cell_labs.grasp_csv(lab(), rng, Errors(), LOADS, force))
+    assert run("calibrate", folder / "calibration.csv", "--design", design, "--out", cal) == 0
+    asked = (
+        "stiffness",
+        tmp_path / "grasp.csv",
+        "--calibration",
+        cal,
+        "--design",
+        design,
+        "--thickness",
+        "6",
+    )
+    capsys.readouterr()
+    assert run(*asked, "--json") == 0
+    (sample,) = json.loads(capsys.readouterr().out)["samples"]
+    modulus = sample["modulus_MPa"]
+    assert modulus["low"] <= 0.15 <= modulus["high"] < 2.0 * modulus["low"], modulus
+    assert sample["touching"] == [1, 2, 3, 4]
+
+
+@pytest.mark.parametrize("thickness", [2.0, 6.0, np.inf])
+def test_a_square_of_a_pad_s_area_is_nearly_as_stiff(thickness):
+    body, side = Body(1.0, 0.49, thickness), cell_pads.side(small().design)
+    square, disc = pad_stiffness(body, side, side), pad_stiffness(body, 2.4, 2.4, disc=True)
+    assert 1.0 <= square / disc < 1.03
+
+
+def changed(text: str, line: int, **cells: str) -> str:
+    """The table with cells of one line changed, by column."""
+    lines = text.splitlines()
+    names, row = lines[0].split(","), lines[line].split(",")
+    for name, value in cells.items():
+        row[names.index(name)] = value
+    return "\n".join([*lines[:line], ",".join(row), *lines[line + 1 :]]) + "\n"
+
+
+@pytest.mark.parametrize(
+    "cells, said",
+    [
+        ({"bz": "51"}, ":6:8: MLX90393 is out of its range"),
+        ({"element": "9"}, ":6:1: design small has no such cell"),
+        ({"fy": "0.1"}, "the loads of run 1 are along no axis"),
+        ({"run": "44"}, "too few loads in run"),
+        ({"fx": "one"}, ":6:3:"),
+    ],
+)
+def test_bad_calibrations_are_refused(bench, tmp_path, capsys, cells, said):
+    folder, _ = bench
+    (tmp_path / "bad.csv").write_text(changed((folder / "calibration.csv").read_text(), 5, **cells))
+    out = tmp_path / "cal.csv"
+    assert run("calibrate", tmp_path / "bad.csv", "--design", folder / "small.toml", "--out", out) == 2
+    assert said in capsys.readouterr().err and not out.exists()
+
+
+def test_signs_and_missing_runs_are_refused(bench, tmp_path, capsys):
+    folder, _ = bench
+    text = (folder / "calibration.csv").read_text()
+    header, *rows = text.splitlines()
+    one = [r for r in rows if r.split(",")[1] not in ("6", "9", "12")]
+    (tmp_path / "one.csv").write_text("\n".join([header, *one]) + "\n")
+    assert run("calibrate", tmp_path / "one.csv", "--design", folder / "small.toml") == 2
+    assert "too few runs along z" in capsys.readouterr().err
+    away = [",".join([*(c := r.split(","))[:2], c[2], c[3], str(-float(c[4])), *c[5:]]) for r in rows]
+    (tmp_path / "away.csv").write_text("\n".join([header, *away]) + "\n")
+    assert run("calibrate", tmp_path / "away.csv", "--design", folder / "small.toml") == 2
+    assert "bz goes against fz" in capsys.readouterr().err
+
+
+def test_bad_grasps_are_refused(bench, tmp_path, capsys):
+    folder, _ = bench
+    design, cal = folder / "small.toml", tmp_path / "cal.csv"
+    assert run("calibrate", folder / "calibration.csv", "--design", design, "--out", cal) == 0
+    header, *rows = (folder / "grasp.csv").read_text().splitlines()
+    for kept, said in (
+        ([r for r in rows if not r.startswith("0,")], "has no reading without load"),
+        (rows[:-1], "element 4 has no reading at load 0.5 N"),
+        ([r for r in rows if r.startswith("0,")], "no load above zero"),
+    ):
+        (tmp_path / "bad.csv").write_text("\n".join([header, *kept]) + "\n")
+        capsys.readouterr()
+        assert run("stiffness", tmp_path / "bad.csv", "--calibration", cal, "--design", design) == 2
+        assert said in capsys.readouterr().err
+    few = "\n".join(cal.read_text().splitlines()[:-1]) + "\n"
+    cal.write_text(few)
+    assert run("stiffness", folder / "grasp.csv", "--calibration", cal, "--design", design) == 2
+    assert "element 4 was not calibrated" in capsys.readouterr().err
+    for option in ("--load-cell", "--run-scatter"):
+        assert run("calibrate", folder / "calibration.csv", "--design", design, option, "0.5") == 2
+        assert f"{option}: does not take designs of this family" in capsys.readouterr().err
