@@ -25,4 +25,5 @@ def solved(deck: str, folder: Path) -> dict[str, float]:
         [NGSPICE, "-b", str(file)], capture_output=True, text=True, timeout=120, check=False
     )
     assert "rror" not in done.stderr + done.stdout, done.stderr + done.stdout
+    assert done.returncode == 0 or "quit 0" not in deck
     return {name: float(value) for name, value in re.findall(r"^(\w+) = (\S+)$", done.stdout, re.MULTILINE)}

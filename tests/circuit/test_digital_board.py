@@ -9,6 +9,7 @@ import re
 from collections import Counter
 from dataclasses import replace
 
+import numpy as np
 import pytest
 from ngspice import solved
 from test_boards import checked, needs_kicad
@@ -23,8 +24,13 @@ from tactcad.circuit.harness import harness_csv
 from tactcad.circuit.kicad_board import board_bytes
 from tactcad.circuit.netlist_files import DIODE, lines_of, wiring
 from tactcad.export.board_files import BILL, bill_csv, nets_in_board
+from tactcad.lab.pads import springs_of
+from tactcad.parts.array.gauge_checks import gauge_checks, volts
 from tactcad.parts.array.layout import Layout
 from tactcad.parts.array.supplies import electronic_supplies
+from tactcad.parts.rigs.bonding_fixture import bonding_rigs
+from tactcad.review.effect import signals
+from tactcad.scenes.rigs import bonding
 
 CHIP = "AD7124-8"
 
@@ -216,6 +222,21 @@ def test_noise_in_a_grasp_is_the_converters():
         for alike in (False, True):
             told = reading_noise(layout, alike) / signal.per_force
             assert told == pytest.approx(found.noise / abs(per_force))
+
+
+def test_every_signal_of_a_converters_design_is_its_bridges():
+    """V/N of reviews, V/mm of pads, mV of the bonding guide: 1.09 V x 2.1/4 a strain, less the leads' 0.23 %.
+    A gauge's zero stays within the input at the highest gain, 4/128 of dR/R less the rated signal."""
+    layout = layout_of()
+    found = digital_readout(layout, CHIP)
+    assert signals(layout.design) == pytest.approx([*found.per_force])
+    per_mm = springs_of(layout.design)[1] / springs_of(variant())[1]
+    assert per_mm == pytest.approx(np.full(10, 1.09 / 270), rel=1e-3)
+    assert volts(layout, 1e-3) == pytest.approx(1.09e-3 / 4, rel=1e-3)
+    checks = gauge_checks(layout)
+    largest = max(found.per_force) * layout.design.rating.force / (1.09 / 4)
+    assert checks.zero == pytest.approx(4 / 128 - largest, rel=0.01)
+    assert re.search(r"permille \(0\.\d+ mV\) at arm 4", bonding.zero(bonding_rigs(layout.design)[0]))
 
 
 def test_the_check_and_the_search_see_the_same_resolution():

@@ -181,4 +181,24 @@ def test_duty_is_offered_where_noise_is_what_is_left():
     one, two = stands(replace(target, base=base))
     told = [bridge_supply(Layout(s.base)) for s in (one, two)]
     assert (one.base.readout.power, two.base.readout.power) == ("continuous", "duty")
-    assert two.smallest_output < 0.75 * one.smallest_output and told[1] > 1.6 * told[0]
+    assert two.smallest_output / told[1] < 0.75 * one.smallest_output / told[0] and told[1] > 1.6 * told[0]
+
+
+@pytest.mark.slow
+def test_duty_is_chosen_where_it_alone_tells_the_force():
+    """With steady temperature and leads 1.09 V tell 0.066 mN in small's room; a duty tells less."""
+
+    def offered(*powers: str) -> Synthesis:
+        own = {"converter": "AD7124-8", "temperature_span": 0.05, "force_resolution": 0.06}
+        readout = replace(target.base.readout, **own)
+        base = replace(
+            target.base, readout=readout, tolerance=replace(target.base.tolerance, zero_drift=1e-8)
+        )
+        return quick(replace(target, base=base).with_("stock.powers", powers), 0.5)
+
+    target = small()
+    assert not offered("continuous").met
+    got = offered("continuous", "duty")
+    assert got.met and got.design.readout.power == "duty" and not list(check_signals(got.design))
+    assert got.design.origin["readout.power"] == "chosen: of the target's stock"
+    assert parse(design_text(got.design), "d") == got.design

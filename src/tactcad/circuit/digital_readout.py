@@ -11,15 +11,22 @@ from __future__ import annotations
 
 import json
 from dataclasses import dataclass
-from math import ceil, hypot
+from math import ceil
 
 import numpy as np
 
 from tactcad.design.sensing import CONVERTERS, Converter
 from tactcad.mechanics import gauge_signal
-from tactcad.mechanics.readout import BOLTZMANN, ROOM, transmission
+from tactcad.mechanics.readout import transmission
 from tactcad.parts.array.bridge_figures import COPPER, zero_drift
-from tactcad.parts.array.converter_figures import RATE, bridge_supply, on_time, settling, warm_up
+from tactcad.parts.array.converter_figures import (
+    RATE,
+    bridge_supply,
+    converter_noise,
+    on_time,
+    settling,
+    warm_up,
+)
 from tactcad.parts.array.hinge_section import design_gauge, hinge_section
 from tactcad.parts.array.layout import ElementPlace, Layout
 from tactcad.parts.array.leads import boards, leads, longest_lead_resistance
@@ -82,9 +89,7 @@ def digital_readout(layout: Layout, name: str) -> DigitalReadout:
     unloaded = volts * (off + two_leads) / 4
     largest = tuple(unloaded + abs(per_strain) * strain for strain in overload)
     gain = max((g for g in part.gains if volts / g >= max(largest)), default=min(part.gains))
-    own = part.noise * (part.noise_gain / gain) * (RATE / part.noise_rate) ** 0.5
-    thermal = (4 * BOLTZMANN * ROOM * d.gauge.resistance * RATE / 2) ** 0.5
-    noise = hypot(own, thermal)
+    noise = converter_noise(layout, part, gain)
     drift = (
         (per_strain * d.gauge.thermal_output * span) ** 2
         + (volts / 4 * 3**0.5 * completion_drift(d) * span) ** 2

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tactcad.design.tree import Design
 from tactcad.mechanics import gauge_signal, readout
 from tactcad.parts.array.bridge_figures import amplified, drift, reading_scatter
 from tactcad.parts.array.hinge_section import design_gauge, design_readout, hinge_section
@@ -15,15 +14,16 @@ from tactcad.parts.array.leads import longest_lead_resistance
 from tactcad.parts.array.stop_gap import overloads
 from tactcad.parts.bought.electronic_parts import completion_tolerance, converter_of
 
-from .digital_readout import DigitalReadout, digital_readout
+from .digital_readout import digital_readout
 
 
 @dataclass(frozen=True)
 class ElementSignal:
     """One element's.
 
-    per_force   V/N behind the amplifier, at no load
-    rated       least and largest output at the rated force, V, of either sign, tolerances at their worst
+    per_force   V/N behind the amplifier, at no load; of a converter at the bridge
+    rated       least and largest output at the rated force, V, of either sign, tolerances at their worst, of
+                an amplifier
     overload    likewise with the stop closed under the overload force
     rated_strain, overload_strain   of the foil at these two
     resolution  N: two standard deviations of a reading, and drift, by the root of their squares
@@ -39,31 +39,23 @@ class ElementSignal:
 
 
 def smallest_output(layout: Layout) -> float:
-    """What the amplifier's output tells from none, V: two standard deviations of a reading, of which the
-    warm-up between its samples' instants is a part, and drift, by the root of their squares. Where a
-    converter reads the bridges, what an amplifier would have to tell for the same strain."""
-    design = layout.design
-    if converter := converter_of(design):
+    """What the amplifier's output tells from none, or the bridge's that a converter reads, V: two standard
+    deviations of a reading, of which the warm-up between its samples' instants is a part, and drift, by the
+    root of their squares."""
+    if converter := converter_of(layout.design):
         found = digital_readout(layout, converter.name)
-        return _behind_amplifier(design, found, float(np.hypot(2 * found.noise, found.drift)))
+        return float(np.hypot(2 * found.noise, found.drift))
     return float(np.hypot(2 * reading_scatter(layout), drift(layout)))
 
 
 def reading_noise(layout: Layout, alike: bool = False) -> float:
-    """Standard deviation of one reading, V, without drift; of a converter's as above.
+    """Standard deviation of one reading, V, without drift.
 
     alike: of readings that the mains and the instant of the samples move alike, as those of one run.
     """
     if converter := converter_of(layout.design):
-        found = digital_readout(layout, converter.name)
-        return _behind_amplifier(layout.design, found, found.noise)
+        return digital_readout(layout, converter.name).noise
     return design_readout(layout.design).averaged_noise if alike else reading_scatter(layout)
-
-
-def _behind_amplifier(design: Design, found: DigitalReadout, volts: float) -> float:
-    """V behind an amplifier for the strain that gives so many V at a bridge that a converter reads."""
-    slope = readout.volts_per_strain(design.gauge.factor, design_readout(design))
-    return float(volts / found.per_strain * slope)
 
 
 def element_signals(layout: Layout) -> list[ElementSignal]:

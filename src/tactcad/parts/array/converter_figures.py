@@ -7,6 +7,9 @@ supply. They are on all the time (readout.power continuous), or once a period (d
 from __future__ import annotations
 
 from dataclasses import replace
+from math import hypot
+
+from tactcad.design.sensing import Converter
 
 from ..bought.electronic_parts import SET_AMPERE, bridge_resistance, nearest_e192, regulator_gives
 from .layout import Layout
@@ -51,6 +54,15 @@ def supply_ohm(layout: Layout) -> float:
 def bridge_supply(layout: Layout) -> float:
     """V, while it is on."""
     return SET_AMPERE * supply_ohm(layout)
+
+
+def converter_noise(layout: Layout, converter: Converter, gain: float) -> float:
+    """Of one result at the bridge, V rms: the converter's own, which is white and grows as the gain falls,
+    and Johnson noise of the bridge up to half the rate."""
+    own = converter.noise * converter.noise_gain / gain * (RATE / converter.noise_rate) ** 0.5
+    from tactcad.mechanics.readout import BOLTZMANN, ROOM
+
+    return hypot(own, (4 * BOLTZMANN * ROOM * layout.design.gauge.resistance * RATE / 2) ** 0.5)
 
 
 def fullest(layout: Layout) -> int:

@@ -94,6 +94,7 @@ def allowed_places(layout: Layout) -> Array:
 
 
 def volts(layout: Layout, change: float) -> float:
-    """Amplifier's output for a relative change of one gauge, V."""
-    own = layout.design.readout
+    """Output of the amplifier, or of the bridge that a converter reads, for a relative change of one gauge,
+    V."""
+    own = design_readout(layout.design)
     return float(own.excitation * own.gain * readout.bridge_output(change))

@@ -9,7 +9,7 @@ from typing import TypeVar
 import numpy as np
 
 from tactcad.design.materials import ALLOYS, OPTIONAL, PROPERTIES, Alloy
-from tactcad.design.sensing import ADC_NOISE, AMPLIFIERS, MULTIPLEXERS, SWITCHES
+from tactcad.design.sensing import ADC_NOISE, AMPLIFIERS, MULTIPLEXERS, SWITCHES, Converter
 from tactcad.design.tree import Design
 from tactcad.mechanics import ladder, validity
 from tactcad.mechanics.gauge_signal import Gauge
@@ -18,7 +18,8 @@ from tactcad.mechanics.readout import ReadOut, sample_noise, transmission
 from tactcad.mechanics.section import HingeSection
 from tactcad.mechanics.validity import Reason
 
-from ..bought.electronic_parts import completion_resistance
+from ..bought.electronic_parts import completion_resistance, converter_of
+from .converter_figures import bridge_supply, converter_noise, converter_supply
 from .layout import ElementPlace, HingeShape, Layout
 from .leads import longest_lead_resistance
 
@@ -99,21 +100,33 @@ def design_gauge(design: Design) -> Gauge:
 
 
 def design_readout(design: Design) -> ReadOut:
-    """The design's bridge, amplifier and converter, with the longest of its leads."""
-    given, lead = design.readout, longest_lead_resistance(Layout(design))
+    """The design's bridge, amplifier and card, with the longest of its leads; or the bridge alone, as a
+    converter takes it."""
+    given, layout = design.readout, Layout(design)
+    converter = converter_of(design)
     left = transmission(
         design.gauge.resistance,
         completion_resistance(design),
-        lead,
-        SWITCHES[given.switch].on_ohm,
+        longest_lead_resistance(layout),
+        0.0 if converter else SWITCHES[given.switch].on_ohm,
         given.connection == "three-wire",
     )
+    if converter:
+        return _by_converter(layout, converter, left)
     noise = derived_noise(design) if given.noise is None else given.noise
     own = {
         name: getattr(given, name) for name in inspect.signature(ReadOut).parameters if hasattr(given, name)
     }
-    converter = ADC_NOISE * given.adc_range if given.adc_noise is None else given.adc_noise
-    return ReadOut(**own | {"noise": noise, "adc_noise": converter, "transmission": left})
+    adc_noise = ADC_NOISE * given.adc_range if given.adc_noise is None else given.adc_noise
+    return ReadOut(**own | {"noise": noise, "adc_noise": adc_noise, "transmission": left})
+
+
+def _by_converter(layout: Layout, converter: Converter, left: float) -> ReadOut:
+    """At its highest gain, which takes least and tells most."""
+    volts, rails, gain = bridge_supply(layout), converter_supply(), max(converter.gains)
+    noise, offset = converter_noise(layout, converter, gain), layout.design.readout.bridge_offset
+    reach = volts / gain
+    return ReadOut(volts, 1.0, rails, -rails, 0.0, offset, noise, converter.bits, reach, 1, 0.0, left)
 
 
 def derived_noise(design: Design) -> float:

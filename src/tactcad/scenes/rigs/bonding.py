@@ -243,12 +243,16 @@ def coat(rig: BondingLayout) -> str:
     )
 
 
+def _millivolts(volts: float) -> str:
+    return f"{1e3 * volts:.0f} mV" if volts >= 0.01 else f"{1e3 * volts:.2g} mV"
+
+
 def zero(rig: BondingLayout) -> str:
     from tactcad.parts.array.gauge_checks import gauge_checks, volts
 
     c = gauge_checks(rig.array)
     arms = ", ".join(
-        f"{1e3 * rise:.2g} permille ({1e3 * volts(rig.array, rise):.0f} mV) at arm {arm:g}"
+        f"{1e3 * rise:.2g} permille ({_millivolts(volts(rig.array, rise))}) at arm {arm:g}"
         for arm, rise in c.rise
     )
     return (

@@ -80,7 +80,7 @@ def wiring(design: Design, pose: Pose = REST) -> Scene:
             b.meet(name, plate, "thread")
             screws.append((stand, name, where))
     b.step(
-        "BoardStand-offs",
+        "Stand-offs",
         (0, 0, 30),
         f"Turn four stand-offs into each plate until they lie on it, and a little further by a {FLATS:g} mm "
         "spanner.",
