@@ -1,4 +1,4 @@
-"""The elements behind the picture of a hard inclusion, against the layer's closed forms and by reciprocity."""
+"""The elements behind the picture of a hard lump, against the layer's closed forms and by reciprocity."""
 
 from __future__ import annotations
 
