@@ -344,6 +344,9 @@ def _clamp(d: Draw) -> None:
     screws, dowels = d.choice(*(c for c in counts if sum(c) * step < 150))
     kinds = ["screw"] * screws + ["dowel"] * dowels
     order = d.random.sample(kinds, len(kinds))
+    if len(d.arms) == 1 or len(d.arms[0]) != len(d.arms[1]):  # blanks: a dowel far from their fronts
+        order.remove("dowel")
+        order.append("dowel")
     least = max(web + widest / 2, head)
     spots = [d.between(least, max(least, 30.0))]
     for _ in order[1:]:
@@ -356,7 +359,9 @@ def _clamp(d: Draw) -> None:
     behind = sqrt(max(web**2 - over**2, 0.0)) + 0.001
     # ten diameters of the leads are bonded in the recess, behind the terminals
     glued = corner + 10 * LEAD + 0.2 + 1.2
-    length = d.number("element.rear_length", max(rear_end, behind + glued), 1.5 * d.deepest)
+    # a blank's dowel is not all too near its front
+    longest = min(1.5 * d.deepest, 15 * max(d.table["holes.dowel_offsets"]))
+    length = d.number("element.rear_length", max(rear_end, behind + glued), longest)
     start = d.number("element.recess_offset", behind, length - glued)
     d.recess = length - start
     d.longest_way = d.table["array.row_pitch"] + max(map(max, d.arms)) + seat + length + d.longest_stack

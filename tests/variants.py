@@ -18,6 +18,19 @@ DROP = object()
 ORIGIN = {"material.youngs_modulus": "paper: 69000 MPa"}
 # A gauge that lies on the floor of the array's slot, between its fillets.
 IN_SLOT = {"gauge.carrier_arm_side": 0.14, "gauge.carrier_body_side": 0.14, "gauge.grid_length": 0.2}
+# One element on ledges of 3 mm under a stop plate of 44; a row of blanks on dowels near their fronts.
+ROCKING_PLATE = {
+    "array.row_arms": [[4.0]],
+    "array.pitch": 24.0,
+    "array.spacer": 21.0,
+    "clamp.mount_pitch_y": 30.0,
+}
+ROCKING_BLANK = {
+    "array.row_arms": [[6.0, 6.0]],
+    "element.rear_length": 150.0,
+    "holes.dowel_offsets": [3.5],
+    "holes.screw_offsets": [9.1],
+}
 BARE_TEXT = (HARDWARE / "macro-array.toml").read_text("utf-8").split("\n[origin]\n")[
     0
 ] + '\n[origin]\n"material.youngs_modulus" = "paper: 69000 MPa"\n'

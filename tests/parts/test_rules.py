@@ -10,7 +10,7 @@ from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
 from sound_designs import sound_designs
 from traced_parts import asked_parts, unnamed
-from variants import DROP, IN_SLOT, ORIGIN, table, variant
+from variants import DROP, IN_SLOT, ORIGIN, ROCKING_BLANK, ROCKING_PLATE, table, variant
 
 from tactcad.design.family import section_types
 from tactcad.design.load import from_table, names, paths
@@ -271,9 +271,10 @@ WITNESSES = {
             "clamp.end_plate_thickness",
         ),
     ],
+    "blanks_lie_firmly": [(ROCKING_BLANK, "holes.dowel_offsets")],
     "boards_stand_clear": [
         ({"wiring.to_board": 48.0}, "wiring.to_board"),
-        ({"wiring.to_board": 60.0, "clamp.carrier_margin": 20.0}, "wiring.to_board"),
+        ({"wiring.to_board": 54.0, "clamp.carrier_margin": 20.0}, "wiring.to_board"),
     ],
     "carrier_can_be_screwed": [
         ({"clamp.mount_thread": "M5"}, "clamp.carrier_thickness"),
@@ -285,7 +286,7 @@ WITNESSES = {
         ({"element.rear_height": 20.0}, "clamp.stop_plate_thickness"),
         ({"clamp.stop_plate_thickness": 0.5, "rating.overload_force": 1.0}, "clamp.stop_plate_thickness"),
         ({**ONE, **THIN}, "clamp.screw"),
-        ({**ONE, "array.pitch": 20.0, "array.spacer": 17.0, "clamp.mount_pitch_y": 30.0}, "sheet.thickness"),
+        (ROCKING_PLATE, "sheet.thickness"),
     ],
     "carrier_holes_apart": [
         ({"clamp.carrier_screw_offset": 20.0}, "clamp.carrier_screw_offset"),

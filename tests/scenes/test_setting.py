@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import pytest
-from variants import variant
+from variants import ROCKING_BLANK, ROCKING_PLATE, variant
 
 from tactcad.checks.on_solids.interference import check_interference
-from tactcad.checks.on_solids.steps import check_steps
+from tactcad.checks.on_solids.steps import Trial, check_steps
 from tactcad.checks.on_solids.tools import check_tools
 from tactcad.parts.array.layout import Layout
 from tactcad.parts.bought.standard_parts import dowel_limits
 from tactcad.parts.rigs.setting_fixture import STEP, SettingLayout, setting_fixture
+from tactcad.parts.rules import broken_rules
 from tactcad.scenes import make_scene, scene_names
 from tactcad.scenes.bom import bom_rows
 from tactcad.solids.build import build
@@ -43,6 +44,24 @@ def test_the_stack_stands_in_it_and_its_screws_are_reached(rows):
     assert all(frozenset((plate, "FX1")) in met for plate in ("EP1", "EP2"))
     blanks = [p.designator for p in scene.placements if p.designator.startswith("BL")]
     assert all(frozenset((blank, "FS1")) in met for blank in blanks)
+
+
+@pytest.mark.cad
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("rocks", "scene", "lies"),
+    [
+        (ROCKING_PLATE, "array", {"sheet.thickness": 3.15, "array.spacer": 20.85}),
+        (ROCKING_BLANK, "setting", {"holes.dowel_offsets": [9.1], "holes.screw_offsets": [20.0]}),
+    ],
+)
+def test_what_rules_refuse_the_check_of_steps_finds_rocking(rocks, scene, lies):
+    """And what they call legal, nearly at the limit, it lets pass."""
+    for changes, free in ((rocks, True), (rocks | lies, False)):
+        made = make_scene(variant(changes), scene)
+        trial = Trial(made, {p.part_no: build(p) for p in made.parts}, {})
+        assert any("turn about" in f.message for f in trial.freedoms()) == free
+        assert bool(broken_rules(variant(changes))) == free
 
 
 def test_every_design_has_it_in_bill_and_guide():

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
+from dataclasses import replace
 from math import inf
 from typing import TYPE_CHECKING
 
@@ -128,7 +129,7 @@ def _number(where: str, text: str) -> float:
 
 
 def as_json(done: PressedArray, design: str) -> object:
-    """The document of --json: mm, N, V, degrees."""
+    """The document of --json: mm, N, degrees, and signal_unit."""
     from tactcad.report.plain import plain
 
     return plain(
@@ -140,6 +141,7 @@ def as_json(done: PressedArray, design: str) -> object:
             "load": done.load,
             "angle": done.angle,
             "approach": done.approach,
+            "signal_unit": done.signal_unit[0],
             "expected_error": done.expected_error,
             "elements": [{"no": e.number} | _without_number(e) for e in done.elements],
             "pairs": done.pairs,
@@ -158,13 +160,14 @@ def as_text(done: PressedArray) -> str:
 
     body, h = done.body, done.body.thickness
     layer = "half-space" if h == inf else f"layer of {h:g} mm, {body.base}"
+    shown = [replace(f, unit=done.signal_unit[1]) if f.name == "signal" else f for f in ELEMENT.values()]
     lines = [
         f"object: {layer}, E {body.modulus:g} MPa, nu {body.poisson:g}; "
         f"K_obj {done.object_stiffness:.4g} N/mm under a single level pad",
         f"load {done.load:g} N, inclined {done.angle[0]:g}, {done.angle[1]:g} degrees; rung {done.rung}: "
         f"forces within {100 * done.expected_error:.2g} % of their mean",
         "",
-        *text_table(list(ELEMENT.values()), done.elements),
+        *text_table(shown, done.elements),
         "",
     ]
     lines += [f"no. {e.number} does not touch" for e in done.elements if not e.touches]

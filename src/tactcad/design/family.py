@@ -102,13 +102,15 @@ class FamilyPads:
 
     places   (design) to x, y, number, length and width of the pads, mm
     springs  (design) to those pads on their springs, `tactcad.contact.press.Pads`, and the signal of each
-             element over its pad's sink, V/mm
+             element over its pad's sink, in its unit a mm
     limit    (design) to how far a pad may stand above or below their plane, mm
+    unit     of a signal, and of a thousandth of it
     """
 
     places: Late
     springs: Late
     limit: Late
+    unit: tuple[str, str] = ("V", "mV")
 
 
 @dataclass(frozen=True)

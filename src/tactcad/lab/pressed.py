@@ -42,7 +42,7 @@ class PressedElement:
     stiffness: float  # N/mm
     deflection: float  # mm, of the pad's middle
     force: float  # N, on its pad
-    signal: float  # V, change from no load
+    signal: float  # change from no load, V, or what the family's pads say
     contact: float  # share of its pad's area that presses
     touches: bool
     stopped: bool
@@ -92,6 +92,7 @@ class PressedArray:
     pairs: tuple[PressedPair, ...]
     patches: np.ndarray | None  # of the pads' pressure, `Pressed.patches`; None by springs
     expected_error: float  # stated for the rung: of a pad's force over the mean of those that touch
+    signal_unit: tuple[str, str]  # and of a thousandth
 
 
 def press_array(
@@ -164,7 +165,7 @@ def press_array(
     softer = [e for e in touch if e.stiffness < reference.stiffness * (1 - SAME)]
     pairs = tuple(_pair(e, reference) for e in softer)
     shown = None if rung == "springs" else pressed.patches
-    done = (pressed.approach, alone, tuple(elements), pairs, shown, error)
+    done = (pressed.approach, alone, tuple(elements), pairs, shown, error, of.unit)
     return PressedArray(rung, body, load, angle, *done)
 
 

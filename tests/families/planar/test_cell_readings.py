@@ -216,6 +216,20 @@ def test_a_layer_s_modulus_comes_back(bench, capsys, tmp_path):
     assert sample["touching"] == [1, 2, 3, 4]
 
 
+def test_grasp_says_what_the_chips_feel(bench, capsys):
+    """A signal is the cell's matrix times its pad's force."""
+    folder, _ = bench
+    asked = ("grasp", "--object", "E=0.1,nu=0.49,thickness=8", "--load", "0.2", "--rung", "springs")
+    assert run(asked[0], folder / "small.toml", *asked[1:], "--json") == 0
+    done = json.loads(capsys.readouterr().out)
+    assert done["signal_unit"] == "mT" and sum(e["force"] for e in done["elements"]) == pytest.approx(0.2)
+    for place, e in zip(small().elements, done["elements"]):
+        felt = cell_response.matrix(small(), place.kind)[2, 2] * e["force"]
+        assert e["signal"] == pytest.approx(abs(felt), rel=1e-9)
+    assert run(asked[0], folder / "small.toml", *asked[1:]) == 0
+    assert " uT " in capsys.readouterr().out
+
+
 @pytest.mark.parametrize("thickness", [2.0, 6.0, np.inf])
 def test_a_square_of_a_pad_s_area_is_nearly_as_stiff(thickness):
     body, side = Body(1.0, 0.49, thickness), cell_pads.side(small().design)

@@ -46,6 +46,7 @@ FAMILY = Family(
         places=Late(f"{HERE}.cell_pads:places"),
         springs=Late(f"{HERE}.cell_pads:springs"),
         limit=Late(f"{HERE}.cell_pads:limit"),
+        unit=("mT", "uT"),
     ),
     readout=None,
     readings=FamilyReadings(

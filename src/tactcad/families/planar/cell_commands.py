@@ -185,7 +185,8 @@ def as_text(layout: PlanarLayout, s: CellGrasp, level: float) -> str:
 
 
 def picture(layout: PlanarLayout, s: CellGrasp) -> str:
-    """The plane of cells: forces at the largest load, and K_obj around each cell, as SVG."""
+    """The plane of cells: normal forces at the largest load, tangential ones beyond their intervals as
+    arrows, slip as rings; and K_obj around each cell, as SVG."""
     from matplotlib.collections import PatchCollection
     from matplotlib.patches import Rectangle
 
@@ -194,11 +195,13 @@ def picture(layout: PlanarLayout, s: CellGrasp) -> str:
     cells, top, pitch = places(layout, s.read), int(np.argmax(s.read.load)), layout.design.planar.pitch
     x, y = (np.array([getattr(e, a) for e in cells]) for a in "xy")
     force = s.forces.force[:, top]
+    kinds = np.array([e.kind.name for e in cells])
+    of_kind = np.array([force[kinds == kind, 2].mean() for kind in kinds])
     known = np.array([i.estimate if i and not i.empty else np.nan for i in s.around])
     known = np.where((known > 0.0) & (known < inf), known, np.nan)
     with panels(1, 2, (11.2, 4.8)) as (figure, axes):
         for ax, values, title in (
-            (axes[0], force[:, 2], f"force at {s.read.load[top]:g} N: Fz in N, arrows Fx, Fy"),
+            (axes[0], force[:, 2] / of_kind, f"Fz over the mean of its kind, at {s.read.load[top]:g} N"),
             (axes[1], known, "K_obj with the neighbours, N/mm"),
         ):
             tiles = [Rectangle((u - pitch / 2, v - pitch / 2), pitch, pitch) for u, v in zip(x, y)]
@@ -213,10 +216,12 @@ def picture(layout: PlanarLayout, s: CellGrasp) -> str:
             ax.set(xlabel="x, mm", ylabel="y, mm", aspect="equal", title=title)
             ax.autoscale_view()
             ax.grid(False)
-        largest = float(np.hypot(*force[:, :2].T).max()) or 1.0
-        axes[0].quiver(
-            x, y, *force[:, :2].T, color="white", angles="xy", scale=2.0 * largest / pitch, scale_units="xy"
-        )
+        sideways, told = force[:, :2], s.forces.half_width[:, top, :2]
+        sure = np.hypot(*sideways.T) > np.hypot(*told.T)
+        if sure.any():
+            longest = float(np.hypot(*sideways[sure].T).max())
+            arrows = (x[sure], y[sure], *sideways[sure].T)
+            axes[0].quiver(*arrows, color="white", angles="xy", scale=2.0 * longest / pitch, scale_units="xy")
         slips = s.forces.slips[:, top]
         axes[0].plot(x[slips], y[slips], "o", mfc="none", mec=RED, ms=14)
         return svg(figure, "cells")

@@ -21,7 +21,6 @@ from ..bought.screws import SET_SCREW_LENGTHS
 from ..bought.standard_parts import LEAST_PLAY, dowel_diameter, dowel_limits
 from ..language.finding import SAME, Finding
 from ..language.metric import DRILL_REACH, METRIC, SOCKET_WALL, TAP_REACH, counterbore_diameter, engagement
-from ..rigs.setting_fixture import SettingLayout
 from .rule import at_least, at_most, rule, wrong
 
 # Tie rod and ground rod are sold in bars of up to 3 m (DIN 976-1: 1, 2 and 3 m).
@@ -131,21 +130,6 @@ def end_plate_takes_holes(layout: Layout) -> Iterator[Finding]:
         )
 
 
-@rule(after="end_plate_takes_holes")
-def setting_fixture_holds_its_pins(layout: Layout) -> Iterator[Finding]:
-    """Its steps are as long as the end plates are thick, less a channel: the pins that the plates are turned
-    against have END_PLATE_WEB around them, as in the plates; small pins a third of their diameter, since the
-    foot under the step holds them."""
-    c, step = layout.design.clamp, SettingLayout(layout.design).step_length
-    web = min(END_PLATE_WEB, float(c.dowel) / 3)
-    yield from at_least(
-        "clamp.end_plate_thickness",
-        f"leaves a step of {step:g} mm in the setting fixture, too short for its pins",
-        c.end_plate_thickness,
-        round(c.end_plate_thickness - step + float(c.dowel) + 2 * web, 2),
-    )
-
-
 def _heads_apart(layout: Layout, around: float, rod: bool) -> Iterator[Finding]:
     """Screw heads or nuts of radius `around` (mm) beside each other, the dowels, and the other row's."""
     dowel = float(layout.design.clamp.dowel) / 2
@@ -215,11 +199,11 @@ def stop_plate_can_be_held(layout: Layout) -> Iterator[Finding]:
 
 
 def _stop_plate_lies(layout: Layout) -> Iterator[Finding]:
-    """On ledges so far apart along the row that it does not rock: edges of n sheets at one pitch, seen from
-    the plate's middle, by their root mean square."""
+    """On ledges so far apart along the row that it does not rock: edges of n sheets a row at one pitch, from
+    the plate's middle, by the root of their squares' sum, as the check of steps has it."""
     d, wide, thick = layout.design, layout.stop_plate_width, layout.design.clamp.stop_plate_thickness
     apart = d.array.pitch**2 * (layout.positions**2 - 1) / 3
-    least = sqrt(max((LEVER * hypot(wide, thick)) ** 2 - apart, 0.0))
+    least = sqrt(max((LEVER * hypot(wide, thick)) ** 2 / (2 * layout.positions) - apart, 0.0))
     yield from at_least(
         "sheet.thickness",
         f"stop plate of {wide:g} x {thick:g} mm rocks on its ledges",
