@@ -75,7 +75,7 @@ def test_all_designs_are_checked_though_one_is_refused(tmp_path, capsys):
     assert "design.name" in out
     first, second = json.loads((folder / "check.json").read_bytes())["designs"]
     assert (
-        not first["passed"] and second["passed"] and second["runs"]["interference"] == 3
+        not first["passed"] and second["passed"] and second["runs"]["interference"] == 4
     )  # array, setting, bonding
     suites = ElementTree.parse(folder / "junit.xml").getroot().findall("testsuite")
     assert [s.get("failures") for s in suites] == ["1", "0"]
