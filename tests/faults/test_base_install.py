@@ -134,7 +134,7 @@ def test_what_needs_extras_is_refused_with_every_option(base, extras):
 def test_every_option_of_what_needs_none_is_tried():
     for command in NONE:
         lines = [line.split() for line in (WORK + LONG).splitlines() if line.startswith(f"{command} ")]
-        tried = {"--freecad", "--review"}.union(*lines)
+        tried = {"--freecad", "--review", "--picture"}.union(*lines)
         assert {action.option_strings[-1] for action in options(command)} <= tried, command
 
 

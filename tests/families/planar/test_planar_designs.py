@@ -153,4 +153,4 @@ def test_every_rule_has_a_witness():
 def test_what_the_family_cannot_do_is_refused_in_one_line():
     design = load(str(PLANAR))
     with pytest.raises(InputError, match="does not take designs of this family"):
-        family_of(design).must("readings", "calibrate --design")
+        family_of(design).must("variables", "target.base")
