@@ -75,8 +75,8 @@ def test_all_designs_are_checked_though_one_is_refused(tmp_path, capsys):
     assert "design.name" in out
     first, second = json.loads((folder / "check.json").read_bytes())["designs"]
     assert (
-        not first["passed"] and second["passed"] and second["runs"]["interference"] == 3
-    )  # array, setting, bonding
+        not first["passed"] and second["passed"] and second["runs"]["interference"] == 4
+    )  # array, setting, wiring, bonding
     suites = ElementTree.parse(folder / "junit.xml").getroot().findall("testsuite")
     assert [s.get("failures") for s in suites] == ["1", "0"]
 
@@ -116,7 +116,7 @@ def test_every_check_runs_on_every_part_and_scene_that_it_is_for(macro, monkeypa
     scenes = [make_scene(macro, name) for name in names]
     posed = [make_scene(macro, name, pose) for name in names for pose in poses(macro, name)]
     parts = {p.part_no: p for s in scenes for p in s.parts}
-    assert len(scenes) == 6 and len(posed) > 10
+    assert len(scenes) == 7 and len(posed) > 10
     of_design = (
         "strength",
         "fatigue",
