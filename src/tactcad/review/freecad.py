@@ -167,15 +167,17 @@ def _listed(value: Any) -> str:
 
 
 def estimate_rows(design: CommonTables) -> list[Row]:
-    """A heading and a row for each element; one row that says why where the estimator does not reach."""
+    """A heading and a row for each element, of what the family's estimates have; one row that says why where
+    the estimator does not reach."""
     try:
         family = family_of(design)
         rows = family.estimate.rows(family.layout(design), DEFAULT_RUNG, None)
     except CheckFailure as error:
         return [("not estimated",), (str(error),)]
-    cells = ((f.value(row) for f in ESTIMATES) for row in rows)
+    shown = [f for f in ESTIMATES if hasattr(rows[0], f.name)]
+    cells = ((f.value(row) for f in shown) for row in rows)
     return [
-        tuple(", ".join(filter(None, (f.heading, f.unit))) for f in ESTIMATES),
+        tuple(", ".join(filter(None, (f.heading, f.unit))) for f in shown),
         *(
             tuple("" if v is None else v if isinstance(v, int) else float(f"{v:.6g}") for v in row)
             for row in cells

@@ -118,9 +118,9 @@ def wiring(design: Design, pose: Pose = REST) -> Scene:
         (0, 0, 90),
         f"Push the braid over each board's leads up to the rear ends and tie both, {design.wiring.gather:g} "
         "mm behind these. Lay the board's socket on its plate before the board, tails towards the array, a "
-        "sleeve on every lead. Solder each lead to the tail that the harness file (circuit) gives it, the braid and the "
-        "wire from the array's metal to the last two, and shrink the sleeves over the joints. Measure at the "
-        "socket: from red to black a gauge, from black to the array's metal nothing.",
+        "sleeve on every lead. Solder each lead to the tail that the harness file in circuit/ gives it, the "
+        "braid and the wire from the array's metal to the last two, and shrink the sleeves over the joints. "
+        "Measure at the socket: from red to black a gauge, from black to the array's metal nothing.",
         order=[Move((name,), vector((*parked[s][:2], LIFTED)), (parked[s],)) for s, name in sockets.items()],
         tools=(SOLDERING, "ohmmeter, four wires, 0.01 ohm"),
         sets=("leads in their socket: all, by solder",),
