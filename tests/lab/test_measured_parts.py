@@ -20,6 +20,7 @@ from tactcad.parts.designs import load
 
 DESIGN = load("macro-array")
 LAYOUT = Layout(DESIGN)
+REISSUED = f"{DESIGN.design.revision}M"
 
 
 def sheet(tmp_path, values: dict[tuple[str, str], float]):
@@ -50,7 +51,7 @@ def test_spacers_are_the_pitch_less_the_measured_sheet(tmp_path):
     assert part.characteristics[0].remark == ""
     digest = sha256(path.read_bytes()).hexdigest()[:16]
     assert any(path.name in note and digest in note and "3.042" in note for note in part.notes)
-    assert again.design.design.revision == "LM"
+    assert again.design.design.revision == REISSUED
     # beside the stack's last spacer the array is as long as drawn
     assert Layout(again.design).stack - LAYOUT.stack == pytest.approx(0.958 - 1.0)
 
@@ -103,6 +104,6 @@ def test_the_export_is_issued_again(tmp_path, capsys):
     ]
     assert main(arguments) == 0
     record = json.loads(capsys.readouterr().out)["measured"]
-    assert record["spacer_mm"] == pytest.approx(1.04) and record["revision"] == "LM"
-    drawn = (out / "drawings" / "macro-array-spacer_LM.svg").read_text()
+    assert record["spacer_mm"] == pytest.approx(1.04) and record["revision"] == REISSUED
+    drawn = (out / "drawings" / f"macro-array-spacer_{REISSUED}.svg").read_text()
     assert "measured.csv" in drawn and "1.04" in drawn
