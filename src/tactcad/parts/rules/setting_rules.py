@@ -18,13 +18,15 @@ TENTH = 0.1  # mm, in which a legal place is stated
 @rule(after="end_plate_takes_holes")
 def setting_fixture_holds_its_pins(layout: Layout) -> Iterator[Finding]:
     """Its steps are as long as the end plates are thick, less a channel: the pins that the plates are turned
-    against have END_PLATE_WEB around them, as in the plates."""
+    against have END_PLATE_WEB around them, as in the plates; small pins a third of their diameter, since the
+    foot under the step holds them."""
     c, step = layout.design.clamp, SettingLayout(layout.design).step_length
+    web = min(END_PLATE_WEB, float(c.dowel) / 3)
     yield from at_least(
         "clamp.end_plate_thickness",
         f"leaves a step of {step:g} mm in the setting fixture, too short for its pins",
         c.end_plate_thickness,
-        c.end_plate_thickness - step + float(c.dowel) + 2 * END_PLATE_WEB,
+        round(c.end_plate_thickness - step + float(c.dowel) + 2 * web, 2),
     )
 
 
