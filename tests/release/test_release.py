@@ -117,7 +117,9 @@ def test_what_is_in_it(files):
     assert list(files)[1:-1] == sorted(list(files)[1:-1])
     sheets = {n for n in files if n.startswith("pdf/")}
     made = {
-        n for n in files if n.startswith("step/tiny-") and "-ap242" not in n
+        n
+        for n in files
+        if n.startswith("step/tiny-") and "-ap242" not in n and "-fitted-board" not in n  # which is bought
     }  # one sheet a part made, one drawing a scene, and the circuit's
     assert {Path(n).stem for n in sheets} == {Path(n).stem for n in made} | {f"tiny-circuit_{REVISION}"}
     assert {"bom.csv", "inspection.csv", "strength.csv", f"dxf/tiny-element-a5mm_{REVISION}.dxf"} <= set(
@@ -476,7 +478,7 @@ def test_a_failed_check_is_refused_and_a_draft_says_so(copy, coarse_shop, capsys
     with zipfile.ZipFile(copy / "out" / f"tiny-{REVISION}-PRELIMINARY.zip") as archive:
         readme = archive.read("README.txt").decode()
         sheets = {n: pdf_runs(archive.read(n)) for n in archive.namelist() if n.endswith(".pdf")}
-    assert len(sheets) == 12 and all("PRELIMINARY" in runs for pages in sheets.values() for runs in pages)
+    assert len(sheets) == 15 and all("PRELIMINARY" in runs for pages in sheets.values() for runs in pages)
     assert DRAFT in readme.splitlines()[:5]
     flat = " ".join(readme.split())
     assert all(" ".join(failure.split()) in flat for failure in record["failures"])
