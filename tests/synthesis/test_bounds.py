@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from dataclasses import asdict, replace
 from functools import lru_cache
+from itertools import product
 from pathlib import Path
 
 import pytest
@@ -168,12 +169,13 @@ def test_a_room_too_small_for_the_bases_clamp_takes_one_of_smaller_screws(room, 
     origin = got.design.origin
     assert {origin[path] for path in COMPACT | RODS} == {FROM_COMPACT}
     assert compact(got) is None  # there is none smaller
-    # and it is the shortest: a tenth less breaks a rule, whether holes move with the rear end or not
-    base = smaller.base
+    base = with_value(smaller.base, "array.row_arms", got.design.array.row_arms)
     shorter = with_value(base, "element.rear_length", round(base.element.rear_length - 0.1, 1))
-    moved = (base.holes.screw_offsets[0], round(base.holes.screw_offsets[1] - 0.1, 1))
-    array = with_value(shorter, "array.row_arms", got.design.array.row_arms)
-    assert broken_rules(array) and broken_rules(with_value(array, "holes.screw_offsets", moved))
+    first, last = base.holes.screw_offsets
+    for near, far in product((-0.1, 0.0, 0.1), (-0.3, -0.2, -0.1, 0.0, 0.1)):  # wherever the holes are then
+        a, b = round(first + near, 1), round(last + far, 1)
+        moved = with_value(shorter, "holes.screw_offsets", (a, b))
+        assert broken_rules(with_value(moved, "holes.dowel_offsets", (round((a + b) / 2, 2),)))
 
 
 def test_sizes_are_those_of_the_box_around_all_parts():

@@ -58,17 +58,17 @@ COMPACT: dict[str, Any] = {
     "clamp.mount_thread": "M3",
 }
 RODS: dict[str, Any] = {
-    "element.rear_length": 11.8,
-    "holes.screw_offsets": (2.3, 9.3),
-    "holes.dowel_offsets": (5.8,),
+    "element.rear_length": 11.6,
+    "holes.screw_offsets": (2.2, 9.1),
+    "holes.dowel_offsets": (5.65,),
     "clamp.end_plate_margin": 0.0,
     "clamp.mount_pitch_y": 16.0,
 }
 CAP_SCREWS: dict[str, Any] = {
-    "element.rear_length": 12.1,
-    "holes.screw_offsets": (2.3, 9.6),
-    "holes.dowel_offsets": (5.95,),
-    "clamp.end_plate_margin": 0.7,
+    "element.rear_length": 11.9,
+    "holes.screw_offsets": (2.2, 9.5),
+    "holes.dowel_offsets": (5.85,),
+    "clamp.end_plate_margin": 0.75,
     "clamp.mount_pitch_y": 28.0,
 }
 FROM_COMPACT = "chosen: a clamp of M2 screws, as the room asked for has no design with the base's"
