@@ -69,7 +69,7 @@ class Builder:
     def place(
         self, prefix: str, part: Part, origin: Vector, rotation: Rotation = UPRIGHT, step: str = ""
     ) -> str:
-        """Put a part in place, in the step of that title where one is given; returns its designator."""
+        """Put a part in place, in the step of that title if one is given; returns its designator."""
         name = self.put(Placement(self.name(prefix), part, origin, rotation))
         if step:
             self.placed_in.setdefault(step, []).append(name)

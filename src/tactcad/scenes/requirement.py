@@ -30,9 +30,9 @@ class DimensionLimits:
 
     name          part and dimension, as stack and findings call it
     lower, upper  deviations from nominal, of shape (pieces,); mm unless the name says otherwise
-    stated        part number and limit that it is of; empty where it is of elements, or general
+    stated        part number and limit that it is of; empty if it is of elements, or general
     apart         of no array: drawn by chance of its own, so that an array is the same with and without it
-    element       the limit of an element that it is; empty where it is of another part
+    element       the limit of an element that it is; empty if it is of another part
     matters       to what: to the pads on the surface plate and all that stands on them, to the stop plate on
                   the ledges, to neither, or to a screwed joint alone
     wire          how it grows where the wire leaves every face of its piece further out, mm a mm
@@ -79,7 +79,7 @@ class Requirement:
 
     name          what must hold
     unit          of value and limits
-    lower, upper  limits, -inf or inf where there is none
+    lower, upper  limits, -inf or inf if there is none
     value         (arrays, instances) of arrays that were put together
     linear        where the value is a sum of deviations: the nominal value, and each variable's coefficient;
                   such a value does not depend on the array's contacts

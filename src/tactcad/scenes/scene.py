@@ -114,7 +114,7 @@ class Step:
     `fan` spreads the step's parts over the outer half of that way, in their order, so many abreast; 0: all
     come together. A `bench` step is done away from what stands already, which the next other step brings in.
     `ready` ones were put together before. `unit` names the sub-assembly of the scene that the step belongs
-    to; empty where the scene is one. `tools` are what it needs besides the drivers of its screws. A step on
+    to; empty if the scene is one. `tools` are what it needs besides the drivers of its screws. A step on
     `elements` handles them one by one: which is which must be seen.
 
     `order` states the moves that do not follow from the placements (scenes/moves.py), in turn: a Move; or

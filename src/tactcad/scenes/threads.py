@@ -20,7 +20,7 @@ def thread_overlap(first: Placement, second: Placement) -> float:
     """Largest overlap (mm3) that a thread between the two explains: pi/4 (D^2 - d^2) e, with D the thread's
     major diameter, d the tapped hole's as drilled, e the length of full thread that the screw reaches into.
 
-    The screw's axis is its part's z. 0 where neither stands in a tapped hole of the other.
+    The screw's axis is its part's z. 0 if neither stands in a tapped hole of the other.
     """
     return max((_ring(hole, *ends) for hole, *ends in engaged(first, second)), default=0.0)
 

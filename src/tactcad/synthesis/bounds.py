@@ -87,8 +87,8 @@ class Bound:
 
     field, value  of the target, or of its base design
     whose         "written" in the target file, "default" of it, or "base design"
-    beyond        the value one step further; None where no such value is legal
-    half_width    relative, of the best around the answer there; None where none keeps the rules
+    beyond        the value one step further; None if no such value is legal
+    half_width    relative, of the best around the answer there; None if none keeps the rules
     """
 
     field: str
@@ -134,7 +134,7 @@ def touched(found: Found) -> list[str]:
 
 
 def bound(found: Found, field: str) -> Bound | None:
-    """A bound with what one step beyond it would give; None where the field has no further to go."""
+    """A bound with what one step beyond it would give; None if the field has no further to go."""
     target = found.candidate.stand.target
     if field in OF_BASE:
         value = paths(target.base)[field]

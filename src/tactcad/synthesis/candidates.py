@@ -373,7 +373,7 @@ class Candidates:
 
     @cached_property
     def violation(self) -> Array:
-        """Sum of what is beyond limits; inf where the estimator does not reach."""
+        """Sum of what is beyond limits; inf if the estimator does not reach."""
         total = sum(np.maximum(v, 0.0) for v in self.misses.values())
         known = np.isfinite(self.elements.stiffness).all(axis=1) & np.isfinite(self.half_width)
         return np.where(known & self.known_as_made & np.isfinite(total), total, np.inf)

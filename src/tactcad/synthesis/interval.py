@@ -206,7 +206,7 @@ class Covariance:
 
     def moderated(self, dof: float, count: Array) -> Covariance:
         """Averaged with that of all elements in common, as the lab makes its weights; with two elements, and
-        where it is known, as it is. `count` says how many there are of each."""
+        if it is known, as it is. `count` says how many there are of each."""
         if dof >= 1e6:
             return self
         total = np.broadcast_to(count, self.ss.shape).sum(axis=-1, keepdims=True)
@@ -322,7 +322,7 @@ class Evaluation:
         return x
 
     def _end(self, sign: float, best: Array, limit: Array, weights: Covariance) -> Array:
-        """Where the misfit passes the limit; 0 or inf where it does not."""
+        """Where the misfit passes the limit; 0 or inf if it does not."""
         inner, outer = np.zeros_like(best), np.full_like(best, np.log(FARTHEST))
         for _ in range(HALVINGS):
             middle = 0.5 * (inner + outer)

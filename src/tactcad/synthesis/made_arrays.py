@@ -46,7 +46,7 @@ class Yield:
     interval       of the share, Clopper and Pearson's, 95 %
     distribution   the one that gives it
     why            by what an array lacks, how many of that distribution lack it
-    half_widths    of every array's interval, largest over the range, relative; inf where it lacks anything
+    half_widths    of every array's interval, largest over the range, relative; inf if it lacks anything
                    else
     """
 
@@ -98,7 +98,7 @@ class MadeSensor:
 
     def kept_by(self, share: float, count: int, seed: int = SEED) -> float:
         """The least half-width (relative) that a share of the arrays keep, whichever their distribution; inf
-        where too many lack anything else."""
+        if too many lack anything else."""
         made_ = (self._built(name, count, np.inf, seed).half_widths for name in DECIDING)
         return max(float(np.quantile(widths, share, method="higher")) for widths in made_)
 
@@ -211,7 +211,7 @@ class MadeSensor:
 
     @property
     def cannot_bear(self) -> str:
-        """Why the array as drawn does not bear the target's forces; "" where it does."""
+        """Why the array as drawn does not bear the target's forces; "" if it does."""
         e, (_, largest) = self.drawn, self.worst()
         gaps = np.array([stop_gap(self.layout, p) for p in self.layout.elements])
         arm = np.array([p.arm for p in self.layout.elements])

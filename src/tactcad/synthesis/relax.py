@@ -158,7 +158,7 @@ def least_change(target: Target, name: str, possible: Callable[[Target], bool]) 
     -------
     tuple or None
         The value and the target with it, for which `possible` holds, while for one CLOSE nearer it does not;
-        None where FURTHEST times does not do.
+        None if FURTHEST times does not do.
     """
     low, high = 1.0, FURTHEST
     furthest = EASES[name](target, high)

@@ -115,7 +115,7 @@ def search(
     start
         A candidate's numbers to start from.
     evolve
-        False where only what lies around `start` is looked at.
+        False if only what lies around `start` is looked at.
     within
         Spread of the population's goals, relative, at which evolution stops: further generations would
         change the answer by less.

@@ -40,7 +40,7 @@ PAPERS_RATIO = 10.0
 SAME_RATIO = 0.03  # relative, within which a ratio counts as the asked one
 GAIN = 0.01  # relative gain below which an eased field is not said to limit
 QUICK = 2e-3  # relative; searches beside the answer stop there
-# s from the beginning on, where nothing else is asked: the search for the answer, and all before the report;
+# s from the beginning on, if nothing else is asked: the search for the answer, and all before the report;
 # with bounds, yield and report they keep 30 s and 2 minutes.
 SEARCHING, IN_ALL = 20.0, 105.0
 # The same with a body under the pads: a candidate costs milliseconds, and so do arrays made.
@@ -367,7 +367,7 @@ def design(
     Returns
     -------
     Synthesis
-        `met` says whether the target is; where it is not, `changes` has the least change of each field that
+        `met` says whether the target is; if it is not, `changes` has the least change of each field that
         alone would make it possible.
     """
     started = time.perf_counter()
@@ -446,7 +446,7 @@ def _solid(got: Synthesis) -> tuple[float, ...] | str:
 
 
 def _near(target: Target, found: Found, goal: Goal = bounds.narrowest) -> Found:
-    """The best for nearly the same target: around the found one; from anywhere where nothing is there."""
+    """The best for nearly the same target: around the found one; from anywhere if nothing is there."""
     some, until = bounds.near(target, found), bounds.soon(target)
     for evolve in (False,) if target.on_layer else (False, True):
         near = [

@@ -123,7 +123,7 @@ def _object(got: Synthesis) -> str:
 
 def _inclined(got: Synthesis) -> list[dict[str, Any]]:
     """Half-width over both angles of the face, degrees, at the softest, middle and stiffest object; None
-    where an element would be pressed beyond what it bears."""
+    if an element would be pressed beyond what it bears."""
     most = got.target.object.angle[1]
     if not most:
         return []
@@ -576,7 +576,7 @@ def no_other_change(got: Synthesis) -> str:
 
 
 def refuse_taken(out: str | Path) -> None:
-    """Raise InputError where `out` is no new or empty folder, which is replaced in one step."""
+    """Raise InputError if `out` is no new or empty folder, which is replaced in one step."""
     path = absolute(out)
     if os.path.islink(path):
         legal = "the folder that it leads to, or a new folder"
@@ -604,7 +604,7 @@ def refuse_unwritable(out: str | Path) -> None:
 def write(got: Synthesis, out: str | Path) -> None:
     """design.toml, report.json and report.html: the whole folder in one step, or nothing.
 
-    Raises InputError where `out` is taken or cannot be written to, CheckFailure where there is no room.
+    Raises InputError if `out` is taken or cannot be written to, CheckFailure if there is no room.
     """
     folder = absolute(out)
     refuse_taken(out)

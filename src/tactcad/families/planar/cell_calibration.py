@@ -92,7 +92,7 @@ def calibrate(layout: PlanarLayout, path: str | Path, level: float) -> list[Cell
 
 
 def refuse_strangers(layout: PlanarLayout, rows: Rows) -> None:
-    """Raise InputError where the design has no such cell."""
+    """Raise InputError if the design has no such cell."""
     number, count = rows.values(ELEMENT.name), len(layout.elements)
     for i in np.flatnonzero(number > count)[:1]:
         raise InputError(
@@ -104,7 +104,7 @@ def refuse_strangers(layout: PlanarLayout, rows: Rows) -> None:
 
 
 def refuse_overrange(layout: PlanarLayout, rows: Rows) -> None:
-    """Raise InputError where a chip reads its full scale: what it felt is not known."""
+    """Raise InputError if a chip reads its full scale: what it felt is not known."""
     for f in FIELD:
         for i in np.flatnonzero(np.abs(rows.values(f.name)) >= layout.chip.full_scale)[:1]:
             raise InputError(
@@ -174,7 +174,7 @@ def _cell_runs(
 
 
 def _axis(rows: Rows, number: int, at: NDArray[np.int64], force: Array) -> int:
-    """The axis along which a run's loads are. Raises InputError where they are along none, or too few."""
+    """The axis along which a run's loads are. Raises InputError if they are along none, or too few."""
     load = np.abs(force).max(axis=0)
     axis = int(np.argmax(load))
     if np.delete(load, axis).max() > ALONG * load[axis]:

@@ -70,7 +70,7 @@ def fields(layout: PlanarLayout, path: str | Path) -> list[CellFields]:
     layout
         Of the design.
     path
-        CSV with the columns element, load (N), bx, by, bz (mT); run and sample where there are several. Every
+        CSV with the columns element, load (N), bx, by, bz (mT); run and sample if there are several. Every
         cell at every load, and without load in every run. Repeated readings are averaged.
 
     Raises
@@ -129,7 +129,7 @@ def _sample(layout: PlanarLayout, rows: Rows, number: int, own: NDArray[np.int64
 def forces(layout: PlanarLayout, read: CellFields, known: Matrices, level: float) -> CellForces:
     """Forces of all cells at all loads, with intervals.
 
-    Raises InputError where a cell was not calibrated.
+    Raises InputError if a cell was not calibrated.
     """
     cells, rows = places(layout, read), _rows(read, known)
     n, states = read.field.shape[:2]

@@ -109,7 +109,7 @@ def pad_places(layout: PlanarLayout, plan: Box) -> tuple[Linear, ...]:
 def cell_plan(part: Part, notes: Sequence[str], spare: bool = False) -> SheetPlan:
     """The sheet of a foil or a spacer; `spare` asks for smaller details.
 
-    Raises CheckFailure where its cells do not repeat, or a dimension is missing or given twice.
+    Raises CheckFailure if its cells do not repeat, or a dimension is missing or given twice.
     """
     kinds = kinds_of(part)
     cells = [cell for some in kinds for cell in some]

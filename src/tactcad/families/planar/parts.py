@@ -89,7 +89,7 @@ def stack_height(layout: PlanarLayout) -> float:
 
 
 def screw_length(layout: PlanarLayout) -> float | None:
-    """The longest ISO 4762 length that ends inside the cover; None where none engages one diameter."""
+    """The longest ISO 4762 length that ends inside the cover; None if none engages one diameter."""
     cover, under = layout.design.housing.cover_thickness, stack_height(layout)
     fits = [n for n in CAP_SCREW_LENGTHS[SCREW] if METRIC[SCREW].d <= n - under <= cover]
     return max(fits, default=None)
@@ -161,7 +161,7 @@ def _through(
 
 
 def _stated(layout: PlanarLayout, *bores: Characteristic) -> tuple[Characteristic, ...]:
-    """Limits of holes; none of dowels where no layer has them."""
+    """Limits of holes; none of dowels if no layer has them."""
     return tuple(c for c in bores if c.name != DOWEL_HOLE or layout.screwed)
 
 
@@ -171,7 +171,7 @@ def contour_note(process: FoilProcess, thickness: float) -> str:
 
 
 def _placed(features: Sequence[Feature], zones: Mapping[str, float]) -> dict[str, Any]:
-    """Geometric tolerances of holes by their names, and the datums that they stand from; no more where there
+    """Geometric tolerances of holes by their names, and the datums that they stand from; no more if there
     are none."""
     there = {f.name for f in features}
     places = tuple(

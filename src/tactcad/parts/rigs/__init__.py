@@ -1,7 +1,7 @@
 """Parts of the rigs around the array: calibration, sample stiffness, grasping and bonding.
 
 In: where things stand, derived once from the design (`StandLayout`, `cart_layout`, `guide_layout`,
-`bonding_rigs`; the second and third are None where the design has no such tables). Out: parts for the
+`bonding_rigs`; the second and third are None if the design has no such tables). Out: parts for the
 scenes, which see them here by name.
 """
 

@@ -31,7 +31,7 @@ GROOVE_WALL = 1.0  # least material beside plenum and groove
 
 
 def cart_layout(design: Design) -> CartLayout | None:
-    """The cart of a design; None where it lacks one of the tables cart, holder and sample."""
+    """The cart of a design; None if it lacks one of the tables cart, holder and sample."""
     if design.cart is None or design.holder is None or design.sample is None:
         return None
     return CartLayout(design, design.cart, design.holder, design.sample)

@@ -46,7 +46,7 @@ BEFORE_END_STOP = BAR_FRONT + BAR + RAIL_HEIGHT - END_STOP_OUT - 0.5
 
 
 def guide_layout(design: Design) -> GuideLayout | None:
-    """The guide of a design; None where it has no grasping table or no cart under it."""
+    """The guide of a design; None if it has no grasping table or no cart under it."""
     cart = cart_layout(design)
     return (
         GuideLayout(design, design.grasping, cart)

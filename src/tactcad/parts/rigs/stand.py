@@ -129,7 +129,7 @@ AIR = 0.5  # mm between things that pass each other; chosen, as under the cart
 
 def calibration_stage(layout: Layout) -> Stage:
     """The smallest stage that reaches every pad, clears the post, and is not covered by the carrier; the
-    smallest of all where none does, which a rule then says."""
+    smallest of all if none does, which a rule then says."""
     return next((s for s in STAGES if not faults_of(s, layout)), STAGES[0])
 
 

@@ -181,7 +181,7 @@ def _bears(rigs: Sequence[BondingLayout]) -> str:
 
 def borne(rig: BondingLayout, backed: bool) -> float:
     """Pressure on the gauge at which a leaf of this kind yields, MPa, in the fixture or without its tongue.
-    Raises CheckFailure where elements do not reach it."""
+    Raises CheckFailure if elements do not reach it."""
     from tactcad.fem.bonded_leaf import clamped
     from tactcad.parts.array.hinge_section import hinge_section
 

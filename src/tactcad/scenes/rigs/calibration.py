@@ -54,7 +54,7 @@ def calibration(design: Design, pose: Pose = REST) -> Scene:
     """Scene `calibration`: the roller on the pad of pose.element, which it has pushed pose.deflection mm
     down.
 
-    pose.height lifts the roller. Raises InputError where the array has no such element.
+    pose.height lifts the roller. Raises InputError if the array has no such element.
     """
     rig = StandLayout(design)
     pads = pad_middles(rig.array)
@@ -301,7 +301,7 @@ def _motions(design: Design, pads: Iterable[tuple[float, float]], px: float, py:
 
 
 def check_travel(design: Design, _scene: Scene) -> list[Finding]:
-    """Fail where the travel makes a hinge yield, flag where it passes the rated deflection; each with the
+    """Fail if the travel makes a hinge yield, flag if it passes the rated deflection; each with the
     travel that does not.
 
     An element whose strength the estimator cannot compute is flagged by the strength check.

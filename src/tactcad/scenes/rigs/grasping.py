@@ -303,7 +303,7 @@ def place_axis(b: Builder, rig: GuideLayout, rail: str, lift: float) -> tuple[st
 
 
 def _trim(rig: GuideLayout, mass: float) -> tuple[float, float]:
-    """Thickness (mm) and mass (g) of the ballast, from everything else that moves; no mass where that is too
+    """Thickness (mm) and mass (g) of the ballast, from everything else that moves; no mass if that is too
     heavy.
 
     A pin that is longer because of the ballast weighs slightly more itself, which is taken into account.
