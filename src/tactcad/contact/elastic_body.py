@@ -2,7 +2,7 @@
 
 A force of 1 N moves the face, r away and without friction under the pads, by
 
-    u(r) = (1 - nu^2)/(pi E) [1/r + G(r/h)/h],    G(q) = int_0^inf (phi(c) - 1) J0(c q) dc,
+    u(r) = (1 - nu^2)/(pi E) [1/r + G(r/h)/h],    G(q) = int_0^inf (phi(c) - 1) J0(c q) dc.
 
 A pressure wave of number k moves the face by 2 (1 - nu^2)/E phi(k h)/k per pressure. Bonded to a rigid base:
 phi = ((3 - 4 nu) sinh 2c - 2c)/((3 - 4 nu) cosh 2c + 2 c^2 + 5 - 12 nu + 8 nu^2); on a rigid base without

@@ -259,7 +259,8 @@ def fit(
     at
         The array on its layer.
     element
-        Numbers of the elements read, [element]. load
+        Numbers of the elements read, [element].
+    load
         N, [load]; where it is zero nothing touches.
     signal
         V, [grasp, element, load].
@@ -649,9 +650,11 @@ def expected(
     noise
         Of a reading, V.
     readings
-        Number of loads that are read, if `load` has only a few representatives. shared
+        Number of loads that are read, if `load` has only a few representatives.
+    shared
         ln K and ln K_v of every element, [element, 2], for one standard deviation of each error common to
-    all. stiffness, height
+        all.
+    stiffness, height
         True, if they are not as drawn and level: N/mm and mm, [grasp, pad].
     """
     n, G, T = len(at.number), len(modulus), len(load)

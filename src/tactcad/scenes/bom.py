@@ -113,7 +113,7 @@ def _supply_row(item: int, supply: Supply) -> BomRow:
 
 
 def _filled(*records: object, **told: object) -> BomRow:
-    """What the records say under the columns' names, then what is `told`; empty if neither does."""
+    """The records' values under the columns' names, then those of `told`; empty if neither has one."""
     said = {name: value for r in records for name, value in vars(r).items() if name in COLUMNS}
     values: Any = dict.fromkeys(COLUMNS, "") | said | told
     return BomRow(**values)
@@ -131,7 +131,7 @@ def csv_bytes(rows: Sequence[BomRow]) -> bytes:
 
 
 def read_in_sheet(row: BomRow) -> bool | str:
-    """Whether the figures of a bought line were read in the maker's own sheet, as a bill says it."""
+    """The bill's words on whether a bought line's figures were read in the maker's own sheet."""
     return row.source_verified if row.source_verified or row.make_buy == "make" else "unread"
 
 
@@ -219,7 +219,7 @@ def check_bom(scene: Scene, as_csv: bytes, as_json: bytes) -> list[str]:
 
 
 def incomplete(row: BomRow) -> list[str]:
-    """What is missing from a line for a buyer to order by it."""
+    """Data missing from a line that a buyer needs to order."""
     if row.make_buy == "make":
         return [f"{row.part_no}: no {name}" for name in ("material", "rev") if not getattr(row, name)]
     if not row.standard_designation and not row.mpn:

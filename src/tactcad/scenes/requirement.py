@@ -1,6 +1,6 @@
 """What must hold for parts to make a sensor, and the dimensions that it depends on.
 
-numpy is loaded when a limit or a value is made: which scenes a design has is known without.
+numpy is loaded only for limits and values: listing a design's scenes does not need it.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 Deviations = dict[str, "Array"]  # by variable: (arrays built, pieces) deviations from nominal
 Matters = Literal["pads", "plate", "neither", "joint"]
-# Least interference of a pressed pin, mm; chosen: what a plug gauge tells from none.
+# Least interference of a pressed pin, mm; chosen: the least that a plug gauge shows.
 LEAST_PRESS = 0.002
 SHEET = "sheet: thickness"  # the variable of the one sheet that all elements are cut from
 

@@ -235,7 +235,8 @@ def resistance(rig: BondingLayout) -> str:
 
 
 def coat(rig: BondingLayout) -> str:
-    """Half of what the pads stand out, at most a tenth of a millimetre, since a coating stiffens, too."""
+    """Half of the pads' height over the face, at most a tenth of a millimetre, since a coating also
+    stiffens."""
     thick = min(0.1, rig.design.element.pad_height / 2)
     return (
         f"Coat gauge, jumpers and terminals, no thicker than {thick:.2g} mm over the face and clear of the "
