@@ -21,7 +21,7 @@ from .leads import longest_lead_resistance
 
 COPPER = 0.0039  # 1/K, annealed copper at 20 C, IEC 60028
 APART = 0.5  # K between the two leads of a bridge; chosen: one lies on the warmer side of its bundle
-MAINS = 50.0  # Hz, where none is said
+MAINS = 50.0  # Hz, if none is said
 MAINS_OFF = 0.01  # relative, of the mains' frequency: EN 50160, 1 % for 99.5 % of a year
 
 

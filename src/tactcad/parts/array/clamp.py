@@ -125,7 +125,7 @@ class CarrierScrew:
 
 
 def carrier_screw(layout: Layout) -> CarrierScrew | None:
-    """The cap screw that fixes the carrier to an end plate's blind thread; None where no length fits.
+    """The cap screw that fixes the carrier to an end plate's blind thread; None if no length fits.
 
     It engages 1.5 d and 0.8 mm of the 1.5 d + 1.5 mm of thread; its head is sunk.
     """

@@ -245,7 +245,7 @@ def rear_corners(layout: Layout, face: float) -> list[Corner]:
 
 def mounting_holes(layout: Layout, dowel: float | None = None) -> tuple[Contour, ...]:
     """Screw and dowel holes through elements, blanks and spacers, wire-cut; dowel holes (mm) at mid-tolerance
-    of the slide fit where nothing else is given."""
+    of the slide fit if nothing else is given."""
     from ..language.metric import METRIC
 
     design = layout.design

@@ -180,7 +180,7 @@ def _path(name: str, layout: Layout, place: ElementPlace) -> str:
 
 def not_reached(layout: Layout, places: Sequence[ElementPlace], section: HingeSection, rung: str) -> str:
     """Why a rung does not reach the first of these elements that it does not, their parameters in `section`;
-    "" where it reaches all."""
+    "" if it reaches all."""
     for place, why in zip(places, validity.first_broken(section, rung).ravel()):
         if why:
             return f"rung {rung} does not reach element {place.number}: {in_design(why, layout, place)}"

@@ -13,7 +13,7 @@ from .layout import ElementPlace, Layout
 
 @dataclass(frozen=True)
 class Measurement:
-    """One dimension of one element, mm. `enters` is the field of HingeSection that it sets, "" where none."""
+    """One dimension of one element, mm. `enters` is the field of HingeSection that it sets, "" if none."""
 
     name: str
     nominal: float

@@ -74,7 +74,7 @@ def _bow(layout: Layout, beam: Beam) -> float:
 def torque(layout: Layout) -> float:
     """Torque of the set screws, N m, rounded to one digit.
 
-    The thread's seating torque, or less, so that stack and carrier bow no more than they may. 0 where that is
+    The thread's seating torque, or less, so that stack and carrier bow no more than they may. 0 if that is
     too little to be set: the screws then only touch the plate.
     """
     thread = layout.design.clamp.screw

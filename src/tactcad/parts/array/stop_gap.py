@@ -237,7 +237,7 @@ def overloads(layout: Layout) -> list[Overload]:
 
 
 def endurance(layout: Layout, states: Sequence[Overload]) -> str:
-    """Which elements do not bear their rated force for ever, and what they bear; "" where all do."""
+    """Which elements do not bear their rated force for ever, and what they bear; "" if all do."""
     tired = [state for state in states if state.endured < state.rated_force]
     if not tired:
         return ""

@@ -46,7 +46,7 @@ def lead_part(colour: str) -> str:
 
 
 def converter_of(design: Design) -> Converter | None:
-    """The sigma-delta converter that reads the bridges; None where amplifier and card do."""
+    """The sigma-delta converter that reads the bridges; None if amplifier and card do."""
     return CONVERTERS.get(design.readout.converter)
 
 
@@ -102,7 +102,7 @@ def completion_drift(design: Design) -> float:
 
 
 def gain_resistance(design: Design) -> float | None:
-    """Between the amplifier's RG pins, ohm, of the series E192; None where pins set the gain or none is
+    """Between the amplifier's RG pins, ohm, of the series E192; None if pins set the gain or none is
     needed."""
     amplifier, gain = AMPLIFIERS[design.readout.amplifier], design.readout.gain
     return None if amplifier.gains or gain == 1 else nearest_e192(amplifier.gain_ohm / (gain - 1))

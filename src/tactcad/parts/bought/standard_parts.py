@@ -119,7 +119,7 @@ GROOVE_WIDTH = 2.4
 
 
 def size_around(diameter: float) -> str | None:
-    """The smallest ring whose inside clears a circle of that diameter; None where the table ends."""
+    """The smallest ring whose inside clears a circle of that diameter; None if the table ends."""
     return next((code for code, inside in INSIDE.items() if inside >= diameter), None)
 
 

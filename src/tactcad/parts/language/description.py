@@ -197,7 +197,7 @@ def drill_point_height(diameter: float) -> float:
 @dataclass(frozen=True)
 class Material:
     """What a part is made of; density in kg/m3. `standard`: by which it is ordered. `magnetic`: whether a
-    magnet draws it, "yes", "weakly" or "no"; "" where that is not known."""
+    magnet draws it, "yes", "weakly" or "no"; "" if that is not known."""
 
     name: str
     density: float
@@ -263,7 +263,7 @@ class Part:
     spares
         Pieces to order beyond the scene's.
     kind
-        What steps, notes and sheets treat it as; "" where they treat it as any other part.
+        What steps, notes and sheets treat it as; "" if they treat it as any other part.
     thread
         Metric thread of a screw or nut, "M3".
 
@@ -349,7 +349,7 @@ class Part:
 def section(part: Part) -> tuple[Contour, tuple[Contour, ...]]:
     """Outline and openings of an extruded part, its through holes along the thickness included.
 
-    Raises TypeError where the part is not an extrusion.
+    Raises TypeError if the part is not an extrusion.
     """
     if not isinstance(part.body, Extrusion):
         raise TypeError(f"{part.part_no} is not an extrusion: it has no one section to cut")

@@ -24,7 +24,7 @@ class Characteristic:
 
     Of a fit (ISO 286) the nominal size may lie outside its limits.
     `between` names the two features that it lies between, or the one feature of size; of three,
-    it ends in the middle between the last two. `remark`: by what it is made where that is not
+    it ends in the middle between the last two. `remark`: by what it is made if that is not
     the drawn value.
     """
 

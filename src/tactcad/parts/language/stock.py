@@ -30,7 +30,7 @@ class FlatStock:
     """Flat stock of a part.
 
     thickness, lower, upper  as ordered, and the limits of what is delivered
-    standard                 by which these hold; "" where no table here has them
+    standard                 by which these hold; "" if no table here has them
     face, edge               over the finished part, at least, on each face and on each edge; 0: not finished
     """
 
@@ -71,7 +71,7 @@ def stock_of(part: Part) -> FlatStock | None:
 
 
 def cut_section(part: Part) -> Extrusion | None:
-    """The section that a part's cut file describes, extruded; None where the part has no cut file.
+    """The section that a part's cut file describes, extruded; None if the part has no cut file.
 
     Wire-cut and etched parts are cut with all their holes. What is milled or ground from plate has a cut file
     of its blank: a rectangle that leaves material on every edge, as thick as its stock, without holes. What

@@ -14,7 +14,7 @@ SHARE_OF_HINGE = 0.25
 
 
 def at(place: ElementPlace, field: str, layout: Layout) -> str:
-    """Path of a hinge field of one element: its override where it has one."""
+    """Path of a hinge field of one element: its override if it has one."""
     own = layout.design.element.override.get(place.number)
     if own is not None and getattr(own, field) is not None:
         return f"element.override.{place.number}.{field}"

@@ -61,7 +61,7 @@ def _set_first(r: Readout, *names: str) -> str:
 
 
 def _borne(fits: Callable[[float], bool]) -> float:
-    """The largest share, from 0 to 1, that fits where all less do; 0 where none does."""
+    """The largest share, from 0 to 1, that fits where all less do; 0 if none does."""
     least, most = 0.0, 1.0
     for _ in range(30 if fits(0.0) else 0):
         middle = (least + most) / 2

@@ -33,7 +33,7 @@ class Rule:
         return self.find.__name__
 
     def __call__(self, layout: Layout) -> list[Finding]:
-        """The first finding; empty where the rule is kept."""
+        """The first finding; empty if the rule is kept."""
         first = next(iter(self.find(layout)), None)
         if first is None:
             return []

@@ -122,7 +122,7 @@ def stop_plate_stays(layout: Layout) -> Iterator[Finding]:
         gap = stop_limit(layout, p, give=0.0).gap
         allowed = SHARE * gap / force
         if gap <= d.stop.tolerance or give <= allowed:
-            continue  # where there is no gap, other rules say why
+            continue  # if there is no gap, other rules say why
         what = (
             f"the stop plate gives way by {give * force:.3g} mm under element {p.number} and "
             f"{d.rating.overload_force:g} N, more than a tenth of its gap"
@@ -151,7 +151,7 @@ def _what_helps(layout: Layout, what: str, allowed: float) -> Finding:
 
 
 def _largest_pitch(layout: Layout, allowed: float) -> float | None:
-    """Largest pitch (mm, by halves) of set screws that is allowed; None where none is."""
+    """Largest pitch (mm, by halves) of set screws that is allowed; None if none is."""
     pitch = floor(2 * layout.hold_down_pitch) / 2
     least = max(shortest_pitch(layout.design.clamp.screw), 2 * layout.beyond_screws)
     while pitch >= least:
@@ -219,7 +219,7 @@ def _taken_by_tolerances(layout: Layout) -> list[str]:
 
 def _largest_tolerance(design: Design, path: str) -> float:
     """Largest value of a tolerance (mm, a multiple of TENTH) that alone leaves every derived gap open; 0
-    where none does."""
+    if none does."""
     least, now = _field(design, path).metadata["spec"].low, _tolerance(design, path)
     low, high = ceil(least / TENTH), ceil(now / TENTH)
     given = design.stop.gaps or {}
