@@ -403,10 +403,10 @@ def _is_calibrated(layout: Layout) -> bool:
 
 def _laying_stop_plate(layout: Layout) -> str:
     calibrated = (
-        "An array that is still to be calibrated goes to scene calibration without stop plate and set "
-        "screws, its carrier on: the stops would close before the end of the travel. Afterwards take the "
-        "carrier off again and read the pads' heights on the surface plate once more, as before: what "
-        "has moved is made coplanar and calibrated anew. "
+        "An array that is still to be calibrated is wired (scene wiring) and goes to scene calibration "
+        "without stop plate and set screws, its carrier on: the stops would close before the end of the "
+        "travel. Afterwards take the carrier off again and read the pads' heights on the surface plate "
+        "once more, as before: what has moved is made coplanar and calibrated anew. "
     )
     return (
         calibrated if _is_calibrated(layout) else ""
@@ -425,7 +425,7 @@ def _hold_down(layout: Layout) -> str:
         "Read the pads' heights once more. Check each stop: push every pad with a plastic rod; it must give "
         f"way and come to a stop, with {', '.join(f'{gap:g} mm at arm {arm:g}' for arm, gap in gaps)} "
         f"(to {tolerance:g} mm less, or {wider:g} mm more, one plate lying on all "
-        "ledges) on the lever indicator at the tip."
+        "ledges) on the lever indicator at the tip. Leads and boards are the scene wiring's."
     )
 
 

@@ -103,7 +103,8 @@ def wiring(design: Design, pose: Pose = REST) -> Scene:
     b.step(
         "Array on its back",
         (0, 0, 60),
-        "Lay the finished array on the bench on its carrier, pads up, row 1 to the right (+x): each row's "
+        "Lay the array on the bench on its carrier, pads up, finished, or still to be calibrated and without "
+        "stop plate and set screws: row 1 to the right (+x): each row's "
         "leads come out towards its board. Nothing may lie on the pads.",
         order=[Move(tuple(p.designator for p in whole.placements), (0.0, 0.0, LIFTED), (STILL,))],
         sets=("array on the bench: along z, turn about x and y",),
