@@ -96,8 +96,6 @@ def take(log: LabLog, by: LogMap) -> Taken:
     spans = _spans(log, by, time, drive)
     volts = {c.element: _volts(log, name, by) for name, c in by.channels.items()}
     columns = {c.element: name for name, c in by.channels.items()}
-    used = np.concatenate([np.arange(a, b + 1) for a, b in spans])
-    _refuse_doubled(log, volts, columns, used)
     values = {name: _values(log, by, name, q, spans) for name, q in by.quantities.items()}
     steps = tuple(
         LogStep(a, b, float(time[a : b + 1].mean()), {name: float(v[i]) for name, v in values.items()})
@@ -107,6 +105,8 @@ def take(log: LabLog, by: LogMap) -> Taken:
         n: why for n in volts if (why := _silent(volts[n], _pressed(by.log.kind, steps, n) or steps, by))
     }
     kept = {n: v for n, v in volts.items() if n not in left_out}
+    used = np.concatenate([np.arange(a, b + 1) for a, b in spans])
+    _refuse_doubled(log, kept, columns, used)  # only these: two channels at one limit are equal, not doubled
     least = 1 if by.log.kind == "calibration" else 2
     if len(kept) < least:
         why = "; ".join(f"{n}: {w}" for n, w in left_out.items())
