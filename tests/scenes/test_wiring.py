@@ -10,7 +10,7 @@ from math import dist
 import numpy as np
 import pytest
 from built import shapes_of
-from variants import variant
+from variants import DROP, variant
 
 from tactcad.checks.on_solids.interference import check_interference
 from tactcad.checks.on_solids.steps import check_steps
@@ -154,3 +154,20 @@ def test_every_step_that_moves_something_has_its_picture():
         scene = make_scene(design, name)
         shown = re.findall(rf'src="{name}-(\d\d)\.svg"', page(design, scene).decode())
         assert [int(n) for n in shown] == [n for n, moves in enumerate(step_moves(scene), start=1) if moves]
+
+
+def test_boards_of_a_row_stand_beside_their_elements():
+    """As the step says: nearest to the first board of a row is the first of its elements."""
+    design = variant(KINDS["three boards"])
+    scene = make_scene(design, "wiring")
+    assert "A1 beside E1 to A2 beside E9" in scene.steps[0].text
+    at = {p.designator: sum(ends(p, 1)) / 2 for p in scene.placements}
+    assert (at["A1"] - at["A2"]) * (at["E1"] - at["E9"]) > 0.0
+    assert "order of their elements" not in make_scene(variant(), "wiring").steps[0].text
+
+
+def test_solder_is_ordered_once_whether_gauges_are_bonded_in_a_fixture_or_not():
+    for changes in ({}, {"bonding": DROP}):
+        design = variant(changes)
+        lines = [s for n in scene_names(design) for s in make_scene(design, n).supplies]
+        assert [s.qty for s in lines if s.part_no == "SOLDER"] == [1]
