@@ -80,7 +80,7 @@ class Reply(Sequence[Any]):
 
     @_in_our_words
     def to_frame(self) -> Any:
-        """The records as a pandas DataFrame. Raises CheckFailure where pandas is not installed."""
+        """The records as a pandas DataFrame. Raises CheckFailure if pandas is not installed."""
         try:
             from pandas import DataFrame
         except ImportError:
@@ -141,7 +141,7 @@ class LoadedDesign:
     table    the design file as TOML gives it
     source   the file or name that it is from
     added    parts that were added, in order
-    text     the file's own text; None where `with_` changed it
+    text     the file's own text; None if `with_` changed it
     """
 
     table: dict[str, Any]
@@ -207,7 +207,7 @@ class LoadedDesign:
         return changed
 
     def _follows(self, given: Mapping[str, Any]) -> str:
-        """A stated field that breaks a rule but could be derived, as array.spacer; "" where there is none."""
+        """A stated field that breaks a rule but could be derived, as array.spacer; "" if there is none."""
         from tactcad.parts.rules import broken_rules
 
         tables = family_of(self._read).tables

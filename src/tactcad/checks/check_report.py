@@ -132,7 +132,7 @@ def _case(suite: ElementTree.Element, design: str, case: Case) -> None:
 
 
 def failure_table(reports: Sequence[Report]) -> list[str]:
-    """Every failure as a line of a table: design, part, check, message; empty where nothing failed."""
+    """Every failure as a line of a table: design, part, check, message; empty if nothing failed."""
     rows = [(r.design, f.about, f.check, f.message + _at(f)) for r in reports for f in r.failures]
     if not rows:
         return []

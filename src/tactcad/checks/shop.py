@@ -50,7 +50,7 @@ class Limits:
 
 @dataclass(frozen=True)
 class Machining:
-    """Limits of mills, drills, taps and a lathe; mm where nothing else is said, all positive.
+    """Limits of mills, drills, taps and a lathe; mm if nothing else is said, all positive.
 
     cutter_radius      smallest radius that a cutter leaves
     cutter_reach       depth that it reaches, in diameters
@@ -111,7 +111,7 @@ def load_shop(path: str | Path = DEFAULT) -> Shop:
     [feed], [feed_source], [machining] and [machining_source]: all of them, or those in which it differs from
     what comes with tactcad.
 
-    Raises InputError where it cannot be read or a field is missing, unknown or not legal.
+    Raises InputError if it cannot be read or a field is missing, unknown or not legal.
     """
     where = str(path)
     table = parse_toml(read_text(path, MOST_BYTES, "a shop file (TOML)"), where)

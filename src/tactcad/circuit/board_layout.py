@@ -169,7 +169,7 @@ class Strip:
     sheet: Routing = field(default_factory=Routing)
 
     def column(self, net: str, x: float, y: float, step: float = 0.0) -> float:
-        """At x, or by steps from there the first place that is open; raises ValueError where x is closed."""
+        """At x, or by steps from there the first place that is open; raises ValueError if x is closed."""
         while not self.is_open(net, x):
             if not step:
                 raise ValueError
@@ -296,7 +296,7 @@ class Strip:
                     edge = self._side(own, here, y, edge, side, caps)
 
     def _side(self, own: str, here: Point, y: float, edge: float, side: int, caps: list[str]) -> float:
-        """A pin's way to its column or, where nothing else is on its net, to its capacitor."""
+        """A pin's way to its column or, if nothing else is on its net, to its capacitor."""
         cap = next((c for c in caps if self.board[c].net("1") == own), None)
         if own.startswith("REGCAP"):
             self.sheet.path(own, here, (edge, y), (edge, y - 1.5))
@@ -430,7 +430,7 @@ SELECTING = ("U2", "U3", "C3", "C4", "C5")
 
 
 def lay_out(circuit: Netlist, outline: BoardOutline) -> BoardCopper:
-    """Raises CheckFailure where the board is too small for it."""
+    """Raises CheckFailure if the board is too small for it."""
     board = {c.designator: c for c in circuit.components}
     width, height = outline.width, outline.height
     whole, lead_pins = Routing(), footprint(board["J2"].footprint).pads

@@ -47,7 +47,7 @@ class DigitalReadout:
     excitation  V, all the time or for `on` in each period
     gain, rate  of the converter's input; Hz
     settling    s, from one input to the next
-    warm_up, on s, from ON to the first input's turn, and to the last result; 0 where always on
+    warm_up, on s, from ON to the first input's turn, and to the last result; 0 if always on
     noise       V rms of one result, at the bridge
     drift       V, half-width, at the bridge, between zero and reading
     per_strain  V at the bridge for a strain of 1
@@ -180,7 +180,7 @@ PINS_FROM = "unread: the sheet's pin table; two layout libraries of others' that
 
 
 def pin_map(layout: Layout, converter: Converter) -> list[tuple[str, str, str]]:
-    """Of every board's converter: pin, its role, and the board's net on it; "" where it stays open."""
+    """Of every board's converter: pin, its role, and the board's net on it; "" if it stays open."""
     board = digital_netlist(layout, converter, converter.inputs)
     (part,) = board.of_kind("converter")
     return [(p.number, p.role, p.net) for p in sorted(part.pins, key=lambda p: int(p.number))]

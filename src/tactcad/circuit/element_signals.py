@@ -59,7 +59,7 @@ def reading_noise(layout: Layout, alike: bool = False) -> float:
 
 
 def element_signals(layout: Layout) -> list[ElementSignal]:
-    """Every element's, by number. Raises CheckFailure where one is out of the estimator's range."""
+    """Every element's, by number. Raises CheckFailure if one is out of the estimator's range."""
     design, places = layout.design, layout.elements
     section, gauge, chain = hinge_section(layout, places), design_gauge(design), design_readout(design)
     shape = (len(places),)

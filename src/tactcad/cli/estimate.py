@@ -225,7 +225,7 @@ def _as_made(args: argparse.Namespace, asked: Allowance, layout: Layout) -> int:
 
 
 def _worst(rows: list[ElementEstimate]) -> float | None:
-    """Largest expected error of the elements; None where one element's was not measured."""
+    """Largest expected error of the elements; None if one element's was not measured."""
     errors = [row.expected_error for row in rows if row.expected_error is not None]
     return max(errors) if len(errors) == len(rows) else None
 

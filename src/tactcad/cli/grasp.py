@@ -89,7 +89,7 @@ def run(args: argparse.Namespace) -> int:
 
 
 def read_object(text: str) -> Body:
-    """The body that --object names. Raises InputError where something is missing, unknown or out of range."""
+    """The body that --object names. Raises InputError if something is missing, unknown or out of range."""
     from tactcad.contact.elastic_body import Body
 
     given: dict[str, str] = {}

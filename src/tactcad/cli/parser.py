@@ -150,7 +150,7 @@ def add_needless_allowance(parser: argparse.ArgumentParser) -> None:
 
 
 def allowance(args: argparse.Namespace) -> Allowance:
-    """What was asked; false where neither was. Raises InputError."""
+    """What was asked; false if neither was. Raises InputError."""
     return Allowance(
         None if args.within is None else read_within(args.within, "--within"),
         None if args.seconds is None else read_seconds(args.seconds, "--in"),
@@ -158,7 +158,7 @@ def allowance(args: argparse.Namespace) -> Allowance:
 
 
 def refuse_named(asked: Allowance, option: str, given: object) -> None:
-    """Raise InputError where what the allowance chooses is named as well."""
+    """Raise InputError if what the allowance chooses is named as well."""
     if asked and given is not None:
         by = "--within" if asked.within is not None else "--in"
         raise InputError(by, f"makes this choice itself; leave out {option} {given}")

@@ -33,7 +33,7 @@ class Lossy(io.FileIO):
 
     @property
     def failed(self) -> OSError | None:
-        """Why output was lost; None where none was, or where its reader is gone: a pipe, or a terminal
+        """Why output was lost; None if none was, or if its reader is gone: a pipe, or a terminal
         that hung up.
         """
         return None if self.terminal or isinstance(self.error, ConnectionError) else self.error

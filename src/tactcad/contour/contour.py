@@ -13,7 +13,7 @@ from .segment import Arc, Line, Point, Segment
 class Contour:
     """Closed, simple chain of segments in mm: each starts exactly where the one before ends.
 
-    Raises ValueError where the chain is open, a segment has no length, or there is none.
+    Raises ValueError if the chain is open, a segment has no length, or there is none.
     """
 
     segments: tuple[Segment, ...]
@@ -34,7 +34,7 @@ class Contour:
         return len(self.segments)
 
     def named(self, name: str) -> Segment:
-        """The one segment of that name. Raises KeyError where there is none or more than one."""
+        """The one segment of that name. Raises KeyError if there is none or more than one."""
         matches = [s for s in self.segments if s.name == name]
         if len(matches) != 1:
             raise KeyError(f"{len(matches)} segments are named {name!r}")

@@ -129,7 +129,7 @@ def direction(s: Segment, p: Point) -> Point:
 
 
 def _side(piece: _Piece, p: Point, q: Point) -> Literal["material", "void"] | None:
-    """On which side of the piece the connection from p to q leaves it; None where it does not leave along
+    """On which side of the piece the connection from p to q leaves it; None if it does not leave along
     a normal.
     """
     s = piece.segment

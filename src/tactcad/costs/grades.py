@@ -176,7 +176,7 @@ def row_grades(s: HingeSection, within: float | None = None) -> list[Grade]:
     Returns
     -------
     list of Grade
-        Empty where all designs are left out.
+        Empty if all designs are left out.
     """
     inside = np.flatnonzero(reasons(s, MEASURED_FOR).ravel() == "")
     zone = zones(s).ravel()[inside]

@@ -27,7 +27,7 @@ class Grade:
 
 @dataclass(frozen=True)
 class Allowance:
-    """What an answer may err by (relative, of 1) and take (s); None where that is not limited."""
+    """What an answer may err by (relative, of 1) and take (s); None if that is not limited."""
 
     within: float | None = None
     seconds: float | None = None
@@ -65,7 +65,7 @@ class Picked:
 
 
 def read_within(text: str, where: str) -> float:
-    """A relative error from "1%", "1 %" or "0.01". Raises InputError where it is none."""
+    """A relative error from "1%", "1 %" or "0.01". Raises InputError if it is none."""
     plain = text.strip()
     try:
         value = as_number(plain.removesuffix("%")) / (100.0 if plain.endswith("%") else 1.0)
@@ -78,7 +78,7 @@ def read_within(text: str, where: str) -> float:
 
 
 def read_seconds(text: str, where: str) -> float:
-    """Seconds from text. Raises InputError where they are none."""
+    """Seconds from text. Raises InputError if they are none."""
     try:
         value = as_number(text)
     except ValueError:

@@ -76,7 +76,7 @@ class Table:
         """The rows as text, each with the line it begins on; cells without blanks around them, at the
         header's width.
 
-        Line ends within quotes belong to their row; empty rows are left out. Raises InputError where it is
+        Line ends within quotes belong to their row; empty rows are left out. Raises InputError if it is
         not CSV, a row is of another length, or there is none.
         """
         rows = _split(self.path, self.lines, self.numbers, self.delimiter)
@@ -117,7 +117,7 @@ class Rows:
     def half_steps(self, name: str) -> np.ndarray:
         """Half a unit of each value's last printed digit, in the column's unit.
 
-        Raises InputError where that is beyond all numbers ("0e400").
+        Raises InputError if that is beyond all numbers ("0e400").
         """
         texts = [text.replace(",", ".") for text in self.table.column(name)]
         steps = np.array([half_step(text) for text in texts])
@@ -131,7 +131,7 @@ class Rows:
 
 
 def half_step(text: str) -> float:
-    """Half a unit of a printed number's last digit; inf where that is beyond all numbers."""
+    """Half a unit of a printed number's last digit; inf if that is beyond all numbers."""
     mantissa, _, exponent = text.lower().partition("e")
     try:
         return 0.5 * 10.0 ** (int(exponent or 0) - len(mantissa.partition(".")[2]))
@@ -195,7 +195,7 @@ def numeric(table: Table, fields: tuple[Field, ...], optional: tuple[Field, ...]
 
 
 def _at_once(table: Table, chosen: tuple[Field, ...]) -> Rows | None:
-    """`numeric` ten times as fast, for lines of plain legal numbers only; None where one is not."""
+    """`numeric` ten times as fast, for lines of plain legal numbers only; None if one is not."""
     width = len(table.header) - 1
     if not table.lines or any(line.count(table.delimiter) != width or '"' in line for line in table.lines):
         return None
@@ -330,7 +330,7 @@ def number(text: str) -> float:
 def _split(
     path: str, lines: list[str], numbers: Sequence[int], delimiter: str
 ) -> Iterator[tuple[int, list[str]]]:
-    """Every record without blanks about its cells, and the line it begins on. Raises InputError where it is
+    """Every record without blanks about its cells, and the line it begins on. Raises InputError if it is
     no CSV."""
     reader = csv.reader(lines, delimiter=delimiter, strict=True)
     before = 0

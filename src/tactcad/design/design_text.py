@@ -63,7 +63,7 @@ def _text(value: Any) -> str:
 def name_of(path: Path) -> str:
     """The name of the design that a new file `path` is to hold: the file's own, without .toml.
 
-    Raises InputError where the file is there, is no .toml, or its name is not a design's or is taken.
+    Raises InputError if the file is there, is no .toml, or its name is not a design's or is taken.
     """
     if os.path.lexists(path):
         raise InputError(str(path), "is there already; nothing was changed", legal="the name of a new file")

@@ -189,7 +189,7 @@ class Family:
         return section_types(self.spec)
 
     def must(self, what: str, command: str) -> Any:
-        """The field `what`. Raises InputError where the family has none, so that `command` cannot do it."""
+        """The field `what`. Raises InputError if the family has none, so that `command` cannot do it."""
         found = getattr(self, what)
         if found is None:
             able = [f.name for f in all_families().values() if getattr(f, what) is not None]

@@ -111,7 +111,7 @@ class TextLine:
 
 
 def shown_text(value: Any, where: str, legal: str) -> str:
-    """Text of any length that shows as it is read. Raises InputError where it is empty or holds hidden
+    """Text of any length that shows as it is read. Raises InputError if it is empty or holds hidden
     characters."""
     if not isinstance(value, str) or not visible(value):
         raise InputError(where, "not text", value=value, legal=legal)

@@ -61,7 +61,7 @@ def read_bytes(path: str | Path, most_bytes: int, kind: str) -> bytes:
     Raises
     ------
     InputError
-        Where there is no such file, it is a folder, pipe or device, too large, or may not be read.
+        If there is no such file, it is a folder, pipe or device, too large, or may not be read.
     """
     shown = str(path)
     if "\0" in shown:
@@ -100,7 +100,7 @@ def read_text(path: str | Path, most_bytes: int, kind: str) -> str:
     Raises
     ------
     InputError
-        As `read_bytes`; with line and column (in bytes) where it is not UTF-8, or holds a NUL.
+        As `read_bytes`; with line and column (in bytes) if it is not UTF-8, or holds a NUL.
     """
     data = read_bytes(path, most_bytes, kind)
     try:
@@ -130,7 +130,7 @@ def read_json(path: str | Path, most_bytes: int, kind: str) -> Any:
     Raises
     ------
     InputError
-        As `read_text`; with line and column where it is not JSON, which has neither NaN nor infinities, where
+        As `read_text`; with line and column if it is not JSON, which has neither NaN nor infinities, where
         it is nested too deeply, or where a text holds characters that nobody sees.
     """
     text = read_text(path, most_bytes, f"{kind} (JSON)")
@@ -145,7 +145,7 @@ def read_json(path: str | Path, most_bytes: int, kind: str) -> Any:
     except ValueError as error:  # NaN, or an integer of thousands of digits
         raise InputError(str(path), f"not JSON: {error}", legal=kind) from None
     if not text.isascii() or "\\u" in text:
-        # Raise InputError where a key or text holds half a pair, a control, or what turns the direction of
+        # Raise InputError if a key or text holds half a pair, a control, or what turns the direction of
         # text.
         shown = str(path)
         left = [value]
@@ -187,7 +187,7 @@ def whole_file(path: str | Path) -> Iterator[Path]:
 
     The folder must exist; links are followed to it, and refused in the file's place. What killed runs left
     there is removed first. A file that is replaced keeps its permissions; one that is write-protected is
-    kept. Raises InputError where the place cannot be written to, CheckFailure where there is no room; what
+    kept. Raises InputError if the place cannot be written to, CheckFailure if there is no room; what
     was there before is then unchanged.
     """
     with in_one_line(path):
@@ -202,7 +202,7 @@ def whole_file(path: str | Path) -> Iterator[Path]:
 
 
 def _mode(path: str | Path, place: Path) -> int:
-    """Permissions of the file that is to be at `place`. Raises InputError where there can be none."""
+    """Permissions of the file that is to be at `place`. Raises InputError if there can be none."""
     refuse_link(path)
     if not os.path.lexists(place):
         mask = os.umask(0)
@@ -221,7 +221,7 @@ def _mode(path: str | Path, place: Path) -> int:
 
 
 def refuse_link(path: str | Path) -> None:
-    """Raise InputError where a file to be written is a link: it would go to a place that nobody named."""
+    """Raise InputError if a file to be written is a link: it would go to a place that nobody named."""
     if os.path.islink(path) and not os.path.isdir(path):
         raise InputError(
             str(path), "is a link; nothing was changed", legal="the file that it leads to, or a new name"
@@ -280,7 +280,7 @@ def refuse_overwriting(out: str | Path, *inputs: str | Path | None, option: str 
 
 
 def _identity(path: str | Path) -> tuple[int, int] | None:
-    """Device and inode number at the end of all links, None where nothing is there."""
+    """Device and inode number at the end of all links, None if nothing is there."""
     try:
         state = os.stat(path)
     except (OSError, ValueError):
@@ -295,13 +295,13 @@ def _folders(path: str | Path) -> set[tuple[int, int] | None]:
 
 
 def absolute(path: str | Path) -> Path:
-    """The path from the root. Raises InputError where the working folder was removed."""
+    """The path from the root. Raises InputError if the working folder was removed."""
     with in_one_line(path):
         return Path(os.path.abspath(path))
 
 
 def make_folder(path: str | Path) -> None:
-    """Make the folder where it does not exist. Raises as `write_whole` does."""
+    """Make the folder if it does not exist. Raises as `write_whole` does."""
     with in_one_line(path):
         Path(path).mkdir(parents=True, exist_ok=True)
 
@@ -331,7 +331,7 @@ def in_one_line(target: str | Path) -> Iterator[None]:
 
 
 def refusal(where: str, error: OSError) -> InputError | CheckFailure:
-    """Our message for an operating system's refusal to write: CheckFailure where there is no room, else
+    """Our message for an operating system's refusal to write: CheckFailure if there is no room, else
     InputError.
 
     Raises `error` again where it is anything else.

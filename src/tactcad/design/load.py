@@ -31,7 +31,7 @@ def read(source: str | Path) -> CommonTables:
     """The design in a file, or the one of that name in hardware/, checked field by field.
 
     Rules between fields are tried by `tactcad.parts.designs.load`, which is what commands call. Raises
-    InputError where the file is missing or not a design, or a value is not legal.
+    InputError if the file is missing or not a design, or a value is not legal.
     """
     path = find(source)
     return parse(read_text(path, MOST_BYTES, "a design file (TOML)"), str(path))
@@ -243,7 +243,7 @@ def unknown_field(path: str, known: list[str], schema: str = SCHEMA) -> InputErr
 
 
 def _elsewhere(name: str) -> str:
-    """The first field of another table that is called so, or begins so; "" where none does."""
+    """The first field of another table that is called so, or begins so; "" if none does."""
     kinds = {table: kind for family in all_families().values() for table, kind in family.tables.items()}
     every = ((table, f.name) for table, kind in kinds.items() for f in dataclasses.fields(kind))
     return next((f"{t}.{n}" for t, n in every if f"{n}_".startswith(f"{name}_")), "")

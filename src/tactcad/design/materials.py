@@ -45,7 +45,7 @@ class Alloy:
 
     youngs_modulus, yield_strength, fatigue_strength (fully reversed) and tensile_strength in MPa, density in
     kg/m3, conductivity in W/(m K). modulus_per_kelvin: share of E by which it falls per kelvin, 1/K; None for
-    a label of its own. `tensile_strength` is None where it is not known; the Goodman line then
+    a label of its own. `tensile_strength` is None if it is not known; the Goodman line then
     ends at the yield strength, which is Soderberg's. spread: relative, by property.
     """
 
@@ -167,7 +167,7 @@ def alloy(name: str) -> Alloy:
 
 
 def leaf_conductivity(given: float | None) -> float:
-    """Thermal conductivity of the sheet, W/(m K); where it is not known the table's least."""
+    """Thermal conductivity of the sheet, W/(m K); if it is not known the table's least."""
     return given if given is not None else min(present(row.conductivity) for row in ALLOYS.values())
 
 
@@ -180,7 +180,7 @@ def modulus_per_kelvin(name: str) -> float:
 
 
 def completed(name: str, given: Mapping[str, Any]) -> dict[str, Any]:
-    """The properties of a design's material: those given, else the table's. Raises InputError where the name
+    """The properties of a design's material: those given, else the table's. Raises InputError if the name
     is not in the table and a property is missing, or is one of the table's in another spelling."""
     row = ALLOYS.get(name)
     if row:
@@ -206,7 +206,7 @@ def _spelled(name: str) -> str:
 def differences(name: str, given: Mapping[str, Any], origin: Mapping[str, str]) -> tuple[Difference, ...]:
     """Differences between a design's material and the table's row of its name; none for a label of its own.
 
-    Raises InputError where a value differs from the row by more than its spread without a source in `origin`,
+    Raises InputError if a value differs from the row by more than its spread without a source in `origin`,
     or by more than MOST_DIFFERENCE.
     """
     row = ALLOYS.get(name)

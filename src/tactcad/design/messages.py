@@ -11,7 +11,7 @@ class InputError(ValueError):
     where   the field's path, or file with line and column ("element.hinge_thickness", "loads.csv:3:2")
     what    what is wrong, one clause without a full stop; both are shown on one line and shortened, whatever
             a file calls its fields
-    value   the value found, shown with repr and shortened; leave it out where there is none
+    value   the value found, shown with repr and shortened; leave it out if there is none
     legal   what would be accepted
     """
 
@@ -26,13 +26,13 @@ class InputError(ValueError):
 
 
 def near(word: str, known: Iterable[str]) -> str:
-    """ "did you mean X?" for the known word that `word` looks like; "" where none does."""
+    """ "did you mean X?" for the known word that `word` looks like; "" if none does."""
     likely = nearest(word, known)
     return f"did you mean {likely}?" if likely else ""
 
 
 def nearest(word: str, known: Iterable[str]) -> str:
-    """The known word that `word` looks like; "" where none does."""
+    """The known word that `word` looks like; "" if none does."""
     import difflib  # rarely needed
 
     return next(iter(difflib.get_close_matches(word[:200], list(known), n=1)), "")
@@ -72,7 +72,7 @@ def shortened(value: object, most: int = 60) -> str:
 
 
 def hidden(text: str) -> str:
-    """Description of invisible characters in a text that change how the rest is shown; "" where there are
+    """Description of invisible characters in a text that change how the rest is shown; "" if there are
     none.
 
     By the categories of Unicode: controls other than line ends, separators of lines and paragraphs, surrogate

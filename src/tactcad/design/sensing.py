@@ -38,7 +38,7 @@ class Bought:
 class Amplifier(Bought):
     """An instrumentation amplifier; V, ohm, Hz, s, F, V/rtHz, V/K. `pins` by role.
 
-    gains: all that its pins set; empty where a resistor sets any from `least_gain` to `most_gain` as
+    gains: all that its pins set; empty if a resistor sets any from `least_gain` to `most_gain` as
     1 + gain_ohm/R.
     """
 

@@ -135,7 +135,7 @@ def _lock_of(path: Path) -> Iterator[bool]:
 
 
 def _take(handle: int) -> bool | None:
-    """Whether this process now holds the lock; None where the file system has no locks."""
+    """Whether this process now holds the lock; None if the file system has no locks."""
     try:
         fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except BlockingIOError:

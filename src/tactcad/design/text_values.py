@@ -22,7 +22,7 @@ _NUMBER = re.compile(r"[+-]?(([0-9]+\.?[0-9]*|\.[0-9]+)(e[+-]?[0-9]+)?|nan|inf(i
 
 
 def as_number(text: str) -> float:
-    """The number that a text stands for, with or without blanks around it. Raises ValueError where it is
+    """The number that a text stands for, with or without blanks around it. Raises ValueError if it is
     none.
     """
     plain = text.strip(" \t")
@@ -73,7 +73,7 @@ _LONG_KEY = re.compile(
 
 
 def parse_toml(text: str, where: str) -> dict[str, Any]:
-    """The table that TOML text holds; `where` names the text in messages. Raises InputError where it is
+    """The table that TOML text holds; `where` names the text in messages. Raises InputError if it is
     not TOML.
     """
     text = text.replace("\r\n", "\n")

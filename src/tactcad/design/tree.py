@@ -318,7 +318,7 @@ class CommonTables:
     @property
     def stiffness_factor(self) -> float | None:
         """Stiffness with the table's Young's modulus over that with the design's: the ratio of the moduli,
-        since the elements are linear; None where the design has the table's."""
+        since the elements are linear; None if the design has the table's."""
         return next((d.table / d.value for d in self.differences if d.name == "youngs_modulus"), None)
 
     @property

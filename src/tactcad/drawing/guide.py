@@ -217,7 +217,7 @@ def _name(scene: Scene, label: str) -> str:
 
 
 def array_of(scene: Scene) -> Scene | None:
-    """The array that stands in a scene, in its own axes; None where none does."""
+    """The array that stands in a scene, in its own axes; None if none does."""
     return next((s for s in (scene, *scene.ready) if s.name == "array"), None)
 
 

@@ -64,7 +64,7 @@ def nets_in_board(data: bytes) -> Nets:
 
 
 def check_flashes(board: BoardCopper, files: dict[str, bytes]) -> None:
-    """Raises CheckFailure where pads and vias of a copper layer, as read back, are not the board's."""
+    """Raises CheckFailure if pads and vias of a copper layer, as read back, are not the board's."""
     for layer in ("F_Cu", "B_Cu"):
         data = files[f"{layer}.gbr"].decode()
         read = Counter((int(x), int(y)) for x, y in re.findall(r"X(\d+)Y(\d+)D03", data))

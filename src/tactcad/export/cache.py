@@ -41,7 +41,7 @@ def as_entry(key: str, data: bytes) -> bytes:
 
 
 def from_entry(key: str, entry: bytes) -> bytes | None:
-    """The bytes of an entry; None where it is damaged, or another key's."""
+    """The bytes of an entry; None if it is damaged, or another key's."""
     data = entry.partition(b"\n")[2]
     return data if as_entry(key, data) == entry else None
 
@@ -50,7 +50,7 @@ class Cache:
     """A folder of entries; `say` gets one line when an entry is damaged, and one when the folder is of no
     use.
 
-    Raises InputError where `root` holds anything and is not marked as tactcad's.
+    Raises InputError if `root` holds anything and is not marked as tactcad's.
     """
 
     def __init__(
@@ -66,7 +66,7 @@ class Cache:
             self._complain(error)
 
     def get(self, key: str) -> bytes | None:
-        """The bytes kept under the key, None where there are none or they are damaged."""
+        """The bytes kept under the key, None if there are none or they are damaged."""
         path = self._path(key)
         if not os.path.lexists(path):
             return None
@@ -173,7 +173,7 @@ def take_libraries_in() -> None:
 
 
 def _claim(root: Path) -> None:
-    """Mark an empty folder; raises InputError where it is another's."""
+    """Mark an empty folder; raises InputError if it is another's."""
     names = os.listdir(root)  # before the mark is read: who put anything there had marked it
     mark = read_bytes(root / MARK_NAME, MOST_BYTES, "a cache's mark") if MARK_NAME in names else b""
     if mark == MARK:

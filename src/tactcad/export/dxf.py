@@ -111,7 +111,7 @@ def layered_dxf(
 
 
 def checked_dxf(part: Part) -> bytes:
-    """The part's cut file, read back. Raises CheckFailure where it differs from the part."""
+    """The part's cut file, read back. Raises CheckFailure if it differs from the part."""
     data = dxf_bytes(part)
     wrong = check_dxf(data, part)
     if wrong:
@@ -143,7 +143,7 @@ def _clean(point: Point) -> Point:
 def read_dxf(file: str | Path | bytes) -> CutFile:
     """Read a cut file, by its path or as its bytes, whose entities follow its contours head to tail.
 
-    Raises ValueError where the file is no DXF, where there is anything but LINE, ARC and CIRCLE, where a
+    Raises ValueError if the file is no DXF, if there is anything but LINE, ARC and CIRCLE, where a
     chain is open, or where entities do not follow each other.
     """
     import ezdxf
@@ -259,7 +259,7 @@ def check_dxf(written: str | Path | bytes, part: Part) -> list[str]:
     -------
     list of str
         Version, units, layers, gaps, double entities, and contours that differ in area, length or box; empty
-        where nothing is wrong.
+        if nothing is wrong.
     """
     try:
         file = read_dxf(written)

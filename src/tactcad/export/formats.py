@@ -55,7 +55,7 @@ class PartFormat:
     has       which parts have such a file
     asked     what of the options it is made by, which is part of its key in the cache; None: not asked for
     make      the part, the shapes, the file's header, and what was asked, to bytes that were read back and
-              compared with the part; raises CheckFailure where they differ. It imports what it needs when it
+              compared with the part; raises CheckFailure if they differ. It imports what it needs when it
               runs: formats are known without kernel
     released  what a release's README says of the path's folder; "": shops do not get such a file
     ordered   its rank among the files that a shop makes the part from: the bill names the highest; 0: none

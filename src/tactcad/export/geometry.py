@@ -103,7 +103,7 @@ def contour_record(contour: Contour) -> list[list[float]]:
 
 
 def contour_of(rows: list[list[float]]) -> Contour:
-    """The contour of such rows. Raises ValueError or TypeError where they are none."""
+    """The contour of such rows. Raises ValueError or TypeError if they are none."""
 
     def segment(row: list[float]) -> Segment:
         x0, y0, x1, y1, *arc = row

@@ -27,7 +27,7 @@ MOST_BYTES = 50_000_000  # the largest array, 2 x 500, takes under one
 
 
 def golden_path(design_file: Path, design: CommonTables) -> Path | None:
-    """Where the golden file of a design file belongs; None where the design stands in no hardware/, neither
+    """Where the golden file of a design file belongs; None if the design stands in no hardware/, neither
     by the name given nor by where links lead."""
     for folder in (absolute(design_file).parent, design_file.resolve().parent):
         if folder.name == "hardware":
@@ -56,7 +56,7 @@ def _lines(value: Any, indent: str) -> str:
 
 
 def read_golden(path: Path) -> Record:
-    """The record of a golden file. Raises InputError where it is absent, damaged or of another schema."""
+    """The record of a golden file. Raises InputError if it is absent, damaged or of another schema."""
     record = read_json(path, MOST_BYTES, "a golden file")
     wrong = faults(record, SCHEMA)
     if wrong:
@@ -77,7 +77,7 @@ def check_golden(design: CommonTables, path: Path) -> list[Finding]:
     Returns
     -------
     list of Finding
-        Geometry that the golden file's revision does not have fails; under a new revision, and where there is
+        Geometry that the golden file's revision does not have fails; under a new revision, and if there is
         no golden file yet, what `make golden` would take up is flagged.
     """
     if not path.exists():
@@ -131,9 +131,9 @@ def _finding(severity: Severity, design: CommonTables, message: str) -> Finding:
 
 
 def changes_against(path: Path, design: CommonTables) -> list[Change] | None:
-    """What writing the golden file would change, the revision included; None where there is no file yet.
+    """What writing the golden file would change, the revision included; None if there is no file yet.
 
-    Raises CheckFailure where the file there cannot be read.
+    Raises CheckFailure if the file there cannot be read.
     """
     if not path.exists():
         return None
@@ -181,7 +181,7 @@ TABLES = ("holes", "pockets", "limits")
 
 
 def faults(record: Any, schema: str) -> str:
-    """The first fault, "" where there is none."""
+    """The first fault, "" if there is none."""
     if not isinstance(record, dict) or record.get("schema") != schema:
         return f"its schema is not {schema}"
     if not all(isinstance(record.get(k), str) for k in ("design", "revision")):

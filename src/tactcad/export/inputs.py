@@ -67,7 +67,7 @@ def _framed(parts: Iterable[bytes]) -> bytes:
 def source_digest(room: str) -> str:
     """SHA-256 of every file of a room (`src/tactcad/<room>`), names included; "" for the package's own files.
 
-    Raises FileNotFoundError where there is no such room.
+    Raises FileNotFoundError if there is no such room.
     """
     folder = PACKAGE / room
     files = sorted(p for p in (folder.rglob("*") if room else folder.glob("*.py")) if _is_source(p))
@@ -87,7 +87,7 @@ def _is_source(path: Path) -> bool:
 
 
 def first_installed(*names: str) -> str:
-    """The first installed one of libraries that replace each other; the first of all where none is."""
+    """The first installed one of libraries that replace each other; the first of all if none is."""
     return next((name for name in names if _version(name) != ABSENT), names[0])
 
 
@@ -170,7 +170,7 @@ def inputs_of(design: object, rooms: Iterable[str], libraries: Iterable[str]) ->
 
 
 def inputs_from_json(record: Any) -> Inputs | None:
-    """The inputs that an earlier export recorded (`Inputs.as_json`), None where they cannot be understood."""
+    """The inputs that an earlier export recorded (`Inputs.as_json`), None if they cannot be understood."""
     try:
         groups = [record["values"], record["sources"], record["libraries"]]
     except (KeyError, TypeError):
@@ -179,7 +179,7 @@ def inputs_from_json(record: Any) -> Inputs | None:
 
 
 def reasons(before: Inputs | None, now: Inputs) -> list[str]:
-    """Why an output made from `before` has to be made again from `now`, one line each; empty where nothing
+    """Why an output made from `before` has to be made again from `now`, one line each; empty if nothing
     changed.
 
     Raises nothing: a record that cannot be read (None) is a reason too.

@@ -65,7 +65,7 @@ class Progress(Protocol):
 @dataclass(frozen=True)
 class Exported:
     """Result of an export: its folder, how many files it holds, which were made anew, which parts the kernel
-    built, and why (empty where nothing had changed).
+    built, and why (empty if nothing had changed).
     """
 
     folder: Path
@@ -140,7 +140,7 @@ def _unchanged(out: str | Path, earlier: Contents, progress: Progress) -> Export
 
 
 def _reasons(earlier: Contents, now: Inputs) -> list[str]:
-    """Why the export has to be made anew; empty where it need not."""
+    """Why the export has to be made anew; empty if it need not."""
     wrong = [f"{path}: {why}" for path, why in earlier.foreign.items()]
     wrong += [f"{path}: missing" for path in earlier.missing]
     if wrong:
@@ -189,7 +189,7 @@ def _rebuild(
 
 
 def _write_products(folder: Path, plan: Plan, jobs: Sequence[Batch], progress: Progress) -> tuple[str, ...]:
-    """Write every file's bytes, from the cache where it has them; returns the paths that were made anew."""
+    """Write every file's bytes, from the cache if it has them; returns the paths that were made anew."""
     made = set()
     for file, data, anew in made_files(plan, jobs, progress.step, progress.line):
         path = folder / file.path

@@ -49,7 +49,7 @@ def _print(text: str) -> None:
 def looked_at(directory: str | Path, schema: str, others: str = REFUSE) -> Contents:
     """What lies in DIR now; changes nothing.
 
-    Raises InputError where DIR is not a place for a folder, or holds what tactcad did not write there and
+    Raises InputError if DIR is not a place for a folder, or holds what tactcad did not write there and
     `others` is REFUSE.
     """
     out = absolute(directory)
@@ -140,7 +140,7 @@ class Work:
     def publish(self) -> None:
         """Make `folder`, with its manifest, the new DIR; the earlier one is removed, or kept beside.
 
-        Raises CheckFailure where something appeared in the earlier one meanwhile: it is kept.
+        Raises CheckFailure if something appeared in the earlier one meanwhile: it is kept.
         """
         if self.out.is_dir():
             self.folder.chmod(stat.S_IMODE(self.out.stat().st_mode) | 0o700)
@@ -200,7 +200,7 @@ def replacing(directory: str | Path, schema: str, others: str = REFUSE, say: Say
     out = absolute(directory)
 
     def recover(left: Path) -> None:
-        """Of a run that was ended: put DIR back where it is missing, settle what else is there."""
+        """Of a run that was ended: put DIR back if it is missing, settle what else is there."""
         if os.path.lexists(left / EARLIER) and not os.path.lexists(out):
             os.rename(left / EARLIER, out)
         for name in (FINISHED, EARLIER):
@@ -222,7 +222,7 @@ def replacing(directory: str | Path, schema: str, others: str = REFUSE, say: Say
 
 
 def _put_in_place(finished: Path, out: Path, aside: Path) -> Path | None:
-    """Make `finished` the new DIR; returns where the earlier DIR is now, None where there was none."""
+    """Make `finished` the new DIR; returns where the earlier DIR is now, None if there was none."""
     while True:
         try:
             if not os.path.lexists(out):
@@ -245,7 +245,7 @@ def free_name(path: Path, ending: str = "") -> Path:
 
 
 def _exchange(one: Path, other: Path) -> bool:
-    """Exchange two names in one step; False where the system or its file system cannot."""
+    """Exchange two names in one step; False if the system or its file system cannot."""
     import ctypes  # not needed by an export without changes
 
     renameat2 = getattr(ctypes.CDLL(None, use_errno=True), "renameat2", None)

@@ -44,11 +44,11 @@ FROM_SHAPE = ("area_mm2", "centre_mm", "box_mm")
 class Side:
     """One side: what was named and what it is, and its record.
 
-    values    the design's fields by path, None where the side does not tell them (a golden file)
-    pictures  an export's pictures by path, None where the side is no export
-    table     the design as TOML gives it, None where the side does not tell it
+    values    the design's fields by path, None if the side does not tell them (a golden file)
+    pictures  an export's pictures by path, None if the side is no export
+    table     the design as TOML gives it, None if the side does not tell it
     own_code  the record is by the code of a revision, not by the present one
-    of_other  what that code makes of the design on the other side; None where it was not asked, or refuses it
+    of_other  what that code makes of the design on the other side; None if it was not asked, or refuses it
     untold    what could not be compared on this side's account, one clause each
     """
 
@@ -66,7 +66,7 @@ class Side:
 
 
 def named(source: str) -> Path:
-    """The file or folder that `source` names. Raises InputError where it is no path, and no design of that
+    """The file or folder that `source` names. Raises InputError if it is no path, and no design of that
     name."""
     path = Path(source)
     return path if os.path.isdir(path) or path.suffix == ".json" else find(source)
@@ -75,7 +75,7 @@ def named(source: str) -> Path:
 def read_side(source: str) -> Side:
     """One side of a comparison: a folder with a manifest, a golden file (*.json), else a design.
 
-    Raises InputError where `source` is none of them, or damaged.
+    Raises InputError if `source` is none of them, or damaged.
     """
     path = Path(source)
     if os.path.isdir(path):  # False also for texts that are not paths
@@ -91,7 +91,7 @@ def read_side(source: str) -> Side:
 def design_side(
     source: str, kind: Literal["design", "revision"], table: dict[str, Any], untold: tuple[str, ...] = ()
 ) -> Side:
-    """The side of a design, given as TOML gives it, by the present code. Raises InputError where it is none,
+    """The side of a design, given as TOML gives it, by the present code. Raises InputError if it is none,
     or breaks a rule."""
     design = from_table(table)
     refuse_broken(design)

@@ -88,7 +88,7 @@ def scene_step(scene: Scene, shapes: Mapping[str, TopoDS_Shape], header: Header)
     Raises
     ------
     CheckFailure
-        Where it does not read back to the same names, places (1e-7 mm) and volumes.
+        If it does not read back to the same names, places (1e-7 mm) and volumes.
     """
     document, shape_tool = new_document()
     prototypes = {p.part_no: add_prototype(document, shape_tool, p, shapes[p.part_no]) for p in scene.parts}
@@ -171,12 +171,12 @@ class Assembly:
 
 
 def read_assembly(data: bytes) -> Assembly:
-    """Names, places and volumes in a STEP file. Raises CheckFailure where it cannot be read."""
+    """Names, places and volumes in a STEP file. Raises CheckFailure if it cannot be read."""
     return assembly_in(read_document(data))
 
 
 def read_document(data: bytes) -> TDocStd_Document:
-    """A STEP file as a document, its dimensions and tolerances too. Raises CheckFailure where it cannot be
+    """A STEP file as a document, its dimensions and tolerances too. Raises CheckFailure if it cannot be
     read."""
     silence()
     document, _ = new_document()
@@ -234,7 +234,7 @@ def _solids(shape: TopoDS_Shape) -> list[TopoDS_Shape]:
 
 
 def check_part(data: bytes, read: Assembly, part: Part) -> None:
-    """Raise CheckFailure where a part's file, or what was read of it, is not that one part."""
+    """Raise CheckFailure if a part's file, or what was read of it, is not that one part."""
     text = data.decode("latin-1")
     for entity, count in (
         ("PRODUCT(", 1),

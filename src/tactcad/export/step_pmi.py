@@ -227,7 +227,7 @@ def _text(text: str) -> TCollection_HAsciiString:
 def _check_limits(
     part: Part, meant: dict[str, Annotation], read: Sequence[Annotation], letters: Sequence[str]
 ) -> None:
-    """Raise CheckFailure where a limit is missing or otherwise, or one is there that the part does not have.
+    """Raise CheckFailure if a limit is missing or otherwise, or one is there that the part does not have.
 
     The kernel does not read a datum that no tolerance refers to: `letters` are from the text.
     """

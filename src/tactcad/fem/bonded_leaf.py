@@ -109,7 +109,7 @@ class Clamped:
 
     stress        largest on its two faces, MPa; not where the tongue's edges touch, which give way
     gauge_strain  mean over the grid on the gauge's face
-    on_tongue     force, N; 0 where it does not back the leaf
+    on_tongue     force, N; 0 if it does not back the leaf
     """
 
     stress: float

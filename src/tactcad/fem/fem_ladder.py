@@ -20,7 +20,7 @@ PLANE_DENSITIES = (1, 2)
 # Rate of the energy on these meshes, observed: 3.3 to 4.4, held back by the clamp's corners and the fillets'
 # ends where the faces' curvature jumps (tests/fem).
 RATE = 4.0
-SOLID_MESH = 2  # of fem-solid, where none is asked for
+SOLID_MESH = 2  # of fem-solid, if none is asked for
 ACROSS = 2  # order of the elements over the width beside the finest in the plane
 # Factor by which doubling the elements' order reduces the error of the solid's share between plane stress and
 # plane strain: observed 37 or more over the range's corners (tests/fem).

@@ -38,7 +38,7 @@ class Block:
     end: float
     low: float
     high: float
-    low_fillet: Fillet | None  # None where the hinge's lower face is the block's
+    low_fillet: Fillet | None  # None if the hinge's lower face is the block's
     high_fillet: Fillet | None
 
     def slot_corner(self, upper: bool) -> Fillet:
@@ -167,7 +167,7 @@ def cut_element(contour: Contour, clamp_x: float, load_x: float) -> ElementShape
 def read(contour: Contour, load_x: float) -> ElementShape:
     """The hinge shape enclosed by a contour that ends at the load line x = load_x (mm).
 
-    Raises CheckFailure where the contour is not one hinge between two rectangles.
+    Raises CheckFailure if the contour is not one hinge between two rectangles.
     """
     outer = contour if contour.ccw else contour.reversed()
     x0, _, x1, _ = outer.box

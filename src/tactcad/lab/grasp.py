@@ -11,8 +11,8 @@ The stiffness of the calibration's load cell acts on all elements at once and is
 intervals are evaluated at these limits, and the interval given is the smallest that covers all of them.
 
 On one body the pads feel each other, tilt and lift, and its face is inclined: `on_layers` evaluates the same
-readings on layers (layer_fit), on one where its thickness is known, else on layers from the thinnest that
-rigid pads take to the half-space, and covers all of them.
+readings on layers (layer_fit), on one layer if its thickness is known, else on layers from the thinnest valid
+for rigid pads to the half-space, and covers all of their intervals.
 """
 
 from __future__ import annotations
@@ -38,8 +38,8 @@ from .layer_fit import WILD, LayeredArray, fit
 
 SCHEMA = "tactcad-stiffness-1"
 STRAY = 1e-4  # probability, over all elements, below which an element is reported not to follow the others
-SURELY = 3.0  # standard errors below zero from which on an element's force is said to fall; chosen
-TOUCHES = 1e-3  # of the largest force on a pad, from which on a pad is said to touch
+SURELY = 3.0  # standard errors below zero from which an element's force is reported to fall; chosen
+TOUCHES = 1e-3  # of the largest force on a pad, from which a pad counts as touching
 ROUNDED = 1e-9  # below which a singular value of unit columns is nought but rounding
 # An element is at its stop where its deflection is at least NEAR_STOP of the nominal one there (the gap's
 # tolerance and seat are up to 0.2 of it), grows with the load by less than SLOWED of what it did before, and
@@ -73,25 +73,25 @@ class Grasp:
     combined_by_noise: Interval  # by noise and calibration alone
     combined_by_limits: tuple[
         tuple[str, Interval], ...
-    ]  # with each quantity known within limits added in turn
+    ]  # with each quantity known within limits added one by one
     noise: float  # standard deviation of one signal about the common approach, V
     dof: int
     disagreement_p: float  # probability that noise alone makes the elements disagree this much
-    widened: float  # factor on the combined standard error because they disagree; 1 where they do not
+    widened: float  # factor on the combined standard error for disagreement; 1 if they agree
     loads: int  # number used
     dropped_loads: int
     notes: tuple[str, ...]
     warnings: tuple[str, ...]  # of columns that may be in another unit
-    layer: OnLayer | None = None  # where the object was taken as a layer
+    layer: OnLayer | None = None  # if the object was taken as a layer
 
 
 @dataclass(frozen=True)
 class OnLayer:
     """What the readings say of a layer.
 
-    modulus    MPa; None where the thickness is not known
+    modulus    MPa; None if the thickness is not known
     angle      of its face along x and y, degrees: estimate, low, high of each
-    touching   numbers of the pads that press at the largest load, read or not
+    touching   numbers of all pads that press at the largest load, also those without readings
     springs    K_obj by separate springs, for comparison
     """
 
@@ -286,7 +286,7 @@ def on_layers(
     readings, calibration, level
         As of `evaluate`.
     layers
-        One where the thickness is known, else all that the intervals are to cover.
+        One if the thickness is known, else all that the intervals are to cover.
 
     Raises
     ------
@@ -402,8 +402,8 @@ def _even(coupling: np.ndarray) -> np.ndarray:
 
 
 def drift_terms(load: np.ndarray, time: np.ndarray) -> np.ndarray | None:
-    """What every signal is made of besides the approach, an orthonormal basis [term, state]: offsets in
-    contact and before it, and time; None where the load goes with time, so that no drift can be told."""
+    """Terms of every signal besides the approach, an orthonormal basis [term, state]: offsets in contact and
+    before contact, and time; None if the load goes with time, so that no drift can be estimated."""
     touching = load > 0
     terms = np.array([touching, ~touching, time - time.mean()], dtype=float)[[True, not touching.all(), True]]
     rising = np.where(touching, load - load[touching].mean(), 0.0)
@@ -414,7 +414,7 @@ def drift_terms(load: np.ndarray, time: np.ndarray) -> np.ndarray | None:
 
 
 def _without(signal: np.ndarray, terms: np.ndarray | None) -> np.ndarray:
-    """What offsets, and drifts where there are terms, leave of the signals."""
+    """The signals less their offsets, and less their drifts if there are terms."""
     return signal - (signal.mean(1, keepdims=True) if terms is None else (signal @ terms.T) @ terms)
 
 
@@ -506,9 +506,9 @@ def _strays(element: np.ndarray, signal: np.ndarray, terms: np.ndarray | None) -
 def _wrong_forces(
     load: np.ndarray, signal: np.ndarray, calibration: Sensitivity, slopes: Slopes, noise: float, most: float
 ) -> tuple[list[str], float]:
-    """A note where elements' forces fall as the load grows, and one where they pass `most` (N): by how much
-    they rise from the least load to the largest, K/K_v times the signal's slope over the load; and that of
-    all elements (N). K_obj goes by ratios and shows neither.
+    """A note if elements' forces fall as the load grows, and one if they pass `most` (N); then the rise of
+    all elements' force (N). A force rises from the least load to the largest by K/K_v times the signal's
+    slope over the load. K_obj is made of ratios and shows neither.
     """
     away, span = load - load.mean(), float(np.ptp(load))
     if not span:

@@ -58,7 +58,7 @@ class Choice:
 
 @lru_cache(maxsize=1)
 def accuracy_data() -> dict:
-    """data/accuracy.json as written by the fit. Raises InputError where a registered rung is not in it."""
+    """data/accuracy.json as written by the fit. Raises InputError if a registered rung is not in it."""
     data = json.loads((Path(__file__).parent / "data" / "accuracy.json").read_text("utf-8"))
     measured = set.intersection(*(set(zone["promised"]) for zone in data["zones"]))
     for name in (c.name for c in CANDIDATES if c.name not in measured):
@@ -98,7 +98,7 @@ def choose(s: HingeSection, accuracy: float, names: Sequence[str] = ()) -> Choic
 
 
 def require_measured(s: HingeSection, names: Sequence[str] = ()) -> None:
-    """Raise CheckFailure where a design lies outside the envelope in which errors were measured; `names` as
+    """Raise CheckFailure if a design lies outside the envelope in which errors were measured; `names` as
     for `choose`."""
     outside = validity.reasons(s, MEASURED_FOR).ravel()
     for i in np.flatnonzero(outside != ""):

@@ -165,7 +165,7 @@ def allowed(s: HingeSection, grid_length: float, share: float) -> Array:
     """How far off the hinge's middle a grid may lie for its reading to err by `share` at most, mm.
 
     The error grows with the distance. Beyond a grid's length nothing is asked; on a two-sided hinge it may
-    not climb its fillets. Raises CheckFailure where it does even in the middle.
+    not climb its fillets. Raises CheckFailure if it does even in the middle.
     """
     flat = s.straight_length + s.fillet_radius
     room = np.where(s.two_sided, np.maximum(flat - grid_length, 0.0) / 2, grid_length)

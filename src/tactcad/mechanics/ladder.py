@@ -29,7 +29,7 @@ BLOCK = 8192  # designs evaluated together: their intermediate arrays stay in th
 
 @dataclass(frozen=True)
 class Result:
-    """Stiffness (N/mm, NaN where refused), and why refused (a validity.Reason, or None), for each design."""
+    """Stiffness (N/mm, NaN if refused), and why refused (a validity.Reason, or None), for each design."""
 
     stiffness: Array
     valid: np.ndarray
@@ -37,7 +37,7 @@ class Result:
 
     @property
     def reason(self) -> np.ndarray:
-        """Why refused in words, "" where not."""
+        """Why refused in words, "" if not."""
         return validity.in_words(self.broken)
 
 

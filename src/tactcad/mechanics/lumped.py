@@ -42,7 +42,7 @@ def ratio_excess(K_r: Array | float, K_m: Array | float, K_obj: Array | float) -
 def object_stiffness(K_r: Array | float, K_m: Array | float, R: Array | float) -> Array:
     """Equation (3): K_obj = (K_r - R K_m)/(R - 1), N/mm.
 
-    Infinite for R = 1; NaN where also K_r = K_m, since R is then 1 for every object. Near R = 1 the result
+    Infinite for R = 1; NaN if also K_r = K_m, since R is then 1 for every object. Near R = 1 the result
     has only as many correct digits as R - 1.
     """
     R = np.asarray(R)

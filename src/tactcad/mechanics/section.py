@@ -76,7 +76,7 @@ class HingeSection:
         for each in fields(self):
             kind = bool if each.name == "two_sided" else float
             object.__setattr__(self, each.name, np.asarray(getattr(self, each.name), dtype=kind))
-        self.shape  # raises ValueError where they do not broadcast
+        self.shape  # raises ValueError if they do not broadcast
 
     @classmethod
     def of(cls, **parameters: ArrayLike) -> HingeSection:

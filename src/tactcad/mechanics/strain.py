@@ -105,7 +105,7 @@ def peak_stress(s: HingeSection, force: Array | float) -> Array:
     """Largest principal surface stress under a force (N) at the load line, MPa: at the slot-side fillet
     towards the body, of the whole width.
 
-    Raises CheckFailure where the fillet's factor was not fitted.
+    Raises CheckFailure if the fillet's factor was not fitted.
     """
     _require_fitted(s)
     return stress_beyond_the_fit(s, force)
@@ -156,7 +156,7 @@ def narrow(s: HingeSection, at: str, grid_length: Array | float = 0.0, data: dic
     """Factor on strain ("grid", "fillet") or stress ("stress") at mid-width where a leaf is hardly wider than
     long.
 
-    1 + nu^2 P (l/b - 1/NARROW), and 1 where b is NARROW l or more. P as for `mid_width_share`, under a grid
+    1 + nu^2 P (l/b - 1/NARROW), and 1 if b is NARROW l or more. P as for `mid_width_share`, under a grid
     with grid/l besides.
 
     Parameters
@@ -205,7 +205,7 @@ def face_stress(s: HingeSection, force: Array | float) -> Array:
     """Largest stress on the flat gauge face of a one-sided hinge, MPa; on a two-sided one the fillet's.
 
     Over the width's mean by the fillet's share: solid elements on the fit's samples give 0.90 to 1.035 of it,
-    and never more than 0.97 of the fillet's. Raises CheckFailure where the factor was not fitted.
+    and never more than 0.97 of the fillet's. Raises CheckFailure if the factor was not fitted.
     """
     _require_fitted(s)
     return nominal(s, force) * s.youngs_modulus * face_factor(s) * peak_share(s)
@@ -280,7 +280,7 @@ def grid_factor(s: HingeSection, grid_length: Array | float, rung: str = ladder.
 
     Each root adds X(w) to the integral of (strain over nominal - 1), up to w = distance from the
     fillet's end over t: mean = 1 + 2 t/grid [X(w+) - X(w-)], w+- = (+-grid - lc)/(2 t). Raises
-    CheckFailure where a grid on a two-sided hinge would reach over more than half of its fillets.
+    CheckFailure if a grid on a two-sided hinge would reach over more than half of its fillets.
     """
     grid = np.asarray(grid_length, dtype=float)
     if rung not in ladder.FITTED:
@@ -376,7 +376,7 @@ SHORT = 1.0
 @dataclass(frozen=True)
 class StrainErrors:
     """Largest relative errors that are stated: of the mean under a grid of the gauge, of the peak strain and
-    of the largest principal stress at the fillet, all at mid-width. NaN where nothing was measured."""
+    of the largest principal stress at the fillet, all at mid-width. NaN if nothing was measured."""
 
     gauge: Array
     fillet_strain: Array

@@ -43,7 +43,7 @@ def yield_force(s: HingeSection, alloy: Alloy) -> Array:
 
 
 def yield_force_where_known(s: HingeSection, alloy: Alloy) -> Array:
-    """`yield_force`, N; NaN where the closed forms for stress were not fitted."""
+    """`yield_force`, N; NaN if the closed forms for stress were not fitted."""
     force = np.full(s.shape, np.nan)
     known = validity.reasons(s, "plane") == ""
     if known.any():
@@ -62,7 +62,7 @@ def rated_force(s: HingeSection, alloy: Alloy, requested: Array | float, factor:
 
 
 def elastic(s: HingeSection, alloy: Alloy, force: Array | float) -> np.ndarray:
-    """Whether the hinge stays elastic under a force, N; where it does not, its computed strain is
+    """Whether the hinge stays elastic under a force, N; if it does not, its computed strain is
     meaningless.
     """
     return np.asarray(strain.peak_stress(s, force) <= alloy.yield_strength)

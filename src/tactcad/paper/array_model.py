@@ -60,13 +60,13 @@ class ArrayModel:
     bond_line: bool
 
     def rows(self, number: np.ndarray) -> np.ndarray:
-        """Index of each element number; -1 where the design has no such element."""
+        """Index of each element number; -1 if the design has no such element."""
         place = {int(n): i for i, n in enumerate(self.number)}
         return np.array([place.get(int(n), -1) for n in number])
 
 
 def from_design(design: Design) -> ArrayModel:
-    """The array of a loaded design (tactcad.parts.designs.load). Raises InputError where it has no rig
+    """The array of a loaded design (tactcad.parts.designs.load). Raises InputError if it has no rig
     tables.
     """
     calibration, sample, grasping = design.calibration, design.sample, design.grasping

@@ -88,7 +88,7 @@ NOT_ON_K = (nan, nan)
 
 @dataclass(frozen=True)
 class Effect:
-    """One effect. Sizes are relative half-widths; NaN where it does not act on K."""
+    """One effect. Sizes are relative half-widths; NaN if it does not act on K."""
 
     name: str
     how: str

@@ -246,7 +246,7 @@ def _from_k_v(
     """K (N/mm) when one dimension is what makes strain per deflection q, and for q a 95 % scatter lower and
     higher.
 
-    0 or inf where no value of that dimension within the rung's range does.
+    0 or inf if no value of that dimension within the rung's range does.
     """
     factor = np.geomspace(0.35, 2.5, 800)
     grid = s.rows(np.zeros(len(factor), int)).with_(**{name: float(getattr(s, name)[0]) * factor})

@@ -176,7 +176,7 @@ def release(
 
 
 def golden_faults(design: CommonTables, design_file: Path) -> list[str]:
-    """Why the golden file does not allow a release of this revision; empty where it holds just this geometry,
+    """Why the golden file does not allow a release of this revision; empty if it holds just this geometry,
     or where the design stands in no hardware/ and can have none."""
     path = golden_path(design_file, design)
     return [] if path is None else [finding.message for finding in check_golden(design, path)]
@@ -198,7 +198,7 @@ def _refuse(design: CommonTables, failures: Sequence[str], draft: bool, progress
 
 
 def _path_in_zip(file: FileRecord) -> str:
-    """Path of an exported file in the zip; "" where it is of no use to a shop or a builder."""
+    """Path of an exported file in the zip; "" if it is of no use to a shop or a builder."""
     if file.path.startswith("guide/"):
         return file.path
     parts = {form.kind for form in part_formats() if form.released}

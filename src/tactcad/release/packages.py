@@ -276,7 +276,7 @@ def table_rows(data: bytes) -> list[dict[str, str]]:
 
 
 def _of_parts(table: bytes, lines: Iterable[OrderLine]) -> bytes:
-    """Rows of the inspection list that are of these parts; empty where none is."""
+    """Rows of the inspection list that are of these parts; empty if none is."""
     numbers = {line.row.part_no for line in lines}
     rows = [row for row in table_rows(table) if row["part_no"] in numbers]
     return table_bytes(rows) if rows else b""

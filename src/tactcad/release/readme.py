@@ -160,7 +160,7 @@ def _short(contents: ReleaseContents, numbers: Sequence[str]) -> str:
 
 
 def keys(contents: ReleaseContents, parts: Sequence[Part]) -> list[str]:
-    """Each distinct key characteristic with the parts that have it; empty where they have none."""
+    """Each distinct key characteristic with the parts that have it; empty if they have none."""
     groups: dict[Characteristic, list[str]] = {}
     for part in parts:
         for c in part.characteristics:

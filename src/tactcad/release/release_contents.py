@@ -27,7 +27,7 @@ PROCESSES = {
 
 @dataclass(frozen=True)
 class ReleaseContents:
-    """Subject of a release: its scenes, what the checks flagged, why it is only a draft (empty where it is
+    """Subject of a release: its scenes, what the checks flagged, why it is only a draft (empty if it is
     not), whether it is a sample without owner, and how many sets are ordered.
     """
 
@@ -135,7 +135,7 @@ def _own(
 def owned(design: CommonTables, owner: str | None, contact: str | None, sample: bool) -> CommonTables:
     """The design with the owner and contact that are given in place of its own.
 
-    Raises InputError where one of them is unusable as text, or, but for a sample, there is none.
+    Raises InputError if one of them is unusable as text, or, but for a sample, there is none.
     """
     given = {"organisation": ("--owner", owner), "contact": ("--contact", contact)}
     specs = Identity.__dataclass_fields__

@@ -35,7 +35,7 @@ AP242 = "-ap242"  # ends the name of a model with limits
 
 
 def check_archive(files: Mapping[str, bytes], contents: ReleaseContents) -> list[str]:
-    """What is wrong with the whole zip's files (`read_back`); empty where nothing is."""
+    """What is wrong with the whole zip's files (`read_back`); empty if nothing is."""
     return [
         *_part_faults(files, contents),
         *(fault for scene in contents.scenes for fault in _scene_faults(files, contents, scene)),
@@ -221,7 +221,7 @@ def _guide_faults(files: Mapping[str, bytes], contents: ReleaseContents) -> Iter
 
 
 def _pages(files: Mapping[str, bytes], path: str) -> list[list[str]]:
-    """Texts of a PDF's pages; none where it is absent or cannot be read."""
+    """Texts of a PDF's pages; none if it is absent or cannot be read."""
     from pypdf.errors import PyPdfError
 
     try:
@@ -279,7 +279,7 @@ OWN = (README, MANIFEST, ORDER, PART_INSPECTION, inspection.NAME)
 def check_packages(
     paths: Sequence[Path], packages: Sequence[Packed], every: Mapping[str, bytes], contents: ReleaseContents
 ) -> list[str]:
-    """What is wrong with the written packages; empty where nothing is.
+    """What is wrong with the written packages; empty if nothing is.
 
     Parameters
     ----------

@@ -59,7 +59,7 @@ class Figure:
         return record
 
     def value(self, record: Any) -> Any:
-        """The number in its unit, None where the record has none."""
+        """The number in its unit, None if the record has none."""
         value = self.of(record)
         return None if value is None else self._scaled(value)
 
@@ -127,7 +127,7 @@ _DECLARED: dict[type, Figures] = {}
 
 
 def declared(record: type) -> list[Figure]:
-    """The figures of a kind of record, in the order of tables; none where none are declared."""
+    """The figures of a kind of record, in the order of tables; none if none are declared."""
     return [*_DECLARED.get(record, {}).values()]
 
 

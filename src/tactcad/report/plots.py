@@ -98,7 +98,7 @@ def log_ticks(axis: Axis, ticks: Iterable[float]) -> None:
 
 
 def log_axes(ax: Axes, x: Iterable[float] = (), y: Iterable[float] = ()) -> None:
-    """Logarithmic where there are ticks, with plain numbers at them."""
+    """Logarithmic if there are ticks, with plain numbers at them."""
     for name, axis, ticks in (("x", ax.xaxis, x), ("y", ax.yaxis, y)):
         if ticks:
             ax.set(**{f"{name}scale": "log"})

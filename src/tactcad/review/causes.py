@@ -27,7 +27,7 @@ IDENTITY = ("revision", "date", "title", "author", "organisation")  # of [design
 
 @dataclass(frozen=True)
 class Edit:
-    """One field of the text before and after, ABSENT where it is not stated."""
+    """One field of the text before and after, ABSENT if it is not stated."""
 
     path: FieldPath
     old: Any
@@ -69,7 +69,7 @@ def causes(old: Table, new: Table) -> list[Cause]:
     """Every cause between two designs' tables, as TOML gives them, in the order of the text.
 
     An edit that leaves the design as it is, such as a default now written out, is none. Raises InputError
-    where a table is no design.
+    if a table is no design.
     """
     before = from_table(old)
     if before == from_table(new):

@@ -66,7 +66,7 @@ class Consequence:
 class Meaning:
     """Consequences of all that changed, largest first.
 
-    together      all causes at once; None where the sides' records do not tell
+    together      all causes at once; None if the sides' records do not tell
     checked       whether `together` says what checks say: both sides tell their design
     interactions  where the causes do more or less together than one by one, one line for each element
     untold        why there are no consequences of causes, one line each
@@ -114,7 +114,7 @@ def meaning(old: Side, new: Side) -> Meaning:
 
 
 def kept_designs(old: Side, new: Side) -> tuple[CommonTables, CommonTables]:
-    """Both sides' designs by the present code. Raises InputError where one tells none, or breaks a rule."""
+    """Both sides' designs by the present code. Raises InputError if one tells none, or breaks a rule."""
     for side in (old, new):
         if side.table is None:
             raise InputError(
@@ -124,7 +124,7 @@ def kept_designs(old: Side, new: Side) -> tuple[CommonTables, CommonTables]:
 
 
 def _loaded(side: Side) -> CommonTables | str | None:
-    """The side's design by the present code, None where it tells none; why it is refused."""
+    """The side's design by the present code, None if it tells none; why it is refused."""
     if side.table is None:
         return None
     try:
@@ -134,7 +134,7 @@ def _loaded(side: Side) -> CommonTables | str | None:
 
 
 def _kept(table: Table) -> CommonTables:
-    """A design that keeps its rules. Raises InputError where it does not."""
+    """A design that keeps its rules. Raises InputError if it does not."""
     design = from_table(table)
     refuse_broken(design)
     return design
@@ -214,7 +214,7 @@ def _recorded(old: Side, new: Side, untold: Sequence[str]) -> Meaning:
 
 
 def _difference(old: Side, new: Side, design: CommonTables | None) -> SensorEffect | None:
-    """Of two records, of one design where it is given; None where one of them does not hold what that
+    """Of two records, of one design if it is given; None if one of them does not hold what that
     takes."""
     try:
         before, after = (recorded_state(record, design) for record in comparable(old, new))
@@ -301,5 +301,5 @@ KINDS: dict[str, Callable[[Compared], bool]] = {
 
 
 def held(kinds: Collection[str], compared: Compared) -> list[str]:
-    """Those of the kinds that the comparison holds. Raises InputError where the sides do not tell."""
+    """Those of the kinds that the comparison holds. Raises InputError if the sides do not tell."""
     return [kind for kind in kinds if KINDS[kind](compared)]

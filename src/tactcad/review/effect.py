@@ -42,7 +42,7 @@ FIGURES = {
 
 @dataclass(frozen=True)
 class ElementFigures:
-    """One element; None where the models do not reach it, or the side does not tell."""
+    """One element; None if the models do not reach it, or the side does not tell."""
 
     stiffness: float | None  # N/mm
     rated_force: float | None  # N, in use
@@ -72,7 +72,7 @@ class SensorState:
     cut_length   of all wire-cut pieces of the array, mm
     made         every part that is made and has a sheet, by number
     scenes       by name: placements and bill of the record of geometry
-    size         of the array as built, mm; None where only a record of geometry is there
+    size         of the array as built, mm; None if only a record of geometry is there
     """
 
     elements: Mapping[str, ElementFigures]
@@ -185,7 +185,7 @@ class Reviewed:
 
 
 def signals(design: Design) -> list[float]:
-    """V/N of every element of facing rows. Raises CheckFailure where one is out of the model's range."""
+    """V/N of every element of facing rows. Raises CheckFailure if one is out of the model's range."""
     layout, gauge, electronics = Layout(design), design_gauge(design), design_readout(design)
     read = readout.predict(hinge_section(layout, layout.elements), gauge, electronics, 0.0)
     return [float(volts) for volts in read.per_force]
@@ -302,7 +302,7 @@ def same_elements(old: CommonTables, new: CommonTables) -> Pairs:
 
 
 def by_name(old: SensorState, new: SensorState) -> Pairs:
-    """Elements paired by designator, where no layout is known."""
+    """Elements paired by designator, if no layout is known."""
     names = dict.fromkeys([*old.elements, *new.elements])
     return [(n if n in old.elements else None, n if n in new.elements else None) for n in names]
 
@@ -371,7 +371,7 @@ def _elements(
 
 
 def _changed(old: float | None, new: float | None) -> ChangedFigure | None:
-    """Both numbers where they differ by more than rounding; None where one is not known."""
+    """Both numbers where they differ by more than rounding; None if one is not known."""
     if old is None or new is None or isclose(old, new, rel_tol=SHARE, abs_tol=0.0):
         return None
     return ChangedFigure(old, new)

@@ -56,7 +56,7 @@ class PlacedFact:
 @dataclass(frozen=True)
 class MotionFact:
     """A declared motion: of each group its designators and the offsets (mm) that it goes from and to, and the
-    share of the way at which the scene stands, None where it does not stand on it."""
+    share of the way at which the scene stands, None if it does not stand on it."""
 
     name: str
     ways: tuple[tuple[tuple[str, ...], Vector, Vector], ...]
@@ -354,7 +354,7 @@ class FitFacts:
 class ElementFacts:
     """All elements, by designator: the estimate's fields and those of the virtual builds; their pairs.
 
-    `why_not` says why there is no estimate, "" where there is one.
+    `why_not` says why there is no estimate, "" if there is one.
     """
 
     rung: str
@@ -431,9 +431,9 @@ class FindingFact:
     """One finding.
 
     about        as the check names it
-    scene        that it belongs to, "" where to all that hold the part
+    scene        that it belongs to, "" if to all that hold the part
     designators  of the parts that it is about; of a part number all of its
-    place        mm, in the scene's frame where there is a scene, else in the part's own; empty: all of it
+    place        mm, in the scene's frame if there is a scene, else in the part's own; empty: all of it
     """
 
     check: str

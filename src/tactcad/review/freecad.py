@@ -47,7 +47,7 @@ ESTIMATES = (
 
 
 def program() -> str:
-    """FreeCAD's window program, which alone keeps colours. Raises CheckFailure where it is not installed."""
+    """FreeCAD's window program, which alone keeps colours. Raises CheckFailure if it is not installed."""
     found = next(filter(None, map(shutil.which, COMMANDS)), None)
     if found is None:
         raise CheckFailure(
@@ -60,7 +60,7 @@ def program() -> str:
 def refuse_no_document(out: str) -> None:
     """What keeps a document from being made at `out`, before any work.
 
-    Raises InputError where it is no document's name, CheckFailure where FreeCAD is not installed.
+    Raises InputError if it is no document's name, CheckFailure if FreeCAD is not installed.
     """
     if not out.endswith(".FCStd"):
         raise InputError("--freecad", "not a document of FreeCAD", value=out, legal="NAME.FCStd")

@@ -54,7 +54,7 @@ LEFT_OUT = "Left out while live; `tactcad review` has it."
 
 @dataclass(frozen=True)
 class NumberChange:
-    """A number of the model before and after, None where there is none; `about` names the designators."""
+    """A number of the model before and after, None if there is none; `about` names the designators."""
 
     about: str
     what: str
@@ -69,7 +69,7 @@ class LiveState:
     version  grows with every change of the rest
     model    version at which the model changed last
     seconds  that the model took from the file's reading on
-    message  why the file as it is now gives no model, "" where it does
+    message  why the file as it is now gives no model, "" if it does
     changes  of `number_changes`, from the model before
     """
 
@@ -92,7 +92,7 @@ class Live:
 
     def __init__(self, path: Path, scene: str, shapes: Callable[[], Shapes]) -> None:
         """`shapes` gives makers of solids that share their cache: one knows its shapes by part number, which
-        stays when the part changes. Raises InputError where the file is no design that keeps its rules."""
+        stays when the part changes. Raises InputError if the file is no design that keeps its rules."""
         self.path, self.scene, self.shapes = path, scene, shapes
         self.changed = threading.Condition()
         self._text: str | None = None
@@ -260,7 +260,7 @@ class LiveServer(ThreadingHTTPServer):
     def __init__(self, live: Callable[[], Live], library: ViewerLibrary, port: int) -> None:
         """`port` 0 takes a free one; `live`, which takes seconds, is made once the port is this server's.
 
-        Raises InputError where the port is taken or not allowed, and what `live` raises."""
+        Raises InputError if the port is taken or not allowed, and what `live` raises."""
         self.library = library
         self.token = secrets.token_urlsafe(24)
         try:

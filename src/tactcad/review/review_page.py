@@ -68,9 +68,9 @@ def viewer_library() -> ViewerLibrary:
     Raises
     ------
     InputError
-        Where it is not installed; says how to get it.
+        If it is not installed; says how to get it.
     CheckFailure
-        Where it is not whole, or not of the version that the page needs.
+        If it is not whole, or not of the version that the page needs.
     """
     spec = find_spec(PACKAGE)
     if spec is None or not spec.submodule_search_locations:

@@ -84,7 +84,7 @@ def revision_sides(
     Raises
     ------
     InputError
-        Where there is no repository, no such revision, no such design in it, or no way to compare it.
+        If there is no repository, no such revision, no such design in it, or no way to compare it.
     """
     file = design_file(design)
     with repository_of(file) as repository:
@@ -213,7 +213,7 @@ def _record(folder: Path, design: Path) -> Record:
 
 def _from_nothing(said: dict[str, Any]) -> Record:
     """The record whose every part, scene and element was said to be added. Raises ValueError, LookupError or
-    TypeError where it is none."""
+    TypeError if it is none."""
     record: Record = {"schema": SCHEMA, **{name: said["new"][name] for name in ("design", "revision")}}
     record |= {"parts": {}, "scenes": {}, "elements": {}}
     for change in said["changes"]:
@@ -227,7 +227,7 @@ def _from_nothing(said: dict[str, Any]) -> Record:
 
 @contextmanager
 def repository_of(file: Path) -> Iterator[Repository]:
-    """The repository of the folder where a file stands, or stood. Raises InputError where there is none, git
+    """The repository of the folder where a file stands, or stood. Raises InputError if there is none, git
     is not installed, or git refuses it."""
     folder = next(f for f in file.parents if f.is_dir())
     run = _git(folder, "rev-parse", "--show-toplevel")
@@ -253,14 +253,14 @@ class Repository:
     scratch: Path
 
     def path_of(self, file: Path) -> str:
-        """A file's path in the repository, with "/". Raises InputError where it lies outside."""
+        """A file's path in the repository, with "/". Raises InputError if it lies outside."""
         try:
             return file.relative_to(self.root.resolve()).as_posix()
         except ValueError:
             raise InputError(str(file), f"not in the repository {self.root}", legal=LEGAL) from None
 
     def commit(self, revision: str) -> str:
-        """The full name of a commit. Raises InputError where `revision` names none."""
+        """The full name of a commit. Raises InputError if `revision` names none."""
         found = REVISION.fullmatch(revision)
         named = found and _git(self.root, "rev-parse", "--verify", "--quiet", found[1])
         if found and named and not named.returncode:
@@ -272,8 +272,8 @@ class Repository:
         raise InputError("revision", f"none in {self.root}", value=revision, legal=legal)
 
     def file(self, commit: str, path: str, most_bytes: int) -> bytes | None:
-        """A committed file's content; None where the commit has no such file, or a larger one. Raises
-        InputError where the clone lacks it."""
+        """A committed file's content; None if the commit has no such file, or a larger one. Raises
+        InputError if the clone lacks it."""
         listed = self._run("ls-tree", "--full-tree", commit, "--", path)
         mode = listed.stdout.split(b" ", 1)[0]
         if not listed.returncode and mode in (b"", SUBMODULE):
@@ -291,7 +291,7 @@ class Repository:
 
     def checked_out(self, commit: str) -> Path:
         """A folder with the commit's files in TREE, there as long as the repository is. Raises InputError
-        where git cannot make it."""
+        if git cannot make it."""
         folder = self.scratch / commit
         (folder / TREE).mkdir(parents=True, exist_ok=True)
         places = {"GIT_WORK_TREE": str(folder / TREE), "GIT_INDEX_FILE": str(folder / "index")}

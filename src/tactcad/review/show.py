@@ -66,7 +66,7 @@ def show(design: str | Path | CommonTables, scene: str = "array") -> ShownPage:
     Raises
     ------
     InputError
-        Where there is no such design or scene, or the design breaks a rule.
+        If there is no such design or scene, or the design breaks a rule.
     CheckFailure
         Where the page's viewer, the extra `review`, is not installed.
     """
@@ -132,7 +132,7 @@ def show_in_vscode(design: str | Path | CommonTables, scene: str = "array") -> N
 
 
 def _listening() -> ModuleType:
-    """The package ocp-vscode, with a viewer that listens. Raises CheckFailure where there is none."""
+    """The package ocp-vscode, with a viewer that listens. Raises CheckFailure if there is none."""
     if find_spec(VSCODE) is None:
         raise CheckFailure(f"ocp-vscode is not installed: {INSTALL}")
     package = importlib.import_module(VSCODE)

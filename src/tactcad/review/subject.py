@@ -36,7 +36,7 @@ class Subject:
 def subject(source: str) -> Subject:
     """What `source` names: a design (a path, or a name in hardware/), or an export's folder.
 
-    Raises InputError where it is neither, or the export is damaged or was made by another version.
+    Raises InputError if it is neither, or the export is damaged or was made by another version.
     """
     if os.path.isdir(source):  # False also for texts that are not paths
         return _exported(source, Path(source))

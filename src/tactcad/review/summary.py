@@ -159,7 +159,7 @@ def _lists(effect: SensorEffect) -> Iterator[tuple[str, Sequence[str]]]:
 
 
 def _cells(effect: SensorEffect) -> list[str]:
-    """A cell of each of COLUMNS, empty where nothing changes."""
+    """A cell of each of COLUMNS, empty if nothing changes."""
     cells = [_range([e.figures[n].change for e in effect.elements if n in e.figures]) for n in FIGURES]
     share, mass, cut = effect.yield_share, effect.mass, effect.cut_length
     cells.append(f"{100 * share.old:.4g} -> {100 * share.new:.4g} %" if share else "")

@@ -31,7 +31,7 @@ def cantilevers(design: Design) -> Mechanism:
     left of the leaf's middle moves. The pad touches by a ball whose middle is level with the hinge, so that a
     rigid face presses at the pad's middle, as the estimate takes it, however far the arm has turned.
 
-    Raises CheckFailure where an element is out of the estimator's range.
+    Raises CheckFailure if an element is out of the estimator's range.
     """
     layout, e, width = Layout(design), design.element, design.sheet.thickness
     springs, signal = springs_of(design)

@@ -30,7 +30,7 @@ class Felt:
 
     deflection  of the pads' middles, mm
     force       across the pads, N; at its stop a pad bears more
-    shear       along x and y of the pads' frames, N, [.., taxel, 2]; not a number where none is felt
+    shear       along x and y of the pads' frames, N, [.., taxel, 2]; not a number if none is felt
     used        pads that touch and are off their stops
     """
 
@@ -42,7 +42,7 @@ class Felt:
 
     @property
     def object(self) -> tuple[Interval | None, ...]:
-        """K_obj of each frame, N/mm, with its interval; None where fewer than two pads are used.
+        """K_obj of each frame, N/mm, with its interval; None if fewer than two pads are used.
 
         Raises InputError for taxels of a family whose readings `tactcad stiffness` does not take either.
         """

@@ -1,4 +1,5 @@
-"""What several rigs share: stand, cart with holder and sample, and the vertical axis with the force gauge."""
+"""Assemblies shared by several rigs: stand, cart with holder and sample, and the vertical axis with the force
+gauge."""
 
 from __future__ import annotations
 
@@ -36,7 +37,11 @@ AXIS_LIFT = 200.0  # exploded views: the vertical axis over everything else
 THREAD, LENGTH, UNDER = PLATE_SCREW
 SQUARE = "precision square, 100 mm"
 SHIMS = "shim foil, 0.01 and 0.02 mm, scissors"
-BESIDE: Vector = (-300.0, 0.0, 2.0)  # where the cart is put together, mm from its place on the base plate
+BESIDE: Vector = (
+    -300.0,
+    0.0,
+    2.0,
+)  # place of the cart during its assembly, mm from its place on the base plate
 OVER: Vector = (0.0, 0.0, 2.0)
 RAISED = 6.0  # mm that the force axis is driven up while something is brought in under it
 JAM_SPANNER = f"spanner {screws.JAM_NUT[2][0]:g} mm: the tip's jam nut"
@@ -64,7 +69,7 @@ def place_stand(b: Builder, rig: StandLayout, stages: bool) -> str:
 
 
 def place_cart(b: Builder, rig: CartLayout, roll: float) -> str:
-    """Cart with holder, put together beside the base plate; returns the lid's designator."""
+    """Cart with holder, assembled next to the base plate; returns the lid's designator."""
     b.group("cart")
     b.unit("cart with holder and sample")
     c, bear = rig.cart, rig.bearing
@@ -309,11 +314,11 @@ def driven(
     off: float = 0.0,
     at: Vector = STILL,
 ) -> list[Move | tuple[str, ...]]:
-    """A stage is fixed: its moving half, and what stands on it, is driven to one end, the screws of the side
-    that is then free go in, then those of the other side, and it is driven back.
+    """Fix a stage: its moving half, with the parts on it, is driven to one end, the screws of the side that
+    is then free go in, then those of the other side, and it is driven back.
 
-    `fixings` are the screws, each with the side along the axis that it is on; `off` is how far, mm, the
-    moving half stands from the middle of its travel at last; `at` is where the stage is meanwhile.
+    `fixings` are the screws, each with the side along the axis that it is on; `off`: final distance, mm, of
+    the moving half from the middle of its travel; `at`: the stage's place meanwhile.
     """
     by, here = "its micrometer", at
     moves: list[Move | tuple[str, ...]] = []

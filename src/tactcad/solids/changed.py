@@ -27,7 +27,7 @@ CHORD, TURN = 1e-3, 0.3
 
 @dataclass(frozen=True)
 class ChangedMaterial:
-    """Pieces of material, None where there is none, and what told them apart: the kernel; meshes, whose
+    """Pieces of material, None if there is none, and what told them apart: the kernel; meshes, whose
     curved faces miss by up to CHORD; or nothing: `removed` and `added` are the old and the new solid."""
 
     kept: TopoDS_Shape | None
@@ -66,7 +66,7 @@ def _pieces(done: BRepAlgoAPI_BooleanOperation) -> TopoDS_Shape | None:
 
 
 def _by_meshes(old: TopoDS_Shape, new: TopoDS_Shape) -> ChangedMaterial:
-    """Raises ValueError where a mesh is not closed, or the pieces miss the whole by more than its chords."""
+    """Raises ValueError if a mesh is not closed, or the pieces miss the whole by more than its chords."""
     a, b = (closed(triangles(shape, CHORD, TURN)) for shape in (old, new))
     kept, removed, added = (_without_films(m) for m in (a ^ b, a - b, b - a))
     for side, other in ((old, removed), (new, added)):
@@ -84,7 +84,7 @@ def _without_films(mesh: manifold3d.Manifold) -> manifold3d.Manifold:
 
 
 def closed(mesh: tuple[np.ndarray, np.ndarray]) -> manifold3d.Manifold:
-    """A mesh (vertices, mm; triangles) as a closed surface. Raises ValueError where it is not closed."""
+    """A mesh (vertices, mm; triangles) as a closed surface. Raises ValueError if it is not closed."""
     made = manifold3d.Manifold(
         manifold3d.Mesh64(np.ascontiguousarray(mesh[0]), np.ascontiguousarray(mesh[1], dtype=np.uint64))
     )

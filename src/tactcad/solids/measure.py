@@ -109,7 +109,7 @@ def faces_within(faces: Faces, place: Placement, box: np.ndarray, reach: float) 
     Returns
     -------
     TopoDS_Compound or None
-        The faces at their place; None where none comes near.
+        The faces at their place; None if none comes near.
     """
     low, high = np.moveaxis(boxed(faces.boxes, np.array(place.rotation), np.array(place.origin)), -2, 0)
     near = np.flatnonzero(np.all((low <= box[1] + reach) & (high >= box[0] - reach), axis=1))
@@ -129,7 +129,7 @@ def met_at_vertex(
     first: TopoDS_Shape | None, second: TopoDS_Shape | None, within: float
 ) -> tuple[float, Vector] | None:
     """A vertex of one set of faces that lies within that distance (mm) of the other set: its distance and
-    place, as of `nearest`; None where those that are tried lie further off, though the sets may not.
+    place, as of `nearest`; None if those that are tried lie further off, though the sets may not.
 
     Quick where faces have thousands of edges, whose pairs `nearest` would all look at.
     """

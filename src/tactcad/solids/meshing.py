@@ -10,7 +10,7 @@ CHORD_MM = 0.05  # largest chord error; the turn governs small radii, this one t
 @dataclass(frozen=True)
 class Meshing:
     """`angular`: largest turn between facets, rad; `error`: largest relative error of a part's volume that is
-    promised, None where only what facets can explain is."""
+    promised, None if only what facets can explain is."""
 
     angular: float = 0.2
     error: float | None = None

@@ -80,7 +80,7 @@ def tessellated(shape: TopoDS_Shape, linear: float, angular: float) -> list[Topo
 def face_triangles(face: TopoDS_Face) -> tuple[np.ndarray, np.ndarray]:
     """Points (n, 3) in mm of a meshed face, and corners (m, 3) of its triangles, facing outwards.
 
-    Raises ValueError where the kernel could not mesh it.
+    Raises ValueError if the kernel could not mesh it.
     """
     where = TopLoc_Location()
     mesh = BRep_Tool.Triangulation_s(face, where)

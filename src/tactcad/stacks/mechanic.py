@@ -325,7 +325,7 @@ class Assembled:
             backwards = back_share(s, K, self.arm, give) * (load - closing)
             stress = strain.stress_beyond_the_fit(s, np.maximum(forwards, backwards))
         share = stress / d.material.yield_strength
-        return np.where(share < CUT, share, CUT)  # not a number where there is no hinge
+        return np.where(share < CUT, share, CUT)  # not a number if there is no hinge
 
 
 BLOCK = 2000  # rows of one program: below that a call's own cost, above it the solver's growth, tells

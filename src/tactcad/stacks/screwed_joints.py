@@ -46,9 +46,9 @@ class ScrewedJoint:
     thread         such as "M3"
     engaged        nominal length of engaged full thread, mm
     room           from the screw's end to where it bottoms, or to the far face inside which it ends, mm; None
-                   where it passes through
+                   if it passes through
     terms          coefficient of each variable on how deep the screw goes
-    deeper         variable that adds to the room, "" where none
+    deeper         variable that adds to the room, "" if none
     bought         whether the thread is in a bought part, of steel
     """
 
@@ -102,7 +102,7 @@ def joints(design: str, screws: Sequence[Screwed], known: dict[str, DimensionLim
     design, screws
         The design's name, and the screws of a scene of it.
     known
-        Variables by name; those of the joints are added where they are not known yet.
+        Variables by name; those of the joints are added if they are not known yet.
     """
     return list(dict.fromkeys(_joint(design, s, known) for s in screws))
 
@@ -246,7 +246,7 @@ def patterns(
     layout, screws
         The array, and the screws of a scene.
     known
-        Variables by name; those of the holes' places are added where they are not known yet.
+        Variables by name; those of the holes' places are added if they are not known yet.
     """
     design = layout.design.name
     pairs: dict[tuple[str, str, str], list[tuple[Screwed, Placement, Hole]]] = defaultdict(list)

@@ -56,7 +56,7 @@ class StackLine:
 
     @property
     def shortfall(self) -> float:
-        """By how much the worst case leaves the limits, in the requirement's unit; 0 where it does not."""
+        """By how much the worst case leaves the limits, in the requirement's unit; 0 if it does not."""
         r = self.requirement
         return max(0.0, r.lower - self.worst_low, self.worst_high - r.upper)
 
@@ -191,7 +191,7 @@ def _at(value: Array, instance: int) -> Array:
 
 
 def _way(deviations: Array, value: Array) -> Array:
-    """By piece: 1 where a value rises with its deviation, -1 where it falls, 0 where chance would do as
+    """By piece: 1 if a value rises with its deviation, -1 if it falls, 0 if chance would do as
     much."""
     d, v = deviations - deviations.mean(axis=0), value - value.mean()
     norm = np.sqrt((d**2).sum(axis=0) * (v**2).sum())
@@ -201,7 +201,7 @@ def _way(deviations: Array, value: Array) -> Array:
 
 
 def _corner(variables: dict[str, DimensionLimits], ways: dict[str, Array], sign: float) -> Deviations:
-    """One array with each piece at the limit that its way points to, in the middle where it has none."""
+    """One array with each piece at the limit that its way points to, in the middle if it has none."""
     return {
         name: ((v.upper + v.lower) / 2 + sign * ways[name] * (v.upper - v.lower) / 2)[np.newaxis]
         for name, v in variables.items()
@@ -209,7 +209,7 @@ def _corner(variables: dict[str, DimensionLimits], ways: dict[str, Array], sign:
 
 
 def _spread(value: Array) -> float:
-    """Standard deviation; 0 where the values differ by rounding only."""
+    """Standard deviation; 0 if the values differ by rounding only."""
     return float(value.std()) if np.ptp(value) > ROUNDING else 0.0
 
 

@@ -144,7 +144,7 @@ class Sensor:
 
     def refusal(self, builds: Builds) -> str:
         """Why a design with these builds is not released: what fails most, by how much at worst, and which
-        limit to mend; "" where enough of them meet all requirements."""
+        limit to mend; "" if enough of them meet all requirements."""
         if builds.share >= LEAST_YIELD:
             return ""
         failed = builds.failures[builds.worse]

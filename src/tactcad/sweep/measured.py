@@ -74,7 +74,7 @@ def measured(study: Study, start: int, stop: int, folder: Path) -> pa.Table:
     Returns
     -------
     pyarrow.Table
-        Results (empty where unknown), valid, and reason, null where all are valid.
+        Results (empty if unknown), valid, and reason, null where all are valid.
     """
     import pyarrow as pa
 
@@ -159,7 +159,7 @@ def texts_of(study: Study) -> list[str]:
 
 
 def measured_whole(study: Study, table: dict[str, Any], folder: Path) -> tuple[dict[str, Any], str]:
-    """What is asked of one design, by column, and why it was refused ("" where it was not).
+    """What is asked of one design, by column, and why it was refused ("" if it was not).
 
     Parameters
     ----------

@@ -130,7 +130,7 @@ def cluster(
     say: Callable[[str], None],
     scratch: Path,
 ) -> Iterator[Client]:
-    """A client of the scheduler at that address, or of processes on this machine where there is none.
+    """A client of the scheduler at that address, or of processes on this machine if there is none.
 
     Parameters
     ----------
@@ -229,7 +229,7 @@ def _distributed() -> ModuleType:
 
 
 def refuse_unanswered(address: str) -> None:
-    """Raise InputError where no scheduler answers, or a worker of its has no tactcad."""
+    """Raise InputError if no scheduler answers, or a worker of its has no tactcad."""
     with _connected(_distributed().Client, address) as client:
         _refuse_without_tactcad(client)
 

@@ -44,7 +44,7 @@ class StudyStore:
     made_by
         Digest of the rooms and libraries that results come from (`measured.made_by`).
     store
-        Address of the store where it is not in the folder.
+        Address of the store if it is not in the folder.
     """
 
     def __init__(self, study: Study, folder: Path, made_by: str, store: str | None = None) -> None:
@@ -54,13 +54,13 @@ class StudyStore:
         self._store = FarStore(store) if store else Cache(folder / STORE, self._said.append)
 
     def get(self, start: int, stop: int) -> pa.Table | None:
-        """What is kept of these designs; None where they are not finished, or the entry is damaged."""
+        """What is kept of these designs; None if they are not finished, or the entry is damaged."""
         data = self._store.get(self._key(start, stop))
         table = from_bytes(data) if data is not None else None
         return None if table is None or self._lacks_files(start, table) else table
 
     def put(self, start: int, stop: int, table: pa.Table) -> None:
-        """Keep it. Raises CheckFailure where that cannot be."""
+        """Keep it. Raises CheckFailure if that cannot be."""
         if not self._store.put(self._key(start, stop), as_bytes(table)):
             why = " ".join(self._said[-1:]).removesuffix("; going on without")
             raise CheckFailure(f"{self.folder}: a result cannot be kept: {why}")
@@ -114,8 +114,8 @@ def claimed(study: Study, out: str | Path) -> Path:
 
 
 def store_apart(address: str, folder: Path) -> str | None:
-    """The address of a store, from the root where it is a path; None where it is the folder's own. Raises
-    InputError where it is another place in the folder, another study's folder or store, or no address."""
+    """The address of a store, from the root where it is a path; None if it is the folder's own. Raises
+    InputError if it is another place in the folder, another study's folder or store, or no address."""
     files, root = files_at(address)
     if "file" not in files.protocol:
         return address
@@ -129,7 +129,7 @@ def store_apart(address: str, folder: Path) -> str | None:
 
 
 def mark_of(folder: Path) -> dict[str, Any]:
-    """What the folder says of its study. Raises InputError where it is no study's."""
+    """What the folder says of its study. Raises InputError if it is no study's."""
     there = (folder / MARK).exists()
     found = read_json(folder / MARK, MOST_BYTES, "a study's mark") if there else None
     if not isinstance(found, dict) or found.get("schema") != SCHEMA:
@@ -159,7 +159,7 @@ class FarStore:
         self._files, self._root = files_at(address, make=True)
 
     def get(self, key: str) -> bytes | None:
-        """The bytes kept under the key, None where there are none or they are damaged."""
+        """The bytes kept under the key, None if there are none or they are damaged."""
 
         def read() -> bytes | None:
             try:
@@ -194,7 +194,7 @@ class FarStore:
 
 
 def files_at(address: str, make: bool = False) -> tuple[Any, str]:
-    """fsspec's file system of an address, and the path in it. Raises InputError where there can be none."""
+    """fsspec's file system of an address, and the path in it. Raises InputError if there can be none."""
     import fsspec
 
     try:

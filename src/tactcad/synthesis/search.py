@@ -1,5 +1,5 @@
 """The search: scipy's differential evolution over whole numbers, closed forms for many candidates at a time;
-then all candidates one or two numbers away from its best, until none of them is better.
+then all candidates that differ from the best in one or two numbers, until none is better.
 
 Less violation of limits is better; then the goal decides. The best is made a design and checked
 against every rule. If one refuses it, the search runs again and checks each new best.
@@ -38,7 +38,7 @@ FURTHER = (-30, -12, 12, 30)  # and one alone
 DESCENT = 0.4  # of the time, at least, for what follows evolution
 REFUSED = 100  # candidates by rules or checks, after which no more are tried
 LOOKED_BACK = 8  # candidates, where time is over and the best is refused
-SEVERAL = 400  # moves of several numbers, by chance
+SEVERAL = 400  # random moves of several numbers
 # On a body, where a candidate costs milliseconds: candidates before the best of them is taken, steps of
 # several numbers, share of the time for the first guess on springs, and the spread at which it stops.
 AT_ONCE, FEW, GUESS, GUESSED = 16, 100, 0.2, 0.02
@@ -109,22 +109,22 @@ def search(
     Parameters
     ----------
     stand
-        What is not searched.
+        Parameters that are not searched.
     goal
-        To be made least among candidates that keep every limit, (candidates,).
+        Minimised over candidates that keep every limit, (candidates,).
     rules
         Why a design is refused; None if the best is not to be checked.
     start
         A candidate's numbers to start from.
     evolve
-        False where only what lies around `start` is looked at.
+        False: search only the neighbourhood of `start`.
     within
         Spread of the population's goals, relative, at which evolution stops: further generations would
         change the answer by less.
     until
-        Of `time.perf_counter`, when the best yet is the answer.
+        Of `time.perf_counter`; then the best so far is returned.
     around
-        Other stands that are tried beside one, on a body.
+        Stands that are tried beside a given one, on a body.
     """
     if stand.on_layer:
         return _on_layer(stand, goal, rules, start, evolve, until, around)
@@ -249,8 +249,8 @@ def _on_layer(
     until: float,
     around: Around,
 ) -> Found:
-    """From a start, or from the best on springs, the first better one of all around it, in a random order,
-    until none is better; with `evolve` kinds are dealt out otherwise, and pitches and pads moved, too."""
+    """From a start, or from the best on springs, go to the first better neighbour, in a random order, until
+    none is better; `evolve` also tries other orders of kinds, pitches and pads."""
     began, looked, starts = time.perf_counter(), 0, list[Array]()
     if start is not None:
         starts = [start]

@@ -55,10 +55,10 @@ class _Cut:
 
 
 def check_wirecut(part: Part, shop: Shop) -> list[Finding]:
-    """Findings of every rule for a wire-cut part; an empty list where there is nothing to say.
+    """Findings of every rule for a wire-cut part; an empty list if there is nothing to say.
 
     Rules on widths are tried only where the contours are simple: elsewhere widths have no meaning.
-    Raises TypeError where the part is not an extrusion.
+    Raises TypeError if the part is not an extrusion.
     """
     outer, openings = section(part)
     cut = _Cut(

@@ -102,7 +102,7 @@ def _inputs(converter: Component) -> list[tuple[str, str]]:
 
 
 def _gauges_on_inputs(arms: Arms, middles: Sequence[str], ends: tuple[str, str]) -> list[str]:
-    """Gauges of the bridge whose outputs these are; none where an output has other than one arm to each
+    """Gauges of the bridge whose outputs these are; none if an output has other than one arm to each
     end."""
     around = [arms.get(middle, {}).get(end, []) for middle in middles for end in ends]
     others = [c for middle in middles for found in arms.get(middle, {}).values() for c in found]
@@ -164,7 +164,7 @@ def _channels(circuit: Netlist, joined: dict[str, str]) -> set[frozenset[str]]:
 
 
 def _gauges_of_bridge(arms: Arms, pairs: set[frozenset[str]], supply: str, foot: str) -> list[str]:
-    """Gauges among the four arms between the bridges' supply and a switch; none where there are other than
+    """Gauges among the four arms between the bridges' supply and a switch; none if there are other than
     four, their middles carry others too, or are no channel's pair."""
     upper, lower = arms.get(supply, {}), arms.get(foot, {})
     middles = [net for net in lower if net in upper]
@@ -176,7 +176,7 @@ def _gauges_of_bridge(arms: Arms, pairs: set[frozenset[str]], supply: str, foot:
 
 
 def check_signals(design: Design) -> Iterator[Finding]:
-    """Failures by element. Raises CheckFailure where one is out of the estimator's range."""
+    """Failures by element. Raises CheckFailure if one is out of the estimator's range."""
     layout, wish = Layout(design), design.readout.force_resolution
     signals, converter = element_signals(layout), converter_of(design)
     if converter:

@@ -239,7 +239,7 @@ def zones(part: Part) -> tuple[Zones, Zones, Zones] | None:
     """Along x, y and z of the part's own frame: the intervals (mm) in which its shape changes; merged and
     sorted.
 
-    None where the shape is not known from a description.
+    None if the shape is not known from a description.
     """
     body = part.body
     if isinstance(body, Extrusion):
@@ -306,7 +306,7 @@ def _merged(intervals: Sequence[tuple[float, float]]) -> Zones:
 
 
 def stretch(along: Zones, low: float, high: float) -> int | None:
-    """Which stretch between zones holds low to high with NEAR_MM around it (mm); None where a zone is
+    """Which stretch between zones holds low to high with NEAR_MM around it (mm); None if a zone is
     near."""
     n = bisect_left(along, (low - NEAR_MM, -np.inf))
     before = along[n - 1][1] < low - NEAR_MM if n else True

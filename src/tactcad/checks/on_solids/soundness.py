@@ -86,7 +86,7 @@ def check_step(part: Part, shape: TopoDS_Shape) -> list[Finding]:
 
 
 def check_step_file(part: Part, shape: TopoDS_Shape, data: bytes) -> list[Finding]:
-    """Findings on a STEP file of the part's shape. Raises ValueError where it cannot be read."""
+    """Findings on a STEP file of the part's shape. Raises ValueError if it cannot be read."""
     read = read_step(data)
     findings = [replace(f, message=f"read back from STEP: {f.message}") for f in check_brep(part, read)]
     if any(f.check == "one-solid" for f in findings):

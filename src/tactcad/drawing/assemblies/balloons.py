@@ -66,7 +66,7 @@ def place(
     own: Mapping[int | str, Sequence[Sequence[Point]]], lines: Sequence[Sequence[Point]], area: Box
 ) -> list[Balloon] | None:
     """A balloon in the area (mm of paper) for each item, at its own visible lines and clear of all `lines`;
-    None where they find no place."""
+    None if they find no place."""
     places = _places(lines, area)
     shared = Counter(line for some in own.values() for line in {*map(tuple, some)})
     tips = {}

@@ -116,7 +116,7 @@ def exploded_page(
     beside it.
 
     The list stands beside the view where that does not reduce the scale; likewise the paper is A4 where that
-    is allowed (`small`). None where the balloons find no place.
+    is allowed (`small`). None if the balloons find no place.
     """
     bx0, by0, bx1, by1 = view.box
     choices: list[tuple[Paper, balloons.Laid | None]] = [(A3, list_)] if list_ else []
@@ -179,7 +179,7 @@ def unit_views(scene: Scene) -> list[UnitView]:
     """The whole, with each sub-assembly assembled in it; then each sub-assembly by itself, followed by the
     ready scenes that stand in it.
 
-    None where the scene has fewer than two sub-assemblies.
+    None if the scene has fewer than two sub-assemblies.
     """
     units: dict[str, list[str]] = {}
     for step in scene.steps:

@@ -215,7 +215,7 @@ class Shown:
 
 
 def side_by_side(own: Mapping[int, Sequence[Polyline]], area: Box) -> list[list[Shown]] | None:
-    """The parts by number, no larger on the paper than fits one page, or on as many as they need; None where
+    """The parts by number, no larger on the paper than fits one page, or on as many as they need; None if
     a part is too large for the smallest scale."""
     best = None
     for size in LARGEST_SIDES:
@@ -234,7 +234,7 @@ def side_by_side(own: Mapping[int, Sequence[Polyline]], area: Box) -> list[list[
 def _laid(
     own: Mapping[int, Sequence[Polyline]], scales: Mapping[int, Scale], area: Box
 ) -> list[list[Shown]] | None:
-    """The parts in rows from the left, below each other; None where one is too large for the area."""
+    """The parts in rows from the left, below each other; None if one is too large for the area."""
     x0, y0, x1, y1 = area
     cells: dict[int, tuple[float, float]] = {}  # with its balloon, its scale and the gap
     for item, lines in own.items():

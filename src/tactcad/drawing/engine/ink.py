@@ -56,7 +56,7 @@ _FILE = Path("mpl-data", "fonts", "ttf", "DejaVuSans.ttf")
 
 
 def font_file() -> Path:
-    """The font's file in the matplotlib package. Raises CheckFailure where it is missing."""
+    """The font's file in the matplotlib package. Raises CheckFailure if it is missing."""
     spec = find_spec("matplotlib")
     for folder in (spec.submodule_search_locations if spec else None) or ():
         if (Path(folder) / _FILE).is_file():
@@ -118,7 +118,7 @@ def width(text: str, height: float) -> float:
 def ink_box(text: str, height: float) -> Box:
     """x_min, y_min, x_max, y_max of the ink (mm), baseline from (0, 0); a text of blanks has no area.
 
-    Raises CheckFailure where the font lacks a letter.
+    Raises CheckFailure if the font lacks a letter.
     """
     pen, corners = 0.0, []
     for letter in text:

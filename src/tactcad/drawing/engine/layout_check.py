@@ -37,7 +37,7 @@ class _Straight:
 def sheets_of(block: TitleBlock, pages: Sequence[Page], draft: bool, named: str = "") -> list[DrawnSheet]:
     """The pages in frame and title block, called `named` or after their document types; a `draft` says so.
 
-    Raises CheckFailure where a layout is not clean.
+    Raises CheckFailure if a layout is not clean.
     """
     sheets = []
     for n, page in enumerate(pages, start=1):

@@ -144,7 +144,7 @@ MOST_DRAWN = 150
 
 @dataclass(frozen=True)
 class TitleBlock:
-    """Contents of the title block. `mass` in g, None where it is not stated; `scale` as text, "5:1"."""
+    """Contents of the title block. `mass` in g, None if it is not stated; `scale` as text, "5:1"."""
 
     legal_owner: str
     number: str
@@ -179,7 +179,7 @@ def block_of(identity: Identity, number: str, title: str, draft: bool, sample: b
 
 
 def title_block(paper: Paper, t: TitleBlock) -> list[Item]:
-    """The block's lines and texts. Raises CheckFailure where a text does not fit its cell."""
+    """The block's lines and texts. Raises CheckFailure if a text does not fit its cell."""
     x0, y0 = paper.area[2] - WIDTH, paper.area[1]
     items: list[Item] = [rectangle(x0, y0, WIDTH, HEIGHT, FRAME, "table")]
     mass = "" if t.mass is None else f"{t.mass:.3g} g" if t.mass < 1000 else f"{t.mass / 1000:.3g} kg"
@@ -220,7 +220,7 @@ def _cell(x: float, y: float, w: float, h: float, heading: str, value: str | tup
     ]
     given = [line for line in ((value,) if isinstance(value, str) else value) if line]
     room, high = w - 2.0, h - LABEL - 2.4
-    # the largest size at which all fits; broken only where it has to be
+    # the largest size at which all fits; broken only if it has to be
     for size, whole in ((3.5, True), (2.5, True), (1.8, True), (2.5, False), (1.8, False)):
         lines = given if whole else [piece for line in given for piece in wrapped(line, size, room)]
         high_enough = size * (1.6 * len(lines) - 0.3) <= high

@@ -198,7 +198,7 @@ def svg(drawn: Drawing, title: str, description: str, marked: Drawing | None = N
 def check_picture(data: bytes, placements: Sequence[Placement], view: Viewpoint) -> None:
     """Hold a written picture against the descriptions of what it shows.
 
-    Raises CheckFailure where it does not span what the descriptions project to (within 0.05 mm); where models
+    Raises CheckFailure if it does not span what the descriptions project to (within 0.05 mm); where models
     from files stand among them it spans the others at least, and all boxes at most.
     """
     text = data.decode()
@@ -222,7 +222,7 @@ def _span(placements: Sequence[Placement], view: Viewpoint) -> tuple[float, floa
 
 
 def curves_of(compound: TopoDS_Shape | None) -> Iterator[BRepAdaptor_Curve]:
-    """The edges of a removal's result, which is None or empty where there are none."""
+    """The edges of a removal's result, which is None or empty if there are none."""
     if compound is None or compound.IsNull():
         return
     BRepLib.BuildCurves3d_s(compound)
@@ -291,7 +291,7 @@ def between_borders(line: Polyline, axis: int, left: float, right: float) -> Ite
 
 
 def _within(a: Point, b: Point, axis: int, left: float, right: float) -> Chord | None:
-    """Both ends of what lies between the borders of the segment from a to b, None where nothing does."""
+    """Both ends of what lies between the borders of the segment from a to b, None if nothing does."""
     p, q = a[axis], b[axis]
     if max(p, q) < left or min(p, q) > right:
         return None

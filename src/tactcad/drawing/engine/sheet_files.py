@@ -38,7 +38,7 @@ class Written:
 def pdf_bytes(sheets: Sequence[DrawnSheet], title: str, author: str, date: str) -> bytes:
     """The sheets, a page each at the paper's size, dated midnight (UTC) of `date` (YYYY-MM-DD).
 
-    Raises CheckFailure where the font is missing.
+    Raises CheckFailure if the font is missing.
     """
     from reportlab.pdfbase import pdfmetrics
     from reportlab.pdfbase.ttfonts import TTFont

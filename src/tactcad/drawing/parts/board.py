@@ -95,7 +95,7 @@ class Board:
     def callout(self, c: Callout, scale: float, origin: Point) -> bool:
         """Place a callout of a view at the cheapest free place, its leader to any of its targets.
 
-        Returns False where there is no free place.
+        Returns False if there is no free place.
         """
         best: tuple[float, list[Item]] | None = None
         ways = [way for n in range(min(len(c.targets), MOST_TARGETS)) for way in _ways(c, n, scale, origin)]
@@ -168,7 +168,7 @@ class Board:
         return not any(overlap(box, kept) for kept in self.kept) and not self.hit(quads, box)
 
     def passed(self, leg: Chord) -> float | None:
-        """Cost of what a line crosses; None where it would run through a text."""
+        """Cost of what a line crosses; None if it would run through a text."""
         through = any(chord_meets(leg, quad) for quad in self._near(bounds(leg)))
         return None if through else self._crossings(leg)
 
@@ -239,7 +239,7 @@ def _ways(c: Callout, n: int, scale: float, origin: Point) -> list[tuple[Point, 
 
 def _block(c: Callout, start: Point, towards: float) -> tuple[list[Text], list[Item]]:
     """Texts beside the shelf's end, the first line level with it; below them tolerance frames and a datum's
-    symbol, level with it where there is no text."""
+    symbol, level with it if there is no text."""
     x, y = start
     wide = max([FRAME, *map(_line_width, c.lines), *map(frame_width, c.frames)])
     aside = 1.0 if c.lines else 0.0

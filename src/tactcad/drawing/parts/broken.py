@@ -27,7 +27,7 @@ FAR = 1e9  # mm: beyond any part
 
 
 def breaks_of(part: Part, holes: Sequence[Round], regular: Collection[Owner]) -> Breaks | None:
-    """What views of an extruded part leave out along the longer side of its outline; None where too little
+    """What views of an extruded part leave out along the longer side of its outline; None if too little
     could be. Holes that are `regular` need not be shown, because they repeat what is shown."""
     box = part.extrusion.outer.box
     sides = (box[2] - box[0], box[3] - box[1])
@@ -193,7 +193,7 @@ def _zigzag(at: float, k: int, low: float, high: float, z: float, w: float, past
 
 
 def _cut_off(loop: Sequence[Point], band: Box) -> tuple[Point, ...]:
-    """What of a closed polygon lies in a box (Sutherland and Hodgman); empty where nothing does."""
+    """What of a closed polygon lies in a box (Sutherland and Hodgman); empty if nothing does."""
     points = list(loop)
     for k, limit, way in ((0, band[0], 1), (0, band[2], -1), (1, band[1], 1), (1, band[3], -1)):
         kept: list[Point] = []

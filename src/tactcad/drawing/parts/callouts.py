@@ -385,7 +385,7 @@ def depth_running(sketch: Sketch, view: View, part: Part, side: Side, called: Se
 
 
 def _right_or_up(view: View, k: int) -> float:
-    """1 where the part's axis k runs to the right or up in the view, -1 where it runs the other way."""
+    """1 if the part's axis k runs to the right or up in the view, -1 if it runs the other way."""
     return (view.right if k == 0 else view.up)[k] or 1.0
 
 

@@ -151,7 +151,7 @@ def _interval(a: float, b: float, t0: float, length: float, inside: bool) -> tup
 def _first_free(
     tracks: list[_Track], a: float, b: float, choices: list[tuple[float, bool]], length: float
 ) -> tuple[int, tuple[float, bool]]:
-    """The innermost track where a place for the text is free; a new one where none is."""
+    """The innermost track where a place for the text is free; a new one if none is."""
     # a dimension stands outside every one that it spans
     least = max(
         (n + 1 for n, t in enumerate(tracks) if any(a - 0.5 < (lo + hi) / 2 < b + 0.5 for lo, hi in t.taken)),

@@ -98,7 +98,7 @@ def element_plan(part: Part, notes: Sequence[str], tall: bool = False) -> SheetP
     """The sheet of an element; of a `tall` one the hinge alone is enlarged, and the heights beside it stand
     with the arm.
 
-    Raises CheckFailure where a dimension is missing or given twice.
+    Raises CheckFailure if a dimension is missing or given twice.
     """
     o = Outline(part.extrusion.outer)
     sketch = Sketch(part)
@@ -154,7 +154,7 @@ def _front_view(sketch: Sketch, part: Part, o: Outline, called: Sequence[Group],
 
 
 def _radii(sketch: Sketch, view: View, o: Outline, names: Sequence[str], states: str = "") -> list[Callout]:
-    """Fillets by name, equal ones together, which state that characteristic of the part where there is one;
+    """Fillets by name, equal ones together, which state that characteristic of the part if there is one;
     none for a full round, whose width defines it.
     """
     named = ((n, o.index[n], o.segment(n)) for n in names if n in o)

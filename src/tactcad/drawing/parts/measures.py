@@ -318,7 +318,7 @@ class Distance(OfVariables):
 
 @dataclass(frozen=True)
 class MeasureDifference(OfVariables):
-    """Of two measures: 0 where they are drawn as equal."""
+    """Of two measures: 0 if they are drawn as equal."""
 
     a: Measure
     b: Measure
@@ -329,10 +329,10 @@ class MeasureDifference(OfVariables):
 
 @dataclass(frozen=True)
 class CrossProduct(OfVariables):
-    """Cross product of two directions, each from point to point: 0 where they are parallel."""
+    """Cross product of two directions, each from point to point: 0 if they are parallel."""
 
     points: tuple[Spot, Spot, Spot, Spot]
-    along: bool = False  # the scalar product instead: 0 where they are at right angles
+    along: bool = False  # the scalar product instead: 0 if they are at right angles
 
     def of(self, values: Values) -> float:
         a, b, c, d = ([values[n] for n in xy(p)] for p in self.points)

@@ -66,7 +66,7 @@ def part_plan(
     """What a part's sheet shows, and the files that it is made from; `plans` are its family's own, by kind.
 
     `spare` asks for less: of an element as of a tall one, of any other part without section. `shortened` asks
-    for broken views; None where these would leave out too little. Raises CheckFailure where the part cannot
+    for broken views; None if these would leave out too little. Raises CheckFailure if the part cannot
     be drawn, or not fully dimensioned.
     """
     if isinstance(part.body, ModelFile):
@@ -139,7 +139,7 @@ def title_of(design: CommonTables, part: Part, draft: bool, sample: bool = False
 
 
 def written(order: Order) -> Written:
-    """The sheet as PDF and SVG, read back. Raises CheckFailure where it differs from the part."""
+    """The sheet as PDF and SVG, read back. Raises CheckFailure if it differs from the part."""
     sheet, part, of = part_sheet(order), order.part, order.design.design
     made = files_of([sheet], part.part_no, part.name, of)
     wrong = drawing_faults(made.pdf, sheet, part, of.revision)

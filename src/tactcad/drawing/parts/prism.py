@@ -61,9 +61,9 @@ def prism_plan(
     part: Part, notes: Sequence[str], cut: bool = True, shortened: bool = False
 ) -> SheetPlan | None:
     """The plan of any extruded part, `cut` with a section where it is of use; `shortened` with broken views
-    and regular rows of holes by their ends and their number; None where too little could be left out.
+    and regular rows of holes by their ends and their number; None if too little could be left out.
 
-    Raises CheckFailure where a variable or a limit of the part does not stand on the sheet, or a limit twice.
+    Raises CheckFailure if a variable or a limit of the part does not stand on the sheet, or a limit twice.
     """
     body = part.extrusion
     sketch = Sketch(part)

@@ -38,7 +38,7 @@ def section_of(part: Part, holes: Sequence[Round], front: View, below: Vector | 
     """The plane that shows most kinds of sunk features, then the deepest, then most of them, then nearest to
     the middle.
 
-    None where no feature is sunk, or every plane through an axis would cut another hole off its axis or run
+    None if no feature is sunk, or every plane through an axis would cut another hole off its axis or run
     along a wall. `below` is the eye of a view onto a y face, whose place on the sheet is taken.
     """
     # Whether a feature ends or changes inside the part.
@@ -179,7 +179,7 @@ def inside(face: Hatch, a: Point, b: Point) -> list[Chord]:
 def mark_plane(board: Board, section: SectionPlane, at: float, sight: float, view: Box) -> bool:
     """The cutting plane in the view that it is taken from (its box on the paper), at a coordinate of the
     section's axis: a chain line with thick ends, arrows along that axis in the direction of `sight` (1 or
-    -1), a letter at each; False where an end finds no place."""
+    -1), a letter at each; False if an end finds no place."""
     k = section.axis
 
     def point(across: float, along: float) -> Point:

@@ -45,7 +45,7 @@ class Dimension:
     basic: bool = False
 
     def value(self, values: Values) -> float:
-        """mm or degrees. Raises ValueError where the rows differ: the features are not equal."""
+        """mm or degrees. Raises ValueError if the rows differ: the features are not equal."""
         measured = [row.of(values) for row in self.rows]
         if max(measured) - min(measured) > 1e-6:
             raise ValueError(f"{self.name}: features of {measured} are shown as equal")

@@ -94,7 +94,7 @@ class Sketch:
         return True
 
     def stating(self, name: str, rows: tuple[Measure, ...], plain: str = "") -> Dimension:
-        """The dimension that states the characteristic of that name; a plain one where none is left."""
+        """The dimension that states the characteristic of that name; a plain one if none is left."""
         c = self.unstated.get(name)
         if c is None:
             return Dimension(plain or name, rows)
@@ -105,7 +105,7 @@ class Sketch:
 
     def must(self, dimension: Dimension) -> Dimension:
         """A dimension that has to determine something new, with the limits of the characteristic of its name.
-        Raises CheckFailure where it repeats others."""
+        Raises CheckFailure if it repeats others."""
         if dimension.characteristic is None and dimension.name in self.unstated:
             s = self.stating(dimension.name, dimension.rows)
             dimension = replace(dimension, limits=s.limits, key=s.key, characteristic=s.characteristic)

@@ -52,7 +52,7 @@ def part_stl(part_no: str, shape: TopoDS_Shape, meshing: Meshing) -> bytes:
 
 
 def check_stl(part_no: str, data: bytes, volume: float, allowed: float | None) -> None:
-    """Raises CheckFailure where a file is no closed surface, or further off that volume (mm3) than allowed
+    """Raises CheckFailure if a file is no closed surface, or further off that volume (mm3) than allowed
     (relative; None: by any amount)."""
     import trimesh
 

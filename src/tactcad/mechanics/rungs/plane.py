@@ -164,7 +164,7 @@ def _height_felt(s: HingeSection, k: Constants) -> tuple[Array, Array]:
 
 
 def _far(stout: Array, middle: Array | float, two_sided: NDArray[np.bool_]) -> Array:
-    """w, from 0 where the clamp is close behind the root to 1 where it is far; no exponential overflows."""
+    """w, from 0 if the clamp is close behind the root to 1 if it is far; no exponential overflows."""
     return 0.5 + 0.5 * np.tanh((stout - middle) / (2.0 * _by_form(FADING, two_sided)))
 
 

@@ -1,6 +1,6 @@
-"""Boards and leads: which element is read by which board, where that stands beside the array on its back, and
-the way of each element's leads: from the terminal on the floor of its wire recess to the rear end, to the tie
-around the leads of its board, to the clamp on the board's plate, to the board's socket.
+"""Boards and leads: the board of each element, its place next to the array on its back, and the path of each
+element's leads: from the terminal on the floor of its wire recess to the rear end, to the tie around the
+leads of its board, to the clamp on the board's plate, to the board's socket.
 
     gauge           recess                          rear end      tie       clamp   connector
     =====----.                                                    .---------[##]----[]
@@ -24,10 +24,10 @@ from .layout import ElementPlace, Layout
 # strain gauge practice; of two wires there is no white one.
 COLOURS = {"three-wire": ("RD", "WH", "BK"), "two-wire": ("RD", "BK")}
 AHEAD_OF_LEADS = 0.5  # terminals behind the recess's wall, mm; chosen: a tool to press them down
-WHOLE = 5.0  # leads are cut to whole steps of so many mm; chosen: what a rule is read to
+WHOLE = 5.0  # mm, step of the leads' lengths; chosen: the reading of a ruler
 BESIDE = 10.0  # mm between boards, and from the array to a plate; chosen: fingers
 LAST = hypot(CLAMP_AHEAD, socket_top() - PLATE)  # mm from the clamp to the socket's tails
-NEAR = 300.0  # mm; chosen: boards stand within a hand's reach, and what leads are longer hangs in a loop
+NEAR = 300.0  # mm; chosen: boards are within a hand's reach, and longer leads hang in a loop
 
 
 @dataclass(frozen=True)
@@ -55,8 +55,8 @@ def lead_routes(layout: Layout) -> tuple[LeadRoute, ...]:
 
 @dataclass(frozen=True)
 class BoardStand:
-    """Where a board's lead connector has its middle beside the array, mm in the array's frame: |x|, y; on the
-    side of row one (1) or row two (-1)."""
+    """The middle of a board's lead connector, mm in the array's frame: |x|, y; on the side of row one (1) or
+    row two (-1)."""
 
     side: float
     x: float
@@ -80,7 +80,7 @@ def stands(layout: Layout) -> tuple[BoardStand, ...]:
 
 
 def least_to_board(layout: Layout) -> float:
-    """mm: no board's plate stands over the array, and the tie is before it."""
+    """mm: no board's plate overlaps the array, and the tie is in front of the plate."""
     over = layout.carrier_length / 2 + BESIDE - layout.rear_end - layout.design.wiring.gather
     least = LAST + hypot(max(over, 0.0) + PLATE_AHEAD - CLAMP_AHEAD, _drop(layout))
     return ceil(10 * least - 1e-6) / 10

@@ -18,7 +18,7 @@ from ..rigs.cart import FITTING_RADIUS, GROOVE_WALL, CartLayout, cart_layout
 from ..rigs.frame import POST_Y, TIP_LAND, pad_middles
 from .rule import Find, at_least, at_most, fits, rule, wrong
 
-WALL = 0.8  # least material beside an axle's hole, mm; as for free-standing aluminium walls
+WALL = 0.8  # least material around an axle's hole, mm; as for free-standing aluminium walls
 LEAST_TIPPING = 2.0  # mm that any load on the sample stays inside the wheels; chosen: a badly centred sample
 LEAST_AIR = 0.5  # between things that pass each other, mm
 

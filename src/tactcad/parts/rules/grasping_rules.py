@@ -34,7 +34,7 @@ def bar_clears_screws(layout: Layout) -> Iterator[Finding]:
     before = BAR_FRONT - clamp.mount_pitch_y / 2 - head
     if max(beside, before) < 0.2 - SAME:
         most = 2 * (BAR_FRONT - head - 0.2)
-        what = "bar stands on the carrier's screws"
+        what = "the bar overlaps the carrier's screws"
         yield wrong("clamp.mount_pitch_y", what, clamp.mount_pitch_y, f"at most {most:g} mm")
 
 
@@ -74,7 +74,7 @@ def sample_stand_stays_straight(layout: Layout) -> Iterator[Finding]:
     yield from too_much(layout, sample_lines)
 
 
-# What the vertical guide asks of an array, and what the stand asks for the sample's stiffness.
+# Requirements of the vertical guide on an array, and of the stand for the sample's stiffness.
 FITS = (
     pads_on_sample,
     carrier_screws_fit,

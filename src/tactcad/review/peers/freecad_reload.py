@@ -31,7 +31,7 @@ def reload() -> None:
 
 
 def camera(name: str, to: str = "") -> str:
-    """The camera of a document's views, each set to what is given; "" where no view is open."""
+    """The camera of a document's views, each set to what is given; "" if no view is open."""
     import FreeCADGui  # there with a window alone
 
     views = FreeCADGui.getDocument(name).mdiViewsOfType("Gui::View3DInventor") if FreeCAD.GuiUp else []

@@ -91,7 +91,7 @@ def _placed(layout: Layout, instead: Mapping[int, Part], stops: bool) -> Builder
 
 
 def _cover(b: Builder) -> set[str]:
-    """Designators of what is taken off to look inside: screws and pins among them."""
+    """Designators of the parts taken off to look inside, with screws and pins."""
     return {"ST1", "CA1", "EP1"} | {p.designator for p in b.placements if p.part.bought}
 
 
@@ -191,8 +191,8 @@ ABREAST = 2  # rows that are stacked side by side
 
 
 def first_on_first(stacked: Sequence[Placement]) -> list[Placement]:
-    """Elements, blanks and spacers in the order in which they go on the dowels, which stand in the end plate
-    at +y: two abreast, row one's part first."""
+    """Elements, blanks and spacers in the order in which they go on the dowels in the end plate at +y: two
+    abreast, row one's part first."""
     return sorted(stacked, key=lambda p: (-round(_middle_y(p), 6), -p.rotation[0][0]))
 
 

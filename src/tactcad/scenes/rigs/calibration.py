@@ -46,7 +46,11 @@ from ..shared_rigs import (
 from .array import array, carrier_tools, flatness_tools
 
 BACK_DOWN: Rotation = DOWN  # half a turn about x: pads up
-IN_FRONT: Vector = (0.0, -250.0, RAISED / 2)  # where the mount is put together, mm from its place
+IN_FRONT: Vector = (
+    0.0,
+    -250.0,
+    RAISED / 2,
+)  # place of the mount during its assembly, mm from its final place
 OUT_OF_X: Rotation = ((0, 0, -1), (0, 1, 0), (1, 0, 0))  # local z runs along -x
 
 
@@ -54,7 +58,7 @@ def calibration(design: Design, pose: Pose = REST) -> Scene:
     """Scene `calibration`: the roller on the pad of pose.element, which it has pushed pose.deflection mm
     down.
 
-    pose.height lifts the roller. Raises InputError where the array has no such element.
+    pose.height lifts the roller. Raises InputError if the array has no such element.
     """
     rig = StandLayout(design)
     pads = pad_middles(rig.array)
@@ -125,9 +129,7 @@ def _stages(b: Builder, rig: StandLayout, dx: float, dy: float) -> str:
     t, half = stage.plate, stage.size / 2
     below, at = STAND, (0.0, 0.0)
     stages: list[tuple[str, ...]] = []
-    seats: list[
-        tuple[str, str, Vector]
-    ] = []  # fixed half, what it lies on, where its threads have their middle
+    seats: list[tuple[str, str, Vector]] = []  # fixed half, the part under it, the middle of its threads
     for level, (axis, out, side) in enumerate((("x", OUT_OF_X, (-1, 0)), ("y", AGAINST_Y, (0, -1)))):
         z = 2 * t * level
         b.group(None if axis == "x" else "stage-x")
@@ -246,8 +248,8 @@ def _mounted_array(
 
 
 def _series(design: Design) -> str:
-    """How much the compliance of stand and mount lowers the apparent stiffness of the stiffest element, and
-    how to separate the two.
+    """Effect of the stand's and mount's compliance on the apparent stiffness of the stiffest element, and how
+    to separate the two.
     """
     give, cell = series_give(design), present(design.calibration).load_cell_stiffness
     known = [load for load in calibration_loads(design) if not load.refused]
@@ -301,7 +303,7 @@ def _motions(design: Design, pads: Iterable[tuple[float, float]], px: float, py:
 
 
 def check_travel(design: Design, _scene: Scene) -> list[Finding]:
-    """Fail where the travel makes a hinge yield, flag where it passes the rated deflection; each with the
+    """Fail if the travel makes a hinge yield, flag if it passes the rated deflection; each with the largest
     travel that does not.
 
     An element whose strength the estimator cannot compute is flagged by the strength check.

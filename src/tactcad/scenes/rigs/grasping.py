@@ -173,7 +173,7 @@ def _latched(on: bool) -> list[Move]:
 
 
 def _guide(b: Builder, rig: GuideLayout, post: str, latched: bool) -> str:
-    """Riser, rail, end stop, and the latch under the lifted carriage or beside it; returns the rail's
+    """Riser, rail, end stop, and the latch under the lifted carriage or in store; returns the rail's
     designator."""
     b.supplies += supplies("guide", {})
     front = POST_Y - rig.riser_depth
@@ -228,7 +228,7 @@ def _guide(b: Builder, rig: GuideLayout, post: str, latched: bool) -> str:
 
 
 def check_moving_weight(design: Design, scene: Scene) -> list[Finding]:
-    """A finding where what moves is heavier than asked for (no ballast can mend that), or lighter."""
+    """A finding if the moving parts are heavier than asked for (which no ballast can mend), or lighter."""
     weight, wanted = moving_weight(scene), present(design.grasping).moving_weight
     if abs(weight - wanted) <= AGREES * wanted:
         return []
@@ -237,8 +237,8 @@ def check_moving_weight(design: Design, scene: Scene) -> list[Finding]:
 
 
 def _poses(design: Design) -> Iterator[Pose]:
-    """Without weights; lifted; and the pads in the sample: by its travel, but no deeper than they stand out
-    of the arms' root fillets."""
+    """Without weights; lifted; and with the pads in the sample: by its travel, but no deeper than they
+    protrude from the arms' root fillets."""
     yield Pose(weights=0)
     yield Pose(height=present(design.grasping).lift, weights=0, cart=present(design.cart).roll)
     e = design.element
@@ -303,7 +303,7 @@ def place_axis(b: Builder, rig: GuideLayout, rail: str, lift: float) -> tuple[st
 
 
 def _trim(rig: GuideLayout, mass: float) -> tuple[float, float]:
-    """Thickness (mm) and mass (g) of the ballast, from everything else that moves; no mass where that is too
+    """Thickness (mm) and mass (g) of the ballast, from all other moving parts; no mass if those are too
     heavy.
 
     A pin that is longer because of the ballast weighs slightly more itself, which is taken into account.

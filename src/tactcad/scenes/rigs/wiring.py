@@ -1,5 +1,5 @@
-"""Wiring: the array on its back, a board on its plate beside each row, the leads from one to the other; the
-socket on the leads is plugged last, and is pulled off the same way."""
+"""Wiring: the array on its back, a board on its plate next to each row, and the leads between; the socket on
+the leads is plugged last and pulled off the same way."""
 
 from __future__ import annotations
 
