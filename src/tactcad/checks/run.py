@@ -49,7 +49,7 @@ def run_checks(
     Raises
     ------
     InputError
-        Where the shop file cannot be used.
+        If the shop file cannot be used.
     """
     scenes = [make_scene(design, name) for name in scene_names]
     report = Report(design.name, design.design.revision, size=overall_size(design))

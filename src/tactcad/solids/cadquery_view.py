@@ -58,7 +58,7 @@ def bought_from_step(
     Raises
     ------
     InputError
-        Where the file does not hold exactly one solid.
+        If the file does not hold exactly one solid.
     """
     from .step import model_file
 
@@ -87,7 +87,7 @@ def bought_from_cadquery(
     Raises
     ------
     InputError
-        Where the model is not one solid.
+        If the model is not one solid.
     """
     shape = model.val() if isinstance(model, cq.Workplane) else model
     solids = shape.Solids() if isinstance(shape, cq.Shape) else []

@@ -55,7 +55,7 @@ def triangles(shape: TopoDS_Shape, linear: float, angular: float) -> tuple[np.nd
     Raises
     ------
     ValueError
-        Where the kernel cannot mesh a face.
+        If the kernel cannot mesh a face.
     """
     meshed = [face_triangles(face) for face in tessellated(shape, linear, angular)]
     starts = np.cumsum([0, *(len(points) for points, _ in meshed)])
@@ -108,7 +108,7 @@ def polyhedra(mesh: manifold3d.Manifold) -> TopoDS_Shape:
     Raises
     ------
     ValueError
-        Where a triangle has no area.
+        If a triangle has no area.
     """
     build, compound = BRep_Builder(), TopoDS_Compound()
     build.MakeCompound(compound)
@@ -191,7 +191,7 @@ def facets(shape: TopoDS_Shape, linear: float, angular: float) -> Facets:
     Raises
     ------
     ValueError
-        Where the kernel cannot mesh a face.
+        If the kernel cannot mesh a face.
     """
     faces = tessellated(shape, linear, angular)
     meshed = [_face(face) for face in faces]
