@@ -1,4 +1,4 @@
-"""All checks of a design: every part of its scenes, then how the parts stand to each other."""
+"""All checks of a design: every part of its scenes, then the parts' relations."""
 
 from __future__ import annotations
 

@@ -80,7 +80,7 @@ def bought_from_cadquery(
     model
         One solid, mm.
     path
-        Where it is written (STEP) and from then on read.
+        The STEP file that is written, and read from then on.
     part_no, name, material, purchase
         Of the part, see `tactcad.parts.language.description.Part`.
 
