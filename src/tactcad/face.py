@@ -186,7 +186,7 @@ class LoadedDesign:
         Raises
         ------
         InputError
-            Where a name is unknown or of several tables, a value is not legal, or a rule is broken.
+            If a name is unknown or of several tables, a value is not legal, or a rule is broken.
         """
         made = copy.deepcopy(self.table)
         given = {self._path(name): value for name, value in {**(changes or {}), **named}.items()}
@@ -383,7 +383,7 @@ class OpenScene:
         Raises
         ------
         InputError
-            Where `part` is no part, a designator is unknown, or the part's number is another part's.
+            If `part` is no part, a designator is unknown, or the part's number is another part's.
         """
         from tactcad.parts.language.description import Part, vector
         from tactcad.scenes.scene import AddedPart, Placement, with_added

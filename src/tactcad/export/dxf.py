@@ -78,7 +78,7 @@ def dxf_bytes(part: Part) -> bytes:
     Raises
     ------
     ValueError
-        Where the part has none.
+        If the part has none.
     """
     cut = _section(part)
     return layered_dxf({LAYER: (*cut.openings, cut.outer)}, cut.outer.box)

@@ -159,7 +159,7 @@ def accept(design: CommonTables, path: Path, failures: Sequence[Finding]) -> Non
     CheckFailure
         With nothing written, where a check failed, or the golden file's own revision has other geometry.
     InputError
-        Where the file cannot be written.
+        If the file cannot be written.
     """
     left = f"{path.name} is left as it was"
     if failures:

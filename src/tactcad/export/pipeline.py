@@ -104,9 +104,9 @@ def export(
     Raises
     ------
     InputError
-        Where the design breaks a rule, or `out` is not ours to replace or cannot be written.
+        If the design breaks a rule, or `out` is not ours to replace or cannot be written.
     CheckFailure
-        Where a file does not read back as it should, or where something in `out` had changed meanwhile and
+        If a file does not read back as it should, or where something in `out` had changed meanwhile and
         was kept.
     """
     inputs = inputs_of(

@@ -192,9 +192,9 @@ def replacing(directory: str | Path, schema: str, others: str = REFUSE, say: Say
     Raises
     ------
     InputError
-        Where DIR is not ours to replace (see `looked_at`), or the place cannot be written to.
+        If DIR is not ours to replace (see `looked_at`), or the place cannot be written to.
     CheckFailure
-        Where the disk is full, or, after the new DIR stands, where something in the earlier one appeared
+        If the disk is full, or, after the new DIR stands, where something in the earlier one appeared
         meanwhile and was kept.
     """
     out = absolute(directory)

@@ -59,7 +59,7 @@ def part_step(part: Part, shape: TopoDS_Shape, header: Header) -> bytes:
     Raises
     ------
     CheckFailure
-        Where it reads back otherwise: product, validity, or the volume by more than a share of 1e-6.
+        If it reads back otherwise: product, validity, or the volume by more than a share of 1e-6.
     """
     document, shape_tool = new_document()
     add_prototype(document, shape_tool, part, shape)

@@ -93,7 +93,7 @@ def part_step_pmi(part: Part, shape: bytes, header: Header) -> bytes:
     Raises
     ------
     CheckFailure
-        Where a limit stands on no face, or the file does not read back to the same part, values, datums and
+        If a limit stands on no face, or the file does not read back to the same part, values, datums and
         faces.
     """
     solid = _without_locations(from_bytes(shape))

@@ -104,7 +104,7 @@ def release(
         With nothing written and older zips as they were, where a check fails, the golden file does not hold
         just this revision, or what was written does not read back; otherwise as `places.replacing`.
     InputError
-        Where `out` cannot be written, or as `places.looked_at`.
+        If `out` cannot be written, or as `places.looked_at`.
     """
     places, foreign = looked_up(design, design_file, out, shop_file, terms)
     scenes = [make_scene(design, name) for name in scene_names(design)]

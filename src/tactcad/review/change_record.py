@@ -51,7 +51,7 @@ def change_record(
     Raises
     ------
     CheckFailure
-        Where the designs have no scene in common.
+        If the designs have no scene in common.
     """
     scenes = {
         # what came and went first

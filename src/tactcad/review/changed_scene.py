@@ -83,7 +83,7 @@ def changed_scenes(
     Raises
     ------
     CheckFailure
-        Where the designs have no scene in common.
+        If the designs have no scene in common.
     """
     before, after = (chosen_scenes(design, None) for design in designs)
     names = [name for name in after if name in before]

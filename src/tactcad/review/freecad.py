@@ -86,7 +86,7 @@ def freecad_document(
     Raises
     ------
     CheckFailure
-        Where FreeCAD is not installed, or ends without a document.
+        If FreeCAD is not installed, or ends without a document.
     """
     command = program()
     scenes = tuple(make_scene(design, name) for name in scene_names)
@@ -254,7 +254,7 @@ def freecad_changes(
     Raises
     ------
     CheckFailure
-        Where FreeCAD is not installed or ends without a document, or the designs have no scene in common.
+        If FreeCAD is not installed or ends without a document, or the designs have no scene in common.
     """
     command = program()
     scenes = changed_scenes(designs, shapes, say)
@@ -340,7 +340,7 @@ def made_by_freecad(
     Raises
     ------
     CheckFailure
-        Where FreeCAD ends without a document.
+        If FreeCAD ends without a document.
     """
     with scratch_folder("freecad") as folder:
         for n, (part, text) in enumerate(zip(record["parts"], texts, strict=True)):

@@ -68,7 +68,7 @@ def show(design: str | Path | CommonTables, scene: str = "array") -> ShownPage:
     InputError
         If there is no such design or scene, or the design breaks a rule.
     CheckFailure
-        Where the page's viewer, the extra `review`, is not installed.
+        If the page's viewer, the extra `review`, is not installed.
     """
     library = viewer_library()  # a missing one is said before any work
     read, sheets = _read(design)
@@ -119,7 +119,7 @@ def show_in_vscode(design: str | Path | CommonTables, scene: str = "array") -> N
     InputError
         As `show`.
     CheckFailure
-        Where the package ocp-vscode is not installed, or no viewer listens.
+        If the package ocp-vscode is not installed, or no viewer listens.
     """
     viewer = _listening()
     read, _ = _read(design)

@@ -40,7 +40,7 @@ def strain_field(layout: Layout, place: ElementPlace) -> StrainField:
     Raises
     ------
     CheckFailure
-        Where the mesh cannot follow its contour.
+        If the mesh cannot follow its contour.
     """
     contour = element(layout, place).extrusion.outer
     shape = cut_element(contour, layout.clamp_edge, place.hinge_x - place.load_arm)

@@ -26,7 +26,7 @@ from .variables import Distribution, made, of_element
 
 # Least share of arrays that meet all requirements; below it nothing is released.
 LEAST_YIELD = 0.995
-# What decides: the worse of these. Corners are reported beside them.
+# The worse of these decides. Corners are also reported.
 DECIDING: tuple[Distribution, ...] = ("normal", "uniform")
 AT_ONCE = 20_000  # elements in memory at a time
 
@@ -44,7 +44,7 @@ class ElementBuilt:
     stop_closes_at_least: float
 
     def known(self) -> dict[str, Any]:
-        """By field, with None for figures that are not: arrays built outside the closed form's range have no
+        """By field, with None for unknown figures: arrays built outside the closed form's range have no
         stiffness."""
 
         def figures(value: Any) -> Any:

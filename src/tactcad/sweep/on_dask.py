@@ -150,7 +150,7 @@ def cluster(
     Raises
     ------
     InputError
-        Where nobody answers.
+        If nobody answers.
     """
     import dask
 
@@ -260,9 +260,9 @@ def all_done(client: Client, orders: Iterable[SweepOrder]) -> Iterator[Done]:
     Raises
     ------
     InputError
-        Where a worker is of another version, or does not see the folder.
+        If a worker is of another version, or does not see the folder.
     CheckFailure
-        Where a task killed every worker it was given to, or the scheduler is gone.
+        If a task killed every worker it was given to, or the scheduler is gone.
     """
     from distributed import CancelledError, KilledWorker, as_completed
     from distributed.comm.core import CommClosedError

@@ -91,7 +91,7 @@ def claimed(study: Study, out: str | Path) -> Path:
     Raises
     ------
     InputError
-        Where it holds another study, or anything else.
+        If it holds another study, or anything else.
     """
     folder = absolute(out)
     make_folder(folder)
@@ -148,7 +148,7 @@ class FarStore:
     Raises
     ------
     InputError
-        Where fsspec does not know such addresses, what it needs for them is not installed, or there can be no
+        If fsspec does not know such addresses, what it needs for them is not installed, or there can be no
         store.
     CheckFailure
         Later, where the place does not answer or refuses.

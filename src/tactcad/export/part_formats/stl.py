@@ -34,7 +34,7 @@ def part_stl(part_no: str, shape: TopoDS_Shape, meshing: Meshing) -> bytes:
     Raises
     ------
     CheckFailure
-        Where the file read back is no closed surface, or its volume is further off the solid's.
+        If the file read back is no closed surface, or its volume is further off the solid's.
     """
     import trimesh
     from trimesh.exchange.stl import export_stl
