@@ -89,7 +89,7 @@ class Taxel:
 
 @dataclass(frozen=True)
 class Taxels:
-    """The table, and what it is of."""
+    """The table, and its design."""
 
     design: str
     revision: str
