@@ -64,6 +64,8 @@ def array_supplies(layout: Layout) -> tuple[Supply, ...]:
     """Gauge and bonding supplies of the array, none verified in a maker's own data."""
     g, material, bonding = layout.design.gauge, layout.design.material, layout.design.bonding
     metal = family(material.density) or material.alloy
+    if metal == "steel":  # of 11 or 16e-6/K, as its grade is
+        metal += f" {material.alloy}"
     longest = f", at most {bonding.terminal_length:g} mm long" if bonding else ""
     carrier = g.carrier_arm_side + g.carrier_body_side
     counts = {"elements": len(layout.elements)}
