@@ -7,7 +7,7 @@ from math import hypot
 import numpy as np
 import pytest
 from ngspice import solved
-from test_ngspice import bridge, read_all, source, strained
+from test_ngspice import bridge, read_all, source, strained, warming
 from variants import variant
 
 from tactcad.circuit.bridges import netlist
@@ -91,10 +91,8 @@ def test_a_bridge_is_warm_when_its_first_result_begins(late, tmp_path):
     the noise."""
     layout = Layout(variant({**ONE, "readout.power": "duty"}))
     circuit, found = with_tracks(layout, netlist(layout)), digital_readout(layout, CHIP)
-    gauge, power = design_gauge(layout.design), power_of(layout)
     a, b = (p.net for p in circuit.of_element("gauge", 1).pins)
-    ohm_k, tau = gauge_signal.thermal_resistance(gauge, power), gauge_signal.time_constant(gauge, power)
-    heat = f"V({a},{b})*V({a},{b})/120"
+    tau = gauge_signal.time_constant(design_gauge(layout.design), power_of(layout))
     regulator = circuit.on_board("regulator", 1)
     set_net, out = regulator.net("set"), regulator.net("out")
     more = {
@@ -102,14 +100,7 @@ def test_a_bridge_is_warm_when_its_first_result_begins(late, tmp_path):
             f"ION 0 {set_net} PULSE(0 100u {1e-3 + late} 1n 1n 1 2)",
             f"EON {out} 0 {set_net} 0 1",
         ],
-        "RB1": [
-            f"BG {a} {b} I = V({a},{b})/(120*(1 - 17e-6*V(hot)))",
-            f"BP 0 grid I = {heat}",
-            f"RT grid 0 {ohm_k}",
-            f"CT grid 0 {tau / ohm_k}",
-            f"BH hot 0 V = V(grid) + {power.leaf_resistance}*{heat}",
-            "RH hot 0 1",
-        ],
+        "RB1": warming(a, b, layout),
     }
     plus, minus, reference = nodes(circuit)
     run = [

@@ -47,6 +47,22 @@ def strained(circuit: Netlist, x: dict[int, float]) -> Netlist:
     return replace(circuit, components=changed)
 
 
+def warming(a: str, b: str, layout: Layout) -> list[str]:
+    """Lines of a deck: a gauge of 120 ohm between two nodes whose resistance follows its grid's temperature,
+    and its heat, W, in the capacities of grid and element as a circuit (1 V a kelvin)."""
+    gauge, power = design_gauge(layout.design), power_of(layout)
+    ohm_k, tau = gauge_signal.thermal_resistance(gauge, power), gauge_signal.time_constant(gauge, power)
+    heat = f"V({a},{b})*V({a},{b})/120"
+    return [
+        f"BG {a} {b} I = V({a},{b})/(120*(1 - 17e-6*V(hot)))",
+        f"BP 0 grid I = {heat}",
+        f"RT grid 0 {ohm_k}",
+        f"CT grid 0 {tau / ohm_k}",
+        f"BH hot 0 V = V(grid) + {power.leaf_resistance}*{heat}",
+        "RH hot 0 1",
+    ]
+
+
 def read_all(circuit: Netlist, tmp_path) -> dict[str, float]:
     return solved(deck(circuit, list(reading(circuit))), tmp_path)
 
@@ -231,21 +247,16 @@ def test_the_grids_warmth_at_the_stated_instant(instant, tmp_path):
     d = variant({} if instant is None else {"readout.instant": instant})
     layout, gauge, power = Layout(d), design_gauge(d), power_of(Layout(d))
     steady = gauge_signal.continuous(2.7, gauge, power)
-    ohm_k, tau = gauge_signal.thermal_resistance(gauge, power), gauge_signal.time_constant(gauge, power)
     at = instants(d)
+    heated = "\n".join(warming("exc", "plus", layout))
     deck = f"""* one bridge and its grid's heat
 VON on 0 PULSE(0 1 0 1n 1n 5m 50m)
 BEXC exc 0 V = 2.7*V(on)
-BG exc plus I = V(exc,plus)/(120*(1 - 17e-6*V(hot)))
+{heated}
 RA plus foot 120
 RB exc minus 120
 RC minus foot 120
 RS foot 0 0.021
-BP 0 grid I = V(exc,plus)*V(exc,plus)/120
-RT grid 0 {ohm_k}
-CT grid 0 {tau / ohm_k}
-BH hot 0 V = V(grid) + {power.leaf_resistance}*V(exc,plus)*V(exc,plus)/120
-RH hot 0 1
 BO out 0 V = 100*(V(plus) - V(minus))
 .options reltol=1e-6 abstol=1e-15
 .tran 2u 0.105 0 10u
@@ -336,20 +347,11 @@ def test_a_board_has_settled_when_the_first_sample_may_be_taken(strain, tmp_path
 def test_the_boards_warmth_at_the_stated_instants(tmp_path):
     """As above, but of the whole board with its tracks: its output at the first and the last sample."""
     d = variant({"array.row_arms": [[5.0]], "readout.period": 0.05})
-    layout, gauge = Layout(d), design_gauge(d)
-    circuit, power, at = with_tracks(layout, netlist(layout)), power_of(layout), instants(d)
+    layout = Layout(d)
+    circuit, at = with_tracks(layout, netlist(layout)), instants(d)
     grid = circuit.of_element("gauge", 1)
     a, b = grid.net("1"), grid.net("2")
-    ohm_k, tau = gauge_signal.thermal_resistance(gauge, power), gauge_signal.time_constant(gauge, power)
-    heat = f"V({a},{b})*V({a},{b})/120"
-    lines = [
-        f"BG {a} {b} I = V({a},{b})/(120*(1 - 17e-6*V(hot)))",
-        f"BP 0 grid I = {heat}",
-        f"RT grid 0 {ohm_k}",
-        f"CT grid 0 {tau / ohm_k}",
-        f"BH hot 0 V = V(grid) + {power.leaf_resistance}*{heat}",
-        "RH hot 0 1",
-    ]
+    lines = warming(a, b, layout)
     run = ["save v(out1)", "tran 20u 0.055 0 20u"]
     run += [f"meas tran at{i} FIND v(out1) AT={0.05 + at[i] + 2e-8}" for i in (0, 9)]
     found = solved(

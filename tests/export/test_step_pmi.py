@@ -304,11 +304,11 @@ def test_any_set_of_limits(stated):
     [
         (
             ("left edge", "right edge"),
-            "width of 9 mm stands on left edge and right edge, which has no such size",
+            "width of 9 mm refers to left edge and right edge, which has no such size",
         ),
         (("left edge", "upper edge"), "no such size"),
-        (("left edge",), "stands on left edge, which has no such size"),
-        ((), "stands on no feature"),
+        (("left edge",), "refers to left edge, which has no such size"),
+        ((), "refers to no feature"),
     ],
 )
 def test_a_dimension_that_its_features_do_not_have_is_refused(between, said):

@@ -191,6 +191,14 @@ def test_a_dead_and_a_saturated_channel_are_named_and_left_out(tmp_path, capsys)
     assert out.with_suffix(".svg").read_text().startswith("<svg")
 
 
+def test_two_channels_at_one_limit_are_saturated_not_one_channel(tmp_path):
+    lab = labs.grasp(np.random.default_rng(8))
+    railed = np.where(lab.columns["load"] > 0, 5.0, 0.0)
+    bad = broken(lab, ai6=railed, ai8=railed)
+    taken = log_readings.take(in_memory(bad), mapped(tmp_path, lab, "grasp"))
+    assert set(taken.left_out) == {6, 8} and all("saturated" in why for why in taken.left_out.values())
+
+
 def _refused(lab, kind="grasp"):
     """Logs that would give wrong readings, each with what the line says."""
     n, v = len(lab.time), lab.columns

@@ -1,4 +1,4 @@
-"""Every different board of an array, laid out: bare they are all alike, and differ in what is fitted."""
+"""Every different board of an array, laid out: bare boards are equal, the fitted components differ."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def netlist_of_board(layout: Layout, used: int) -> Netlist:
 
 
 def laid_out(layout: Layout) -> tuple[BoardCopper, ...]:
-    """One for each number of elements that a board reads, the largest first. Raises CheckFailure where the
+    """One for each number of elements that a board reads, the largest first. Raises CheckFailure if the
     outline is too small."""
     used = sorted({len(board.places) for board in boards(layout)}, reverse=True)
     outline = board_outline(layout)

@@ -47,7 +47,7 @@ class DigitalReadout:
     excitation  V, all the time or for `on` in each period
     gain, rate  of the converter's input; Hz
     settling    s, from one input to the next
-    warm_up, on s, from ON to the first input's turn, and to the last result; 0 where always on
+    warm_up, on s, from ON to the first input's turn, and to the last result; 0 if always on
     noise       V rms of one result, at the bridge
     drift       V, half-width, at the bridge, between zero and reading
     per_strain  V at the bridge for a strain of 1
@@ -107,7 +107,7 @@ def digital_readout(layout: Layout, name: str) -> DigitalReadout:
 
 @dataclass(frozen=True)
 class Register:
-    """A register's address, bytes and value, and from where each of its bits is known."""
+    """A register's address, bytes and value, and the source of each of its bits."""
 
     name: str
     address: int
@@ -122,7 +122,7 @@ HEADER = "the maker's ad7124.h"
 
 
 def registers(found: DigitalReadout, chip: int) -> list[Register]:
-    """What one AD7124-8 is set to; of each value where its bits were read, or `unread`."""
+    """Settings of one AD7124-8; for each value the source of its bits, or `unread`."""
     clock, places = found.converter.clock, found.chips[chip]
     fs = ceil(clock / (32 * found.rate))
     pga = found.converter.gains.index(found.gain)
@@ -180,7 +180,7 @@ PINS_FROM = "unread: the sheet's pin table; two layout libraries of others' that
 
 
 def pin_map(layout: Layout, converter: Converter) -> list[tuple[str, str, str]]:
-    """Of every board's converter: pin, its role, and the board's net on it; "" where it stays open."""
+    """Of every board's converter: pin, its role, and the board's net on it; "" if it stays open."""
     board = digital_netlist(layout, converter, converter.inputs)
     (part,) = board.of_kind("converter")
     return [(p.number, p.role, p.net) for p in sorted(part.pins, key=lambda p: int(p.number))]

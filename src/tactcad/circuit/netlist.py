@@ -1,4 +1,4 @@
-"""A netlist: components with designators, values and part numbers, and what is connected by their pins.
+"""A netlist: components with designators, values and part numbers, and their pins' nets.
 
 Designators by IEC 81346-2: B gauges, C capacitors, D diodes, J connectors, Q transistors, R resistors, U
 integrated circuits, W leads, X terminals; A boards. Those of element n: Bn, Xn, W(10 n + 1) and on; those of
@@ -33,7 +33,7 @@ GROUND = "GND"
 
 @dataclass(frozen=True)
 class Pin:
-    """A pin by its number or letter, what it is for, and the net that it is on; "" where it stays open."""
+    """A pin by its number or letter, its role, and its net; "" if it stays open."""
 
     number: str
     role: str
@@ -44,8 +44,8 @@ class Pin:
 class Component:
     """One component. `part_no` is its line of the bill. `figures` in V, ohm, F, Hz by name, for the deck.
 
-    `element` and `board` are the numbers of those that it belongs to; 0 for none. `footprint` by its name
-    (footprints.py), of what stands on a board; where not `fitted`, its place stays empty.
+    `element` and `board`: numbers of its element and board; 0 for none. `footprint`: its name
+    (footprints.py), for components on a board; if not `fitted`, its place stays empty.
     """
 
     designator: str
@@ -60,11 +60,11 @@ class Component:
     fitted: bool = True
 
     def net(self, role: str) -> str:
-        """The net of the pin with that role; raises KeyError where it has none."""
+        """The net of the pin with that role; raises KeyError if it has none."""
         return {pin.role: pin.net for pin in self.pins}[role]
 
     def figure(self, name: str) -> float:
-        """Raises KeyError where it has none of that name."""
+        """Raises KeyError if it has none of that name."""
         return dict(self.figures)[name]
 
 
@@ -72,7 +72,7 @@ class Component:
 class Netlist:
     """All components; equal designs give equal netlists, in the same order.
 
-    Raises ValueError where two components share a designator.
+    Raises ValueError if two components share a designator.
     """
 
     name: str
@@ -87,7 +87,7 @@ class Netlist:
 
     @cached_property
     def nets(self) -> dict[str, tuple[tuple[Component, Pin], ...]]:
-        """What is on every net, by its name, in the order of the components."""
+        """The pins on every net, by its name, in the order of the components."""
         nets: dict[str, list[tuple[Component, Pin]]] = {}
         for component in self.components:
             for pin in component.pins:
@@ -100,7 +100,7 @@ class Netlist:
         return (c for c in self.components if c.kind == kind and c.fitted)
 
     def pin_at(self, place: str) -> Pin:
-        """By designator and number: X1.2. Raises StopIteration where there is none."""
+        """By designator and number: X1.2. Raises StopIteration if there is none."""
         name, _, number = place.rpartition(".")
         return next(p for c in self.components if c.designator == name for p in c.pins if p.number == number)
 
@@ -110,11 +110,11 @@ class Netlist:
         return frozenset(c.net("out") for c in self.of_kind("regulator"))
 
     def on_board(self, kind: Kind, board: int) -> Component:
-        """The amplifier, multiplexer or decoder of a board. Raises KeyError where there is none."""
+        """The amplifier, multiplexer or decoder of a board. Raises KeyError if there is none."""
         return self._once["board", kind, board]
 
     def of_element(self, kind: Kind, element: int) -> Component:
-        """The gauge, terminal or switch of an element. Raises KeyError where there is none."""
+        """The gauge, terminal or switch of an element. Raises KeyError if there is none."""
         return self._once["element", kind, element]
 
     @cached_property

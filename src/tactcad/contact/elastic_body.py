@@ -1,13 +1,13 @@
-"""How the face of an elastic body gives way under a normal load: half-space, bonded layer, layer that slips.
+"""Compliance of an elastic body's face under a normal load: half-space, bonded layer, layer that slips.
 
 A force of 1 N moves the face, r away and without friction under the pads, by
 
-    u(r) = (1 - nu^2)/(pi E) [1/r + G(r/h)/h],    G(q) = int_0^inf (phi(c) - 1) J0(c q) dc,
+    u(r) = (1 - nu^2)/(pi E) [1/r + G(r/h)/h],    G(q) = int_0^inf (phi(c) - 1) J0(c q) dc.
 
-where a wave of number k moves it 2 (1 - nu^2)/E phi(k h)/k per pressure. Bonded to a rigid base:
+A pressure wave of number k moves the face by 2 (1 - nu^2)/E phi(k h)/k per pressure. Bonded to a rigid base:
 phi = ((3 - 4 nu) sinh 2c - 2c)/((3 - 4 nu) cosh 2c + 2 c^2 + 5 - 12 nu + 8 nu^2); on a rigid base without
-friction: phi = (cosh 2c - 1)/(sinh 2c + 2c); half-space: phi = 1. Source: Johnson, Contact Mechanics,
-chapter 5; Gladwell, Contact Problems in the Classical Theory of Elasticity.
+friction: phi = (cosh 2c - 1)/(sinh 2c + 2c); half-space: phi = 1. Source: Johnson, Contact Mechanics, chapter
+5; Gladwell, Contact Problems in the Classical Theory of Elasticity.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ GRID = 2001  # of q in the table of G: 1e-9 against the integral
 @dataclass(frozen=True)
 class Body:
     """What is pressed: Young's modulus (MPa), Poisson's ratio, thickness (mm; inf for a half-space), and
-    whether its base is bonded to what it lies on or slips on it without friction.
+    whether its base is bonded or slips without friction.
 
     Raises
     ------
@@ -76,7 +76,7 @@ BASES = {"bonded": _bonded, "frictionless": _slippery}
 
 @lru_cache(maxsize=32)
 def layer_correction(poisson: float, base: str) -> CubicSpline:
-    """G of q = r/h, from 0 to FAR; -1/q beyond, where a layer's face stays."""
+    """G of q = r/h, from 0 to FAR; -1/q beyond, where a layer's face does not move."""
     node, weight = leggauss(WAVES)
     c, weight = (node + 1) * DEEP / 2, weight * DEEP / 2
     q = FAR * np.linspace(0, 1, GRID) ** 2  # denser where G bends
@@ -130,7 +130,7 @@ def influence(
     first, second : four arrays (x, y, a, b) each, [n] and [m]
         Centres and sides of the rectangles, mm; second: those that are loaded, by default the first.
     mean
-        Their `mean_inverse`, where it is known.
+        Their `mean_inverse`, if it is known.
 
     Returns
     -------

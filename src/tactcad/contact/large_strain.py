@@ -71,7 +71,7 @@ class _Rings:
 
     def forces(self, u: np.ndarray) -> tuple[np.ndarray, csc_matrix]:
         """What holds the displacements u: forces on the nodes, and their derivative. Raises
-        FloatingPointError where an element is turned inside out."""
+        FloatingPointError if an element is turned inside out."""
         F = np.broadcast_to(np.eye(3), (*self.volume.shape, 3, 3)).copy()
         for k, (i, j) in enumerate(AXES):
             F[:, :, i, j] += np.einsum("eqn,en->eq", self.B[:, :, k], u[self.dofs])

@@ -1,9 +1,9 @@
 """Rigid pads that sink and tilt, pressed on an elastic body: which parts touch, and the force on each pad.
 
-Each pad is cut into patches of even pressure, finer toward its edges, where a rigid punch presses without
-bound. A pad gives way by its compliance: sink (mm) and slopes along x and y under a force (N) and its moments
-(N mm) about the pad's middle. Force f of every patch and gap g between patch and face obey f >= 0, g >= 0,
-f g = 0 with
+Each pad is cut into patches of even pressure, finer toward its edges, where the pressure of a rigid punch is
+singular. A pad gives way by its compliance: sink (mm) and slopes along x and y under a force (N) and its
+moments (N mm) about the pad's middle. Force f of every patch and gap g between patch and face obey f >= 0, g
+>= 0, f g = 0 with
 
     g = C f + (pads' own giving way) + height + inclination - approach,
 
@@ -41,7 +41,7 @@ class Pads:
     width       along y, mm; a disc's diameter is its length and width
     compliance  of each pad, [pad, 3, 3]: from force (N) and its moments (N mm) along x and y to sink (mm) and
                 slopes
-    height      how far each stands back from the plane of the highest, mm, [pad]
+    height      distance of each pad below the plane of the highest, mm, [pad]
     stop        sink at which each is stopped, mm, [pad]; inf without
     disc        round pads
     """
@@ -65,7 +65,7 @@ class Pressed:
     sink      of each pad's middle, mm, [pad]
     slope     of each pad along x and y, [pad, 2]
     contact   share of each pad's area that presses, [pad]
-    stopped   pads that stand on their stops, [pad]
+    stopped   whether each pad rests on its stop, [pad]
     patches   x, y, sides along x and y (mm) of every patch, and its force (N), [5, pad, patch]
     """
 
@@ -109,7 +109,7 @@ class PadsOnBody:
         self.at = np.empty((4, n, m))
         self.at[0], self.at[1] = pads.x[:, None] + one[0], pads.y[:, None] + one[1]
         self.at[2:] = one[2:, None, :]
-        # pads are alike, so a block of the face's compliance follows from how far apart they are
+        # pads are equal, so a block of the face's compliance depends on their distance only
         apart = np.stack([pads.x[:, None] - pads.x, pads.y[:, None] - pads.y], axis=-1).reshape(-1, 2)
         places, which = np.unique(np.round(apart, 9), axis=0, return_inverse=True)
         blocks = np.array([block(dx, dy) for dx, dy in places])
@@ -186,7 +186,7 @@ class PadsOnBody:
         M = self.face * soft
         for i in range(n):
             block = slice(i * m, (i + 1) * m)
-            # unknown is what a linear body would bear; the pad bears `hard` times as much
+            # the unknown is the force on a linear body; the pad bears `hard` times as much
             M[block, block] += hard[i] * self.modes.T @ D[i] @ self.modes
         gap = (back + np.where(stopped[:, None], fixed @ self.modes, 0.0)).ravel()
         f, at = complementary(M, gap, load, approach, np.repeat(hard, m))
@@ -217,7 +217,7 @@ def complementary(
     first: np.ndarray | None = None,
 ) -> tuple[np.ndarray, float]:
     """f >= 0 with M f + gap - approach >= 0 and one of them zero; the approach where the load, the sum of
-    share f, is given. `first` are patches that may be those pressed, to begin with; by default all.
+    share f, is given. `first`: the patches assumed in contact at the start; by default all.
 
     Patches in tension leave, patches that overlap come back, until neither is left; should that go in
     circles, by non-negative least squares.

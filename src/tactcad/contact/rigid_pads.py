@@ -1,12 +1,12 @@
 """Many presses of rigid pads on one layer: each pad as three numbers, its force and two moments.
 
-A pad alone obeys one law, tabulated once for a layer: forces follow from how deep and how inclined it stands
-in the face, with contact lost where it lifts. By linearity of the body that law is homogeneous (twice the
-depth and slopes, twice the force) and proportional to the modulus, so it is a table of two ratios. Between
+A pad alone obeys one law, tabulated once for a layer: forces follow from its depth and its inclination to the
+face, with contact lost where it lifts. Because the body is linear, that law is homogeneous (twice the depth
+and slopes, twice the force) and proportional to the modulus, so it is tabulated over two ratios. Between
 pads, forces and moments move and incline each other's part of the face by a matrix, exact where whole pads
-touch. A pad that has lifted on one side presses, and feels its neighbours, by the rest of its area: `lifted`
-is what that changes, from the moments of its pressure up to the third.
-`press` solves every patch instead; tests hold the two against each other.
+touch. A pad lifted on one side presses, and feels its neighbours, with the rest of its area only: `lifted`
+gives the change from the moments of its pressure up to the third. `press` solves every patch instead; the
+tests compare the two.
 
 `press_many` presses hundreds of pads once: what two pads do to each other is found as if no other were there,
 so that only 3 x 3 numbers a pair are kept.
@@ -27,7 +27,7 @@ from .press import Pads, Pressed, complementary, patches
 KNOTS = 21  # of each ratio in the table, 0 to 1; 41 move forces by less than 0.1 %
 ROUNDS = 60  # of Newton's method, at most
 COARSE = 6  # patches a side of a pad for what pads do to each other
-DEGREE = 3  # of moments that tell neighbours where a pad presses; with 2 its lift is felt up to 0.4 % wrong
+DEGREE = 3  # order of a pad's moments felt by its neighbours; 2 errs up to 0.4 % where it lifts
 POWERS = np.array([(a, k - a) for k in range(DEGREE + 1) for a in range(k, -1, -1)])  # of x and y
 POINTS = 1e-4  # a pad that touches in so small a share of itself cannot bear a moment
 LOADED = 1e-9  # relative error of the load of `press_many`
@@ -355,7 +355,7 @@ def press_many(pads: Pads, body: Body, load: float, angle: tuple[float, float]) 
             low, high = (approach, high) if off > 0 else (low, approach)
             steep = E * np.einsum("nj,nj->", d[:, 0], np.linalg.solve(J, along).reshape(n, 3))
             step = approach + off / steep if steep > 0 else inf
-            if not low < step < high:  # by halves where a tangent leaves what is known to hold the answer
+            if not low < step < high:  # bisect if the tangent leaves the bracket
                 step = (low + high) / 2 if high < inf else 2 * approach - low + load / alone
             if step == approach:
                 break

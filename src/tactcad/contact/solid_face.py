@@ -1,4 +1,4 @@
-"""How the face of a layer gives way, by solid elements: the influence of rung `fem-object`.
+"""Compliance of a layer's face by solid elements: the influence of rung `fem-object`.
 
 Bricks with quadratic displacement and linear pressure (27 nodes; the pressure discontinuous, so that it is
 projected element by element), which do not lock up to nu 0.4999. A layer looks the same from everywhere, so a
@@ -129,7 +129,7 @@ class SolidFace:
         top = np.flatnonzero(place[2] == place[2].max())
         top = top[np.lexsort((place[1, top], place[0, top]))]
         order = (3 * _dissected(place, np.arange(basis.N))[:, None] + np.arange(3)).ravel()
-        # a base that slips is held against turning at its far corner
+        # a base that slips is kept from turning at its far corner
         corner = (place[0] == place[0].max()) & (place[1] == place[1].max()) & (place[2] == 0)
         x, y = patches[:2]
         quarter = np.flatnonzero((x > 0) & (y > 0))

@@ -50,7 +50,7 @@ def strain_error(pads: Pads, body: Body, depth: float | np.ndarray) -> float | n
 
 
 def stated_error(rung: str, pads: Pads, body: Body, force: np.ndarray) -> float:
-    """Largest error of the pads' forces that is stated for a rung where the pads bear these."""
+    """Largest stated error of a rung for pads that bear these forces."""
     data = errors()
     strain = 0.0
     if rung != "large":

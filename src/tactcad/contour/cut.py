@@ -30,7 +30,7 @@ def cut(
     Returns
     -------
     tuple of Contour
-        Counter-clockwise; none where the whole contour lies on the other side.
+        Counter-clockwise; none if the whole contour lies on the other side.
     """
     i = 0 if axis == "x" else 1
     side = -1.0 if keep == "below" else 1.0
@@ -59,7 +59,7 @@ def between(contour: Contour, x0: float, x1: float, names: tuple[str, str] = ("c
     Raises
     ------
     ValueError
-        Where that is not one piece.
+        If that is not one piece.
     """
     parts = [q for p in cut(contour, "x", x0, "above", names[0]) for q in cut(p, "x", x1, "below", names[1])]
     if len(parts) != 1:

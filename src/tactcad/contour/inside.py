@@ -13,7 +13,7 @@ from .segment import Line, Point, Segment
 
 
 def side(contour: Contour, p: Point) -> int:
-    """1 where p is inside, 0 on the contour within rounding, -1 outside; the direction of the chain does
+    """1 if p is inside, 0 on the contour within rounding, -1 outside; the direction of the chain does
     not matter.
     """
     if min(distance_to(s, p) for s in contour) <= ROUNDING_MM:
@@ -49,7 +49,7 @@ def place_for_circle(contour: Contour, diameter: float, within: float = 1e-3) ->
     Returns
     -------
     Point or None
-        The centroid where the circle fits there; None where no place was found.
+        The centroid if the circle fits there; None if no place was found.
     """
     needed = diameter / 2 - ROUNDING_MM
     if clearance(contour, contour.centroid) >= needed:
@@ -68,8 +68,7 @@ def place_for_circle(contour: Contour, diameter: float, within: float = 1e-3) ->
 
 
 def _turn(s: Segment, p: Point) -> float:
-    """Angle by which the direction from p to a point turns as it moves along the segment, radians, positive
-    ccw.
+    """Turn of the direction from p to a point moving along the segment, radians, positive ccw.
 
     For an arc it is that of its chord, and a full turn more where p lies between arc and chord.
     """
@@ -108,7 +107,7 @@ def crossings(one: Contour, other: Contour) -> list[Point]:
 
 
 def smallest_distance(contour: Contour) -> float:
-    """Smallest distance of two pieces that are not neighbours, mm; infinite where there are none."""
+    """Smallest distance of two pieces that are not neighbours, mm; infinite if there are none."""
     boxes, least = [box_around(s) for s in contour], float("inf")
     for (i, a), (j, b) in combinations(enumerate(contour), 2):
         if gap(boxes[i], boxes[j]) < least and not _joints(contour, i, j):
@@ -117,7 +116,7 @@ def smallest_distance(contour: Contour) -> float:
 
 
 def _joints(contour: Contour, i: int, j: int) -> list[Point]:
-    """The joints that pieces i < j share: none, one, or both where there are only two."""
+    """The joints that pieces i < j share: none, one, or both if there are only two."""
     pieces: tuple[Segment, ...] = contour.segments
     shared = [pieces[j].start] if j == i + 1 else []
     return shared + ([pieces[i].start] if (j + 1) % len(pieces) == i else [])

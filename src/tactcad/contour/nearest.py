@@ -105,7 +105,7 @@ def _along_normal(arc: Arc, line: Line) -> list[Point]:
 
 
 def distance(a: Segment, b: Segment) -> float:
-    """Smallest distance of two segments, mm; 0 where they meet."""
+    """Smallest distance of two segments, mm; 0 if they meet."""
     return 0.0 if meeting_points(a, b) else min(dist(p, q) for p, q in common_normals(a, b))
 
 
@@ -122,7 +122,7 @@ def box_around(s: Segment) -> Box:
 
 
 def gap(one: Box, other: Box) -> float:
-    """Distance of two boxes, 0 where they overlap: what they hold is no nearer, but for rounding (mm)."""
+    """Distance of two boxes, 0 if they overlap: what they hold is no nearer, but for rounding (mm)."""
     x = max(one[0] - other[2], other[0] - one[2], 0.0)
     y = max(one[1] - other[3], other[1] - one[3], 0.0)
     return hypot(x, y) - ROUNDING_MM if x or y else 0.0

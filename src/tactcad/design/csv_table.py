@@ -1,7 +1,7 @@
 """Tables read from CSV: every refusal names file, line and column.
 
 A line that starts with # is a comment. The first other line is the header, with one row at least below it;
-columns may stand in any order and unknown ones are ignored. Changes that spreadsheets make to a CSV file are
+columns may be in any order and unknown ones are ignored. Changes that spreadsheets make to a CSV file are
 undone where they are unambiguous: a byte order mark, a first line "sep=;", semicolons or tabs between the
 columns, empty rows, empty cells at the end, and decimal commas.
 """
@@ -26,7 +26,7 @@ from .text_values import as_number
 
 LARGEST_FILE = 100_000_000  # bytes; a million lines of readings are 35 MB
 COMMENT = re.compile(r"\s*#(?!N/A|DIV/0!|VALUE!|REF!|NAME\?|NUM!|NULL!)")  # no spreadsheet's error value
-# a comma before three digits may divide thousands, unless a nought stands before it
+# a comma before three digits may divide thousands, unless a nought precedes it
 MAY_BE_THOUSANDS = re.compile(r"[+-]?[1-9][0-9]{0,2}(,[0-9]{3})+")
 
 
@@ -76,7 +76,7 @@ class Table:
         """The rows as text, each with the line it begins on; cells without blanks around them, at the
         header's width.
 
-        Line ends within quotes belong to their row; empty rows are left out. Raises InputError where it is
+        Line ends within quotes belong to their row; empty rows are left out. Raises InputError if it is
         not CSV, a row is of another length, or there is none.
         """
         rows = _split(self.path, self.lines, self.numbers, self.delimiter)
@@ -117,7 +117,7 @@ class Rows:
     def half_steps(self, name: str) -> np.ndarray:
         """Half a unit of each value's last printed digit, in the column's unit.
 
-        Raises InputError where that is beyond all numbers ("0e400").
+        Raises InputError if that is beyond all numbers ("0e400").
         """
         texts = [text.replace(",", ".") for text in self.table.column(name)]
         steps = np.array([half_step(text) for text in texts])
@@ -131,7 +131,7 @@ class Rows:
 
 
 def half_step(text: str) -> float:
-    """Half a unit of a printed number's last digit; inf where that is beyond all numbers."""
+    """Half a unit of a printed number's last digit; inf if that is beyond all numbers."""
     mantissa, _, exponent = text.lower().partition("e")
     try:
         return 0.5 * 10.0 ** (int(exponent or 0) - len(mantissa.partition(".")[2]))
@@ -147,9 +147,9 @@ def read(path: str | Path, fields: tuple[Field, ...], optional: tuple[Field, ...
     path
         The file, as the user named it.
     fields
-        Columns that must be there.
+        Columns that must be present.
     optional
-        Columns that are read where they are there.
+        Columns that are read if present.
 
     Raises
     ------
@@ -195,13 +195,13 @@ def numeric(table: Table, fields: tuple[Field, ...], optional: tuple[Field, ...]
 
 
 def _at_once(table: Table, chosen: tuple[Field, ...]) -> Rows | None:
-    """`numeric` ten times as fast, for lines of plain legal numbers only; None where one is not."""
+    """`numeric` ten times as fast, for lines of plain legal numbers only; None if one is not."""
     width = len(table.header) - 1
     if not table.lines or any(line.count(table.delimiter) != width or '"' in line for line in table.lines):
         return None
     try:
         places = [table.header.index(f.name) for f in chosen]
-        # loadtxt accepts fewer texts for a number than `number` does: where it refuses, `numeric` decides
+        # loadtxt accepts fewer texts for a number than `number` does: if it refuses, `numeric` decides
         values = np.loadtxt(
             table.lines, delimiter=table.delimiter, usecols=places, comments=None, ndmin=2, unpack=True
         )
@@ -222,7 +222,7 @@ def read_table(path: str | Path, kind: str, most_bytes: int = LARGEST_FILE, comm
     kind
         What was expected, for messages: "readings (CSV)".
     most_bytes
-        What is larger is refused unread.
+        A larger file is refused unread.
     comments
         Whether lines that start with # are left out.
 
@@ -320,7 +320,7 @@ def decimal_commas(texts: Iterable[str]) -> bool:
 
 
 def number(text: str) -> float:
-    """The number that ASCII digits stand for; NaN for any other text."""
+    """The number in ASCII digits; NaN for any other text."""
     try:
         return as_number(text)
     except ValueError:
@@ -330,7 +330,7 @@ def number(text: str) -> float:
 def _split(
     path: str, lines: list[str], numbers: Sequence[int], delimiter: str
 ) -> Iterator[tuple[int, list[str]]]:
-    """Every record without blanks about its cells, and the line it begins on. Raises InputError where it is
+    """Every record without blanks about its cells, and the line it begins on. Raises InputError if it is
     no CSV."""
     reader = csv.reader(lines, delimiter=delimiter, strict=True)
     before = 0

@@ -1,8 +1,8 @@
-"""A family of sensors, declared once: what a design file of its kind holds, and who answers for it.
+"""A family of sensors, declared once: the class of its design files, and its functions.
 
-Every module in `tactcad.families` declares one, its `FAMILY`; nothing lists them. Which family a design is of
-follows from the tables of its file. A declaration names what it uses as "module:function", which is imported
-when it is called: reading a design loads neither models nor the CAD kernel.
+Every module in `tactcad.families` declares one, its `FAMILY`; nothing lists them. The tables of a design's
+file decide its family. A declaration names its functions as "module:function", which is imported when it is
+called: reading a design loads neither models nor the CAD kernel.
 """
 
 from __future__ import annotations
@@ -115,7 +115,7 @@ class FamilyPads:
 
 @dataclass(frozen=True)
 class FamilyReadings:
-    """What a lab's readings tell, in as many components as an element feels.
+    """Evaluation of a lab's readings, in as many components as an element measures.
 
     calibrate  `tactcad calibrate`: (arguments, design) to the exit status
     stiffness  `tactcad stiffness`, likewise
@@ -189,7 +189,7 @@ class Family:
         return section_types(self.spec)
 
     def must(self, what: str, command: str) -> Any:
-        """The field `what`. Raises InputError where the family has none, so that `command` cannot do it."""
+        """The field `what`. Raises InputError if the family has none, so that `command` cannot do it."""
         found = getattr(self, what)
         if found is None:
             able = [f.name for f in all_families().values() if getattr(f, what) is not None]

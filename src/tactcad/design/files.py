@@ -1,7 +1,7 @@
 """The one way in which files named by users are read, and single files written.
 
 Reading: regular files of bounded size only, so that a pipe, a device or a huge file named by mistake neither
-hangs the command nor fills the memory. Writing: the whole file under its name, or none.
+hangs the command nor fills the memory. Writing: the whole file or nothing.
 """
 
 from __future__ import annotations
@@ -61,7 +61,7 @@ def read_bytes(path: str | Path, most_bytes: int, kind: str) -> bytes:
     Raises
     ------
     InputError
-        Where there is no such file, it is a folder, pipe or device, too large, or may not be read.
+        If there is no such file, it is a folder, pipe or device, too large, or may not be read.
     """
     shown = str(path)
     if "\0" in shown:
@@ -100,13 +100,13 @@ def read_text(path: str | Path, most_bytes: int, kind: str) -> str:
     Raises
     ------
     InputError
-        As `read_bytes`; with line and column (in bytes) where it is not UTF-8, or holds a NUL.
+        As `read_bytes`; with line and column (in bytes) if it is not UTF-8, or holds a NUL.
     """
     data = read_bytes(path, most_bytes, kind)
     try:
         text = data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
-        # error.object is what stands behind the mark
+        # error.object is the text after the mark
         before = error.object[: error.start]
         line, column = before.count(b"\n") + 1, len(before) - before.rfind(b"\n")
         bad = error.object[error.start : error.end]
@@ -130,8 +130,8 @@ def read_json(path: str | Path, most_bytes: int, kind: str) -> Any:
     Raises
     ------
     InputError
-        As `read_text`; with line and column where it is not JSON, which has neither NaN nor infinities, where
-        it is nested too deeply, or where a text holds characters that nobody sees.
+        As `read_text`; with line and column if it is not JSON, which has neither NaN nor infinities, if it is
+        nested too deeply, or if a text holds invisible characters.
     """
     text = read_text(path, most_bytes, f"{kind} (JSON)")
     try:
@@ -145,7 +145,7 @@ def read_json(path: str | Path, most_bytes: int, kind: str) -> Any:
     except ValueError as error:  # NaN, or an integer of thousands of digits
         raise InputError(str(path), f"not JSON: {error}", legal=kind) from None
     if not text.isascii() or "\\u" in text:
-        # Raise InputError where a key or text holds half a pair, a control, or what turns the direction of
+        # Raise InputError if a key or text holds half a pair, a control, or what turns the direction of
         # text.
         shown = str(path)
         left = [value]
@@ -182,13 +182,12 @@ def write_whole(path: str | Path, data: bytes) -> None:
 
 @contextmanager
 def whole_file(path: str | Path) -> Iterator[Path]:
-    """A file to write beside the path: flushed and renamed over it when the block ends well, otherwise
-    removed.
+    """A temporary file in the path's folder: flushed and renamed over the path when the block ends well,
+    otherwise removed.
 
-    The folder must exist; links are followed to it, and refused in the file's place. What killed runs left
-    there is removed first. A file that is replaced keeps its permissions; one that is write-protected is
-    kept. Raises InputError where the place cannot be written to, CheckFailure where there is no room; what
-    was there before is then unchanged.
+    The folder must exist; links are followed to it, and refused in the file's place. Leftovers of killed runs
+    are removed first. A replaced file keeps its permissions; a write-protected one is kept. Raises InputError
+    if the place cannot be written to, CheckFailure if there is no room; the earlier file is then unchanged.
     """
     with in_one_line(path):
         place = Path(os.path.realpath(path))
@@ -202,7 +201,7 @@ def whole_file(path: str | Path) -> Iterator[Path]:
 
 
 def _mode(path: str | Path, place: Path) -> int:
-    """Permissions of the file that is to be at `place`. Raises InputError where there can be none."""
+    """Permissions of the file that is to be at `place`. Raises InputError if there can be none."""
     refuse_link(path)
     if not os.path.lexists(place):
         mask = os.umask(0)
@@ -221,7 +220,7 @@ def _mode(path: str | Path, place: Path) -> int:
 
 
 def refuse_link(path: str | Path) -> None:
-    """Raise InputError where a file to be written is a link: it would go to a place that nobody named."""
+    """Raise InputError if a file to be written is a link: it would go to a place that nobody named."""
     if os.path.islink(path) and not os.path.isdir(path):
         raise InputError(
             str(path), "is a link; nothing was changed", legal="the file that it leads to, or a new name"
@@ -250,7 +249,7 @@ def scratch_folder(purpose: str) -> Iterator[Path]:
 
 
 def refuse_overwriting(out: str | Path, *inputs: str | Path | None, option: str = "--out") -> None:
-    """Refuse, before any work, an output that would take away what is read, and a file that is a link.
+    """Refuse, before any work, an output that would overwrite an input, and a file that is a link.
 
     Parameters
     ----------
@@ -264,8 +263,8 @@ def refuse_overwriting(out: str | Path, *inputs: str | Path | None, option: str 
     Raises
     ------
     InputError
-        Where `out` is one of the inputs, under whatever name or link, lies in a folder that is one, or is a
-        folder with one in it; or where it is a link, but not to a folder.
+        If `out` is one of the inputs, under whatever name or link, lies in a folder that is one, or is a
+        folder with one in it; or if it is a link, but not to a folder.
     """
     absolute(out)  # a folder to start from is there
     place, around = _identity(out), _folders(out)
@@ -280,7 +279,7 @@ def refuse_overwriting(out: str | Path, *inputs: str | Path | None, option: str 
 
 
 def _identity(path: str | Path) -> tuple[int, int] | None:
-    """Device and inode number at the end of all links, None where nothing is there."""
+    """Device and inode number at the end of all links, None if nothing is there."""
     try:
         state = os.stat(path)
     except (OSError, ValueError):
@@ -295,13 +294,13 @@ def _folders(path: str | Path) -> set[tuple[int, int] | None]:
 
 
 def absolute(path: str | Path) -> Path:
-    """The path from the root. Raises InputError where the working folder was removed."""
+    """The path from the root. Raises InputError if the working folder was removed."""
     with in_one_line(path):
         return Path(os.path.abspath(path))
 
 
 def make_folder(path: str | Path) -> None:
-    """Make the folder where it does not exist. Raises as `write_whole` does."""
+    """Make the folder if it does not exist. Raises as `write_whole` does."""
     with in_one_line(path):
         Path(path).mkdir(parents=True, exist_ok=True)
 
@@ -331,10 +330,10 @@ def in_one_line(target: str | Path) -> Iterator[None]:
 
 
 def refusal(where: str, error: OSError) -> InputError | CheckFailure:
-    """Our message for an operating system's refusal to write: CheckFailure where there is no room, else
+    """Our message for an operating system's refusal to write: CheckFailure if there is no room, else
     InputError.
 
-    Raises `error` again where it is anything else.
+    Raises any other `error` again.
     """
     if error.errno not in REFUSED_BY_MACHINE:
         raise error

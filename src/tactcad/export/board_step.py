@@ -1,6 +1,6 @@
 """A board as a solid for the assembly: the bare board with the holes of its screws and ties, and a block for
 everything that is fitted. mm, x and y as in the outline's DXF, z = 0 on the underside. Soldered pins, which
-stand out 1.4 mm below it, are left out.
+protrude 1.4 mm below it, are left out.
 """
 
 from __future__ import annotations
@@ -79,7 +79,7 @@ def board_step(board: BoardCopper, kicad: bytes, shapes: Shapes, header: Header)
 def check_bare_board(
     name: str, box: Sequence[Sequence[float]], cylinders: Sequence[tuple[float, float, float]], kicad: bytes
 ) -> None:
-    """Raises CheckFailure where a solid's box or its holes (x, y, diameter) are not those of KiCad's file."""
+    """Raises CheckFailure if a solid's box or its holes (x, y, diameter) are not those of KiCad's file."""
     text = kicad.decode()
     ends = [tuple(map(float, found)) for found in EDGE.findall(text)]
     xs, ys = ({v for e in ends for v in (e[k], e[k + 2])} for k in (0, 1))

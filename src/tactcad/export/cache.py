@@ -4,9 +4,9 @@ The key contains everything that the bytes depend on (see inputs.py), so an entr
 absent. An entry is one file named by the key's digest: a line with the digest of key and bytes, then the
 bytes. Entries that were truncated, altered or put under another key are reported, removed and built again.
 
-The folder is one that tactcad made or found empty, and marked; any other is refused, and in its own only
-files with the names of entries are removed. The cache is optional: where it cannot be written the work is
-done without it. At the end of an export the least recently used entries beyond a bound are removed.
+The folder is one that tactcad made, or found empty, and marked; any other is refused, and only files named
+like entries are removed. The cache is optional: if it cannot be written, the work is done without it. At the
+end of an export the least recently used entries beyond a bound are removed.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ def as_entry(key: str, data: bytes) -> bytes:
 
 
 def from_entry(key: str, entry: bytes) -> bytes | None:
-    """The bytes of an entry; None where it is damaged, or another key's."""
+    """The bytes of an entry; None if it is damaged, or another key's."""
     data = entry.partition(b"\n")[2]
     return data if as_entry(key, data) == entry else None
 
@@ -50,7 +50,7 @@ class Cache:
     """A folder of entries; `say` gets one line when an entry is damaged, and one when the folder is of no
     use.
 
-    Raises InputError where `root` holds anything and is not marked as tactcad's.
+    Raises InputError if `root` holds anything and is not marked as tactcad's.
     """
 
     def __init__(
@@ -66,7 +66,7 @@ class Cache:
             self._complain(error)
 
     def get(self, key: str) -> bytes | None:
-        """The bytes kept under the key, None where there are none or they are damaged."""
+        """The bytes kept under the key, None if there are none or they are damaged."""
         path = self._path(key)
         if not os.path.lexists(path):
             return None
@@ -108,8 +108,8 @@ class Cache:
         """Remove the least recently used entries until `most_bytes` are left, and what killed runs left half
         written.
 
-        Returns how many entries were removed. Another process may read or write meanwhile: it builds again
-        what it misses.
+        Returns how many entries were removed. Another process may read or write meanwhile: it builds missing
+        entries again.
         """
         entries = []
         for path in self._files():
@@ -173,7 +173,7 @@ def take_libraries_in() -> None:
 
 
 def _claim(root: Path) -> None:
-    """Mark an empty folder; raises InputError where it is another's."""
+    """Mark an empty folder; raises InputError if it is another's."""
     names = os.listdir(root)  # before the mark is read: who put anything there had marked it
     mark = read_bytes(root / MARK_NAME, MOST_BYTES, "a cache's mark") if MARK_NAME in names else b""
     if mark == MARK:

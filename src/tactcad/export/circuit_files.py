@@ -19,7 +19,7 @@ Nets = dict[str, frozenset[tuple[str, str]]]  # designators and pins by net
 
 
 def kicad_file(design: CommonTables, circuit: Netlist) -> bytes:
-    """KiCad's netlist. Raises CheckFailure where it does not read back as the circuit."""
+    """KiCad's netlist. Raises CheckFailure if it does not read back as the circuit."""
     d = design.design
     data = kicad_bytes(circuit, d.title, d.organisation, d.date, d.revision)
     check_nets("KiCad's netlist", nets_in_kicad(data), circuit)
@@ -27,7 +27,7 @@ def kicad_file(design: CommonTables, circuit: Netlist) -> bytes:
 
 
 def table_file(design: CommonTables, circuit: Netlist) -> bytes:
-    """The netlist as CSV. Raises CheckFailure where it does not read back as the circuit."""
+    """The netlist as CSV. Raises CheckFailure if it does not read back as the circuit."""
     data = netlist_csv(circuit)
     check_nets("the netlist's table", nets_in_table(data), circuit)
     return data
@@ -40,7 +40,7 @@ def deck_file(design: CommonTables, circuit: Netlist) -> bytes:
 
 
 def wiring_file(design: CommonTables, circuit: Netlist) -> bytes:
-    """The leads to cut. Raises CheckFailure where they are not the circuit's, each once."""
+    """The leads to cut. Raises CheckFailure if they are not the circuit's, each once."""
     family = family_of(design)
     data = wiring_csv(family.must("readout", "export").wiring(family.layout(design), circuit))
     check_leads(data, circuit)
@@ -76,7 +76,7 @@ def nets_in_table(data: bytes) -> Nets:
 
 
 def check_nets(what: str, read: Nets, circuit: Netlist) -> None:
-    """Raises CheckFailure where the nets read back are not the circuit's."""
+    """Raises CheckFailure if the nets read back are not the circuit's."""
     meant = {
         name: frozenset((c.designator, p.number) for c, p in nodes) for name, nodes in circuit.nets.items()
     }
@@ -86,7 +86,7 @@ def check_nets(what: str, read: Nets, circuit: Netlist) -> None:
 
 
 def check_leads(data: bytes, circuit: Netlist) -> None:
-    """Raises CheckFailure where the wiring list does not name every lead of the circuit once."""
+    """Raises CheckFailure if the wiring list does not name every lead of the circuit once."""
     rows = csv.DictReader(io.StringIO(data.decode(), newline=""))
     if sorted(row["lead"] for row in rows) != sorted(c.designator for c in circuit.of_kind("lead")):
         raise CheckFailure("the wiring list does not name every lead of the circuit once")

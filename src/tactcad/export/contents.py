@@ -34,7 +34,7 @@ class Contents:
     """A folder's entries by path: all with their states, and somebody's with what each is (see the words
     above).
 
-    `record` is the manifest, None where there is none or it was edited; `missing` are listed but not there.
+    `record` is the manifest, None if there is none or it was edited; `missing` are listed but absent.
     """
 
     states: Mapping[str, State]
@@ -55,14 +55,14 @@ def sha256_of(data: bytes) -> str:
 
 
 def sealed(record: Mapping[str, Any]) -> bytes:
-    """The record as JSON text with its seal. Raises ValueError where a number is not finite."""
+    """The record as JSON text with its seal. Raises ValueError if a number is not finite."""
     return _json({**record, "seal": sha256_of(_json(record))})
 
 
 def read_sealed(folder: Path, schema: str) -> dict[str, Any]:
     """The manifest of a folder that tactcad wrote, without its seal. Every reader of manifests calls this.
 
-    Raises InputError where there is none, it has another schema, or it is not exactly what tactcad wrote.
+    Raises InputError if there is none, it has another schema, or it is not exactly what tactcad wrote.
     """
     path = folder / NAME
     record = read_json(path, MOST_BYTES, "a manifest")
@@ -123,9 +123,9 @@ def _fault(entry: Path, state: State, sha256: str | None) -> str:
 
 
 def _entries(folder: Path) -> Iterator[str]:
-    """The folder (".") and all below it by path, a folder before what it holds; links are not followed.
+    """The folder (".") and all below it by path, a folder before its contents; links are not followed.
 
-    Raises OSError where a folder cannot be read: nobody knows what it holds.
+    Raises OSError if a folder cannot be read: its contents are unknown.
     """
 
     def unreadable(error: OSError) -> NoReturn:
@@ -147,7 +147,7 @@ def _state(path: Path) -> State:
 
 
 def _sealed_record(folder: Path, schema: str) -> dict[str, Any] | None:
-    """The folder's manifest, None where it is not one of that schema just as we wrote it."""
+    """The folder's manifest, None if it is not one of that schema just as we wrote it."""
     try:
         return read_sealed(folder, schema) if stat.S_ISREG((folder / NAME).lstat().st_mode) else None
     except (OSError, InputError):
@@ -155,9 +155,9 @@ def _sealed_record(folder: Path, schema: str) -> dict[str, Any] | None:
 
 
 def remove(folder: Path, seen: Contents) -> bool:
-    """Remove the folder with the entries that were seen in it; False where it holds new or changed ones.
+    """Remove the folder with the entries that were seen in it; False if it holds new or changed ones.
 
-    The manifest goes last, so that what is left by an interrupted removal is still recognised as ours.
+    The manifest goes last, so that the rest of an interrupted removal is still recognised as ours.
     """
     folders = [path for path, state in seen.states.items() if stat.S_ISDIR(state[0])]
     files = [path for path in seen.states if path not in set(folders) | {NAME}]

@@ -23,9 +23,10 @@ BY_SHARE = ("_mm2", "_mm3", "_g", "_n_per_mm", "_n")
 
 @dataclass(frozen=True)
 class Change:
-    """One difference. `path` leads to the value; `old` and `new` are None where there is none.
+    """One difference. `path` leads to the value; `old` and `new` are None if there is none.
 
-    `moved` is how far (mm) a contour strays from the other one and `at` where most; None for other values.
+    `moved` is the largest distance (mm) of a contour from the other one, at point `at`; None for other
+    values.
     """
 
     kind: Literal["added", "removed", "changed"]
@@ -97,7 +98,7 @@ def _is_number(value: Any) -> bool:
 
 
 def _compare_contours(old: list, new: list, path: tuple[str, ...]) -> Iterator[Change]:
-    """Contours differ where they do not cover the same curve; their division into segments does not
+    """Contours differ if they do not cover the same curve; their division into segments does not
     matter.
     """
     if old == new:

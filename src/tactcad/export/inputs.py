@@ -67,7 +67,7 @@ def _framed(parts: Iterable[bytes]) -> bytes:
 def source_digest(room: str) -> str:
     """SHA-256 of every file of a room (`src/tactcad/<room>`), names included; "" for the package's own files.
 
-    Raises FileNotFoundError where there is no such room.
+    Raises FileNotFoundError if there is no such room.
     """
     folder = PACKAGE / room
     files = sorted(p for p in (folder.rglob("*") if room else folder.glob("*.py")) if _is_source(p))
@@ -77,7 +77,7 @@ def source_digest(room: str) -> str:
     return hashlib.sha256(_framed(part for pair in named for part in pair)).hexdigest()
 
 
-NAMED_DESIGNS = PACKAGE / "design" / "named"  # what a wheel ships of hardware/: values, not code
+NAMED_DESIGNS = PACKAGE / "design" / "named"  # the part of hardware/ in a wheel: values, not code
 
 
 def _is_source(path: Path) -> bool:
@@ -87,7 +87,7 @@ def _is_source(path: Path) -> bool:
 
 
 def first_installed(*names: str) -> str:
-    """The first installed one of libraries that replace each other; the first of all where none is."""
+    """The first installed one of alternative libraries; the first of all if none is."""
     return next((name for name in names if _version(name) != ABSENT), names[0])
 
 
@@ -122,7 +122,7 @@ def flattened(value: object, path: str = "") -> dict[str, Any]:
 
 
 def nested(values: Mapping[str, Any]) -> dict[str, Any]:
-    """The tables that TOML would give for `flattened` values of a design; what is None is left out."""
+    """The tables that TOML would give for `flattened` values of a design, without values of None."""
     tables: dict[str, Any] = {}
     for path, value in values.items():
         if value is None:
@@ -170,7 +170,7 @@ def inputs_of(design: object, rooms: Iterable[str], libraries: Iterable[str]) ->
 
 
 def inputs_from_json(record: Any) -> Inputs | None:
-    """The inputs that an earlier export recorded (`Inputs.as_json`), None where they cannot be understood."""
+    """The inputs that an earlier export recorded (`Inputs.as_json`), None if they cannot be understood."""
     try:
         groups = [record["values"], record["sources"], record["libraries"]]
     except (KeyError, TypeError):
@@ -179,10 +179,10 @@ def inputs_from_json(record: Any) -> Inputs | None:
 
 
 def reasons(before: Inputs | None, now: Inputs) -> list[str]:
-    """Why an output made from `before` has to be made again from `now`, one line each; empty where nothing
+    """Why an output made from `before` has to be made again from `now`, one line each; empty if nothing
     changed.
 
-    Raises nothing: a record that cannot be read (None) is a reason too.
+    Raises nothing: an unreadable record (None) is also a reason.
     """
     if before is None:
         return ["there is no record of an earlier export"]
@@ -202,7 +202,7 @@ def reasons(before: Inputs | None, now: Inputs) -> list[str]:
 
 
 def _changed(before: Mapping[str, Any], now: Mapping[str, Any]) -> list[str]:
-    """Keys whose values differ, in the order of `now`, then those that are gone."""
+    """Keys whose values differ, in the order of `now`, then the missing ones."""
     keys = [*now, *(key for key in before if key not in now)]
     return [key for key in keys if _shown(before, key) != _shown(now, key)]
 

@@ -8,10 +8,10 @@ DIR is an ordinary folder, which may be renamed, copied and archived. While it i
         making/                                      being written; named finished/ when it is
 
 Then `finished` and DIR exchange names in one step (Linux's renameat2), and the earlier folder is examined
-once more: unless it is exactly what tactcad wrote, it is kept beside as DIR-kept-1 and not removed unasked.
-The next run does the same with the folder of a killed one. Where the system or the file system cannot
-exchange, DIR is moved to `earlier` first; a kill between these two renames leaves no DIR until the next run
-puts it back. Of two runs that write DIR at once the later one stays, whole.
+once more: unless it is exactly as tactcad wrote it, it is kept as DIR-kept-1 and not removed unasked. The
+next run does the same with the folder of a killed one. If the system or the file system cannot exchange, DIR
+is moved to `earlier` first; a kill between these two renames leaves no DIR until the next run puts it back.
+Of two runs that write DIR at once the later one stays, whole.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ def _print(text: str) -> None:
 def looked_at(directory: str | Path, schema: str, others: str = REFUSE) -> Contents:
     """What lies in DIR now; changes nothing.
 
-    Raises InputError where DIR is not a place for a folder, or holds what tactcad did not write there and
+    Raises InputError if DIR is not a place for a folder, or holds what tactcad did not write there and
     `others` is REFUSE.
     """
     out = absolute(directory)
@@ -138,9 +138,10 @@ class Work:
         self.publish()
 
     def publish(self) -> None:
-        """Make `folder`, with its manifest, the new DIR; the earlier one is removed, or kept beside.
+        """Make `folder`, with its manifest, the new DIR; the earlier one is removed, or kept under another
+        name.
 
-        Raises CheckFailure where something appeared in the earlier one meanwhile: it is kept.
+        Raises CheckFailure if something appeared in the earlier one meanwhile: it is kept.
         """
         if self.out.is_dir():
             self.folder.chmod(stat.S_IMODE(self.out.stat().st_mode) | 0o700)
@@ -151,7 +152,8 @@ class Work:
             self.settle(earlier)
 
     def settle(self, folder: Path) -> None:
-        """Remove an earlier DIR; or keep it beside, as asked, or for what nobody saw when the work began."""
+        """Remove an earlier DIR; or keep it under another name, if asked, or if it has contents that appeared
+        after the work began."""
         seen = contents(folder, self.schema)
         if self.others != KEEP or not self.earlier.foreign:
             if not seen.changed_since(self.earlier) and remove(folder, seen):
@@ -192,15 +194,15 @@ def replacing(directory: str | Path, schema: str, others: str = REFUSE, say: Say
     Raises
     ------
     InputError
-        Where DIR is not ours to replace (see `looked_at`), or the place cannot be written to.
+        If DIR may not be replaced (see `looked_at`), or the place cannot be written to.
     CheckFailure
-        Where the disk is full, or, after the new DIR stands, where something in the earlier one appeared
-        meanwhile and was kept.
+        If the disk is full, or if, after publication of the new DIR, something had appeared in the earlier
+        one and was kept.
     """
     out = absolute(directory)
 
     def recover(left: Path) -> None:
-        """Of a run that was ended: put DIR back where it is missing, settle what else is there."""
+        """Of a run that was ended: put DIR back if it is missing, settle what else is there."""
         if os.path.lexists(left / EARLIER) and not os.path.lexists(out):
             os.rename(left / EARLIER, out)
         for name in (FINISHED, EARLIER):
@@ -222,7 +224,7 @@ def replacing(directory: str | Path, schema: str, others: str = REFUSE, say: Say
 
 
 def _put_in_place(finished: Path, out: Path, aside: Path) -> Path | None:
-    """Make `finished` the new DIR; returns where the earlier DIR is now, None where there was none."""
+    """Make `finished` the new DIR; returns the earlier DIR's new place, None if there was none."""
     while True:
         try:
             if not os.path.lexists(out):
@@ -245,7 +247,7 @@ def free_name(path: Path, ending: str = "") -> Path:
 
 
 def _exchange(one: Path, other: Path) -> bool:
-    """Exchange two names in one step; False where the system or its file system cannot."""
+    """Exchange two names in one step; False if the system or its file system cannot."""
     import ctypes  # not needed by an export without changes
 
     renameat2 = getattr(ctypes.CDLL(None, use_errno=True), "renameat2", None)

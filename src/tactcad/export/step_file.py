@@ -34,7 +34,7 @@ from tactcad.solids.step import set_up_writer, silence
 
 from .step_text import AP214, AP242, Header, canonical
 
-# What was written and what is read agree within these: a share of the volume, and mm of a place.
+# Agreement of the written and the read file: a share of the volume, and mm of a place.
 VOLUME_AGREES = 1e-6
 PLACE_AGREES = 1e-7
 
@@ -59,7 +59,7 @@ def part_step(part: Part, shape: TopoDS_Shape, header: Header) -> bytes:
     Raises
     ------
     CheckFailure
-        Where it reads back otherwise: product, validity, or the volume by more than a share of 1e-6.
+        If it differs when read back: product, validity, or the volume by more than a share of 1e-6.
     """
     document, shape_tool = new_document()
     add_prototype(document, shape_tool, part, shape)
@@ -88,7 +88,7 @@ def scene_step(scene: Scene, shapes: Mapping[str, TopoDS_Shape], header: Header)
     Raises
     ------
     CheckFailure
-        Where it does not read back to the same names, places (1e-7 mm) and volumes.
+        If it does not read back to the same names, places (1e-7 mm) and volumes.
     """
     document, shape_tool = new_document()
     prototypes = {p.part_no: add_prototype(document, shape_tool, p, shapes[p.part_no]) for p in scene.parts}
@@ -171,12 +171,12 @@ class Assembly:
 
 
 def read_assembly(data: bytes) -> Assembly:
-    """Names, places and volumes in a STEP file. Raises CheckFailure where it cannot be read."""
+    """Names, places and volumes in a STEP file. Raises CheckFailure if it cannot be read."""
     return assembly_in(read_document(data))
 
 
 def read_document(data: bytes) -> TDocStd_Document:
-    """A STEP file as a document, its dimensions and tolerances too. Raises CheckFailure where it cannot be
+    """A STEP file as a document, its dimensions and tolerances too. Raises CheckFailure if it cannot be
     read."""
     silence()
     document, _ = new_document()
@@ -234,7 +234,7 @@ def _solids(shape: TopoDS_Shape) -> list[TopoDS_Shape]:
 
 
 def check_part(data: bytes, read: Assembly, part: Part) -> None:
-    """Raise CheckFailure where a part's file, or what was read of it, is not that one part."""
+    """Raise CheckFailure if a part's file, or its content, is not that one part."""
     text = data.decode("latin-1")
     for entity, count in (
         ("PRODUCT(", 1),

@@ -48,7 +48,7 @@ class PlaneSpace:
 
     @classmethod
     def of(cls, mesh: PlaneMesh) -> PlaneSpace:
-        """The space of a mesh, each node once. Raises RuntimeError where neighbouring blocks do not share
+        """The space of a mesh, each node once. Raises RuntimeError if neighbouring blocks do not share
         their nodes.
         """
         count, side = mesh.cells.shape[:2]

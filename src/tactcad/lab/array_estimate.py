@@ -34,7 +34,7 @@ class ElementEstimate:
     gauge_strain: float | None  # mean under the gauge's grid
     peak_strain: float | None  # at the slot-side fillet
     stress: float | None  # MPa, the largest principal one there
-    gauge_strain_error: float | None  # relative, at most; None where none was measured
+    gauge_strain_error: float | None  # relative, at most; None if none was measured
     peak_strain_error: float | None
     stress_error: float | None
     elastic: bool
@@ -45,7 +45,7 @@ class ElementEstimate:
     yield_deflection: float  # mm
     rated_force: float  # N, in use
     rated_deflection: float  # mm, never passed: overload and calibration stay below
-    expected_error: float | None  # of the stiffness, relative, at most; None where none was measured
+    expected_error: float | None  # of the stiffness, relative, at most; None if none was measured
 
 
 ELEMENT = Figures(

@@ -1,11 +1,11 @@
-"""Stiffness, strain and strength of the elements as made: estimates from measured dimensions, beside those
-from the nominal ones.
+"""Stiffness, strain and strength of the elements as made: estimates from measured and from nominal
+dimensions.
 
 The intervals are for 95 %. The half-width of each dimension is propagated through the estimator by itself,
 and
 the results are put together (`as_built.together`). A dimension that was not measured lies anywhere within its
 tolerance in the design's [tolerance]; the half-width of one that was is two standard deviations (k = 2), zero
-where no uncertainty is given. A load arm that
+if no uncertainty is given. A load arm that
 was not measured itself follows from arm and pad where both were. What the sheet does not ask for (modulus of
 the lot, recast layer, clamp) enters with its tolerance. The model's own error is not included.
 """
@@ -53,7 +53,7 @@ class AsMade:
     number: int
     nominal: ElementEstimate
     made: ElementEstimate
-    # low and high of `made`'s stiffness, gauge_strain, yield_force, rated_force; None where the value is None
+    # low and high of `made`'s stiffness, gauge_strain, yield_force, rated_force; None if the value is None
     intervals: dict[str, tuple[float, float] | None]
     readings: tuple[Reading, ...]
 
@@ -111,8 +111,7 @@ def _rounded(section: HingeSection) -> HingeSection:
 
 
 def _entering(readings: Sequence[Reading]) -> dict[str, Reading]:
-    """One element's readings by the parameter that they set; the load arm's from arm and pad where it is
-    blank."""
+    """One element's readings by the parameter that they set; a blank load arm follows from arm and pad."""
     named = {r.dimension.name: r for r in readings}
     arm, pad = named["arm length"], named["pad length"]
     load = named["load arm"]
@@ -123,7 +122,7 @@ def _entering(readings: Sequence[Reading]) -> dict[str, Reading]:
 
 
 def _value(r: Reading | None, drawn: float) -> float:
-    """mm; as drawn where there is no such dimension, or it was not measured."""
+    """mm; as drawn if there is no such dimension, or it was not measured."""
     return drawn if r is None or r.measured is None else r.measured
 
 

@@ -41,8 +41,8 @@ def estimate_file(
     rung : str
         Of the ladder, for every row.
     accuracy : callable, optional
-        Gives for all rows' dimensions a relative error; every row then gets the rung of least work that keeps
-        to it, instead of `rung`.
+        Gives the allowed relative error for all rows' dimensions; every row then gets the cheapest rung
+        within it, instead of `rung`.
 
     Returns
     -------
@@ -79,7 +79,7 @@ def estimate_file(
 
 @dataclass(frozen=True)
 class Answer:
-    """The estimate of one row, or the reason why there is none."""
+    """The estimate of one row, or the reason for its refusal."""
 
     stiffness: float  # N/mm; nan without one
     model: str
@@ -103,7 +103,7 @@ def estimate_rows_to(section: HingeSection, accuracy: float) -> list[Answer]:
 
 
 def estimate_rows(section: HingeSection, rung: str, mesh: int | None = None) -> tuple[list[float], list[str]]:
-    """Stiffness of every design of the section's arrays (N/mm; NaN where refused) and the reason of each
+    """Stiffness of every design of the section's arrays (N/mm; NaN if refused) and the reason of each
     refusal ("" elsewhere). `mesh` is the density of rung fem-solid's mesh."""
     if rung not in ladder.FINITE_ELEMENTS:
         result = ladder.evaluate(section, rung)
@@ -124,7 +124,7 @@ def estimate_rows(section: HingeSection, rung: str, mesh: int | None = None) -> 
 def read_table(path: Path) -> tuple[list[str], list[list[str]], HingeSection]:
     """Header, rows as text, and the dimensions of all rows as one section of arrays.
 
-    Raises InputError where the table is malformed.
+    Raises InputError if the table is malformed.
     """
     table = csv_table.read_table(path, "a table of designs (CSV)", MOST_BYTES, comments=False)
     for name in [name for name in table.header if name in ADDED]:
@@ -153,7 +153,7 @@ def _side(table: Table, line: int, side: str) -> str:
 
 
 def _answer(stiffness: float, model: str, reason: str, error: float) -> list[str]:
-    """A row's cells for the ADDED columns; the error is left blank where none was measured."""
+    """A row's cells for the ADDED columns; the error is left blank if none was measured."""
     number = "" if reason else repr(stiffness)
     return [
         number,

@@ -1,9 +1,9 @@
 """The bow of readings about their line, as hysteresis and friction leave it.
 
-A run that is read on the way up only bows to one side: force lags behind, most in the middle of the travel.
-Noise does not show it, since it repeats in every run, and the slope is off by a share of it: the first
-displacement is left out, and over what is left the line is not the chord. The bow is estimated with all
-elements of a file, whose stage and sensors are the same, and by each element alone.
+A run read on the way up only bows to one side: force lags behind, most in the middle of the travel. The bow
+repeats in every run, so the scatter does not show it, and it shifts the slope: the first displacement is left
+out, and over the rest the line is not the chord. The bow is estimated from all elements of a file, which
+share stage and sensors, and from each element alone.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from .regression import fit_lines, t_quantile
 @dataclass(frozen=True)
 class Bow:
     """Height of the bow in the middle of the travel over the change along the travel, with its standard error
-    and degrees of freedom; below 0 where the line is hollow, as force is that rises late."""
+    and degrees of freedom; below 0 for a hollow line, such as a force that rises late."""
 
     height: float
     standard_error: float
@@ -47,7 +47,7 @@ def bow(x: np.ndarray, y: np.ndarray, run: np.ndarray, weight: np.ndarray) -> Bo
     -------
     Bow or None
         y = intercept[run] + slope x + curvature x^2 by weighted least squares; the height over the full scale
-        is then -curvature range/(4 slope). None where there are too few displacements to tell a parabola.
+        is then -curvature range/(4 slope). None if there are too few displacements to tell a parabola.
     """
     if len(np.unique(np.round(x, 9))) < 4:
         return None
@@ -64,8 +64,8 @@ def bow(x: np.ndarray, y: np.ndarray, run: np.ndarray, weight: np.ndarray) -> Bo
 
 
 def common(bows: Sequence[Bow | None]) -> Bow | None:
-    """The mean of the elements' bows, weighted by their variances; None where none is known. Its variance is
-    Meier's (Biometrics 9, 1953), which counts that the weights are estimates too."""
+    """The mean of the elements' bows, weighted by their variances; None if none is known. Its variance is
+    Meier's (Biometrics 9, 1953), which allows for estimated weights."""
     known = [b for b in bows if b and b.standard_error > 0.0]
     if not known:
         return None

@@ -1,15 +1,15 @@
 """From force, deflection and signal readings to Table 1's columns with intervals.
 
 Force and signal are regressed on the stage's displacement X, which the micrometer sets; the load cell in
-series is removed from the slopes and what the paper's own regression gives stands beside it (`load_cell`).
+series is removed from the slopes. The paper's own regression is reported for comparison (`load_cell`).
 
 Every interval covers more than noise. Runs differ: the slopes' variance is taken from the runs' own slopes
 (Student's t with one degree of freedom fewer than runs); with a single run it is assumed. Readings before
 contact are detected and left out.
 
-Where within the first step the pad began to touch is not known. A gap of a few micrometres biases a slope by
-per cents if that step's reading is kept, and a statistical test misses gaps about as large as the noise, so
-that intervals would hold less often than their level says. Hence the first displacement is always left out.
+The point of contact within the first step is not known. A gap of a few micrometres biases a slope by per
+cents if that step's reading is kept, and a statistical test misses gaps about as large as the noise, so that
+intervals would cover the truth less often than their level. Hence the first displacement is always left out.
 A gap beyond the first step is large, and a test detects it.
 """
 
@@ -54,7 +54,7 @@ from tactcad.lab.regression import (
 from tactcad.report.figures import Figure, Figures
 
 FALSE_ALARM = 0.01  # probability that an outlier is reported in a file that has none
-# Assumed standard deviation of an element's slope from run to run, relative, where there is a single run.
+# Assumed standard deviation of an element's slope from run to run, relative, if there is a single run.
 # Chosen: a micrometer read to 1 um over the 100 to 150 um of a calibration's travel.
 RUN_SCATTER = 0.01
 BEFORE = 0.001  # probability that a test leaves out a step that was in contact
@@ -153,7 +153,7 @@ def calibrate(
     drop_outliers : bool
         Leave outliers out of the fit; they are reported either way.
     run_scatter : float, optional
-        Relative standard deviation of an element's slope from run to run, where it is known. By default it
+        Relative standard deviation of an element's slope from run to run, if it is known. By default it
         is estimated from the file's runs; for an element with a single run `RUN_SCATTER` is assumed.
     tell : callable
         Called with (elements done, elements in all, name of the next one) before each element.
@@ -202,8 +202,8 @@ def calibrate(
 
 
 def _height(own: Bow | None, of_all: Bow | None, alarm: float) -> float:
-    """Height of the bow that an element's slope is held to have: of all elements together, or its own, where
-    noise does not explain it; else 0."""
+    """Height of the bow assumed for an element's slope: of all elements together, or its own if noise does
+    not explain that; else 0."""
     heights = [0.0]
     if of_all and of_all.told(FALSE_ALARM / 2):  # tested twice, for force and for signal
         heights.append(of_all.most)
@@ -224,7 +224,7 @@ class _InContact:
     run: np.ndarray
     line: np.ndarray  # in the file
     notes: tuple[str, ...]
-    time: np.ndarray | None = None  # s, where it tells a drift
+    time: np.ndarray | None = None  # s, if a drift can be estimated from it
 
 
 def _in_contact(all_: CalibrationReadings, number: int, rows: np.ndarray) -> _InContact:
@@ -303,8 +303,7 @@ def _element(
 def _bowed(
     e: _InContact, heights: list[float], slope: np.ndarray, covariance: np.ndarray, t: float, notes: list[str]
 ) -> np.ndarray:
-    """The slopes' covariance, widened so that t standard errors reach further by what a bow puts a slope off
-    its chord."""
+    """The slopes' covariance, widened so that t standard errors also cover the slope error by the bow."""
     start, first = float((e.x - e.travel)[0]), float(e.x.min())
     start -= (first - start) if start > 0 else 0.0  # a file that leaves out zero begins a step after contact
     off = np.array([off_the_chord(height, e.x, start) for height in heights])
@@ -335,7 +334,7 @@ def _touching(all_: CalibrationReadings, rows: np.ndarray, notes: list[str]) -> 
 
 
 def _require_line(where: str, x: np.ndarray, run: np.ndarray) -> None:
-    """Raise InputError where the readings in contact are too few to show any scatter about their line."""
+    """Raise InputError if the readings in contact are too few to show any scatter about their line."""
     if spare_steps(x, run) < 1:
         raise InputError(
             where,
@@ -368,7 +367,7 @@ def first_in_contact(x: np.ndarray, force: np.ndarray, run: np.ndarray) -> tuple
 
     Before contact the force lies above the line of the later readings, extended to smaller displacements.
     Going down from the largest displacements, the first step whose readings lie above that line in any run
-    (one-sided t test) is left out with all before it. At least three steps and 60 % of them are kept; of
+    (one-sided t test) is left out with all before it. At least three steps and 60 % of all are kept; with
     three displacements none is left out.
 
     Parameters

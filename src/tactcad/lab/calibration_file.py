@@ -1,4 +1,4 @@
-"""A calibration as text for people, as CSV and as JSON; of what is read back, the part that grasps need."""
+"""A calibration as text, CSV and JSON; reading back takes only what grasps need."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ WRITTEN = (
     "signal_per_force.value",
     "zero_signal",
 )
-# What is read back of each element, and within which limits.
+# Fields read back for each element, and their legal ranges.
 READ = {
     "element": (1, 100_000),
     "stiffness.value": (1e-6, 1e6),
@@ -83,7 +83,7 @@ class Sensitivity:
     path: str = "calibration"
 
     def of(self, numbers: np.ndarray) -> Sensitivity:
-        """Of these elements, in their order. Raises InputError where one is not in it."""
+        """The calibration of these elements, in their order. Raises InputError if one is not in it."""
         place = {int(n): i for i, n in enumerate(self.element)}
         for n in numbers:
             if int(n) not in place:

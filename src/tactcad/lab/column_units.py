@@ -1,4 +1,5 @@
-"""Columns that may be in another unit than their name says. Warned of, not refused: the data may be right."""
+"""Warnings about columns whose unit may differ from their name. They are not refused: the data may be
+right."""
 
 from __future__ import annotations
 
@@ -13,8 +14,8 @@ from tactcad.lab.readings import CalibrationReadings
 FORCES = {"N": 1.0, "mN": 1e-3, "kN": 1e3, "g": 9.80665e-3, "kg": 9.80665}  # N; of g and kg the weight
 LENGTHS, VOLTAGES = {"mm": 1.0, "um": 1e-3, "m": 1e3, "inch": 25.4}, {"V": 1.0, "mV": 1e-3, "uV": 1e-6}
 UNITS = {"displacement": LENGTHS, "force": FORCES, "load": FORCES, "signal": VOLTAGES}
-# Factors from what is expected; chosen. A hinge 20 % too thick is 1.7 times as stiff; the amplifier in use
-# may have another gain; a few of the elements, or all on their stops, bear a part of the load.
+# Largest unsuspicious factors from the expected value; chosen. A hinge 20 % too thick is 1.7 times as stiff;
+# the amplifier in use may have another gain; some elements, or all on their stops, bear part of the load.
 STIFFNESS, SIGNAL, LOAD = 5.0, 30.0, 30.0
 
 
@@ -32,9 +33,9 @@ def _far(pairs: Pairs, factor: float) -> tuple[float, float] | None:
 def unlikely(
     what: str, powers: Mapping[str, int], pairs: Pairs, unit: str, factor: float, right: Collection[str] = ()
 ) -> list[str]:
-    """A warning where a product of columns, each with its power, is by more than the factor from what is
-    expected, with the units that explain it; columns that another product shows to be `right` explain
-    nothing. Of the `pairs` the middle one tells."""
+    """A warning if a product of columns, each with its power, differs from the expected value by more than
+    the factor, with the units that would explain it; columns that another product shows to be `right` are not
+    blamed. The median of the `pairs` decides."""
     if (far := _far(pairs, factor)) is None:
         return []
     (found, expected), guesses = far, []

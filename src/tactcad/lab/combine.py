@@ -27,7 +27,7 @@ NO_VARIANCE = np.finfo(float).tiny ** 0.5  # of a slope without noise, V2/mm2 an
 
 @dataclass(frozen=True)
 class Interval:
-    """K_obj (N/mm) within [low, high]; high is inf and low 0 where the data do not bound it.
+    """K_obj (N/mm) within [low, high]; high is inf and low 0 if the data do not bound it.
 
     A negative or infinite `estimate` means that no object of finite positive stiffness fits the readings
     best; `empty`, that no K_obj >= 0 lies within the interval.
@@ -71,7 +71,7 @@ class Slopes:
         return self.from_signal + self.from_calibration
 
     def coupled(self, share: np.ndarray) -> Slopes:
-        """The slopes that satisfy equation (1) where the pads are coupled through the object.
+        """The slopes that satisfy equation (1) if the pads are coupled through the object.
 
         Pad i sinks by share[i, j] of what the same force on i itself would do: the approach is
         s_i + sum_j share_ij f_j/x, with 1 on the diagonal, so the sum takes the place of f_i.
@@ -99,7 +99,7 @@ def combine(slopes: Slopes, level: float, members: list[int] | None = None) -> t
     disagreement_p : float
         Probability that noise alone makes the elements disagree this much; 1 with two elements.
     widened : float
-        Factor on the standard error because they disagree; 1 where they do not.
+        Factor on the standard error for the elements' disagreement; 1 if they agree.
     """
     m = list(range(len(slopes.s))) if members is None else members
     f, s, c = slopes.f[m], slopes.s[m], slopes.covariance[m]
@@ -217,7 +217,7 @@ def _own(
 
 
 def _dof(slopes: Slopes, m: list[int], signal: np.ndarray, calibration: np.ndarray) -> float:
-    """Welch and Satterthwaite's degrees of freedom of the sum of all; 0 where it has no variance."""
+    """Welch and Satterthwaite's degrees of freedom of the sum of all; 0 if it has no variance."""
     bottom = signal.sum() ** 2 / slopes.signal_dof + (calibration**2 / slopes.calibration_dof[m]).sum()
     return float(min((signal + calibration).sum() ** 2 / bottom, KNOWN)) if bottom > 0 else 0.0
 
@@ -234,7 +234,7 @@ def _minimum(misfit: Misfit, angle: np.ndarray) -> float:
 
 
 def _interval(misfit: Misfit, best: float, limit: float, scale: float) -> Interval:
-    """The connected set around `best` where the misfit stays below the limit, cut to K_obj >= 0."""
+    """The connected set around `best` with a misfit below the limit, cut to K_obj >= 0."""
     edges = []
     for direction in (-1.0, 1.0):
         offset = np.linspace(0.0, pi, 2 * ANGLES)

@@ -11,8 +11,8 @@ The stiffness of the calibration's load cell acts on all elements at once and is
 intervals are evaluated at these limits, and the interval given is the smallest that covers all of them.
 
 On one body the pads feel each other, tilt and lift, and its face is inclined: `on_layers` evaluates the same
-readings on layers (layer_fit), on one where its thickness is known, else on layers from the thinnest that
-rigid pads take to the half-space, and covers all of them.
+readings on layers (layer_fit), on one layer if its thickness is known, else on layers from the thinnest valid
+for rigid pads to the half-space, and covers all of their intervals.
 """
 
 from __future__ import annotations
@@ -38,9 +38,14 @@ from .layer_fit import WILD, LayeredArray, fit
 
 SCHEMA = "tactcad-stiffness-1"
 STRAY = 1e-4  # probability, over all elements, below which an element is reported not to follow the others
-SURELY = 3.0  # standard errors below zero from which on an element's force is said to fall; chosen
-TOUCHES = 1e-3  # of the largest force on a pad, from which on a pad is said to touch
+SURELY = 3.0  # standard errors below zero from which an element's force is reported to fall; chosen
+TOUCHES = 1e-3  # of the largest force on a pad, from which a pad counts as touching
 ROUNDED = 1e-9  # below which a singular value of unit columns is nought but rounding
+# An element is at its stop where its deflection is at least NEAR_STOP of the nominal one there (the gap's
+# tolerance and seat are up to 0.2 of it), grows with the load by less than SLOWED of what it did before, and
+# by less than STANDS of that at all larger loads. Readings are averaged at LEVELS loads, so that noise does
+# not count.
+NEAR_STOP, SLOWED, STANDS, LEVELS = 0.75, 0.7, 0.2, 25
 COUPLED = (0.25, 0.5, 1.0)  # tried shares of the coupling: K_obj need not be most extreme at the full one
 
 
@@ -68,25 +73,25 @@ class Grasp:
     combined_by_noise: Interval  # by noise and calibration alone
     combined_by_limits: tuple[
         tuple[str, Interval], ...
-    ]  # with each quantity known within limits added in turn
+    ]  # with each quantity known within limits added one by one
     noise: float  # standard deviation of one signal about the common approach, V
     dof: int
     disagreement_p: float  # probability that noise alone makes the elements disagree this much
-    widened: float  # factor on the combined standard error because they disagree; 1 where they do not
+    widened: float  # factor on the combined standard error for disagreement; 1 if they agree
     loads: int  # number used
     dropped_loads: int
     notes: tuple[str, ...]
     warnings: tuple[str, ...]  # of columns that may be in another unit
-    layer: OnLayer | None = None  # where the object was taken as a layer
+    layer: OnLayer | None = None  # if the object was taken as a layer
 
 
 @dataclass(frozen=True)
 class OnLayer:
     """What the readings say of a layer.
 
-    modulus    MPa; None where the thickness is not known
+    modulus    MPa; None if the thickness is not known
     angle      of its face along x and y, degrees: estimate, low, high of each
-    touching   numbers of the pads that press at the largest load, read or not
+    touching   numbers of all pads that press at the largest load, also those without readings
     springs    K_obj by separate springs, for comparison
     """
 
@@ -220,6 +225,55 @@ def evaluate(
     )
 
 
+def below_stops(
+    readings: GraspReadings, calibration: Sensitivity, at: LayeredArray
+) -> tuple[GraspReadings, tuple[str, ...]]:
+    """The readings at loads below that at which the first element reaches its stop, and a note where that
+    leaves some out. A stopped pad bears more than its spring says, so the others' readings err as well.
+
+    Raises
+    ------
+    InputError
+        Fewer than three loads are left.
+    """
+    place = {int(n): i for i, n in enumerate(at.number)}
+    stop = at.stop[[place[int(n)] for n in readings.element]]
+    touching = readings.load > 0
+    sink = readings.signal / calibration.of(readings.element).signal_per_deflection[:, None]
+    apart = readings.load.max(initial=1e-300) / LEVELS
+    level = np.rint(readings.load[touching] / apart)
+    load, *sinks = (
+        np.array([v[touching][level == one].mean() for one in np.unique(level)])
+        for v in (readings.load, *sink)
+    )
+    if len(load) < 3:
+        return readings, ()
+    rate = np.diff(sinks, axis=1) / np.diff(load)
+    # where no reading is without load, from where the first two loads lead back to
+    resting = np.array(sinks)[:, 0] - rate[:, 0] * load[0]
+    deep = np.array(sinks) - (resting if touching.all() else sink[:, ~touching].mean(1))[:, None]
+    first, who = inf, 0
+    for e, t in zip(*np.nonzero((deep >= NEAR_STOP * stop[:, None])[:, 2:])):
+        before, after = rate[e, t], rate[e, t + 1 :]
+        if after[0] < SLOWED * before and (after[1:] < STANDS * before).all():
+            # closed one load earlier, it has not moved since
+            closed = t + 1 if after[0] < STANDS * before and deep[e, t + 1] >= NEAR_STOP * stop[e] else t + 2
+            if load[closed] < first:
+                first, who = float(load[closed]), int(readings.element[e])
+    if first == inf:
+        return readings, ()
+    kept = readings.load < first - apart / 2
+    what = f"element {who} is at its stop from {first:.4g} N on: these loads are left out"
+    if (readings.load[kept] > 0).sum() < 3:
+        where = f"{readings.path}: sample {readings.sample}"
+        raise InputError(where, what, legal="three smaller loads at least")
+    time = None if readings.time is None else readings.time[kept]
+    fewer = replace(
+        readings, load=readings.load[kept], run=readings.run[kept], signal=readings.signal[:, kept], time=time
+    )
+    return fewer, (what,)
+
+
 def on_layers(
     grasp: Grasp, readings: GraspReadings, calibration: Sensitivity, layers: list[LayeredArray], level: float
 ) -> Grasp:
@@ -232,7 +286,7 @@ def on_layers(
     readings, calibration, level
         As of `evaluate`.
     layers
-        One where the thickness is known, else all that the intervals are to cover.
+        One if the thickness is known, else all that the intervals are to cover.
 
     Raises
     ------
@@ -348,8 +402,8 @@ def _even(coupling: np.ndarray) -> np.ndarray:
 
 
 def drift_terms(load: np.ndarray, time: np.ndarray) -> np.ndarray | None:
-    """What every signal is made of besides the approach, an orthonormal basis [term, state]: offsets in
-    contact and before it, and time; None where the load goes with time, so that no drift can be told."""
+    """Terms of every signal besides the approach, an orthonormal basis [term, state]: offsets in contact and
+    before contact, and time; None if the load goes with time, so that no drift can be estimated."""
     touching = load > 0
     terms = np.array([touching, ~touching, time - time.mean()], dtype=float)[[True, not touching.all(), True]]
     rising = np.where(touching, load - load[touching].mean(), 0.0)
@@ -360,7 +414,7 @@ def drift_terms(load: np.ndarray, time: np.ndarray) -> np.ndarray | None:
 
 
 def _without(signal: np.ndarray, terms: np.ndarray | None) -> np.ndarray:
-    """What offsets, and drifts where there are terms, leave of the signals."""
+    """The signals less their offsets, and less their drifts if there are terms."""
     return signal - (signal.mean(1, keepdims=True) if terms is None else (signal @ terms.T) @ terms)
 
 
@@ -452,9 +506,9 @@ def _strays(element: np.ndarray, signal: np.ndarray, terms: np.ndarray | None) -
 def _wrong_forces(
     load: np.ndarray, signal: np.ndarray, calibration: Sensitivity, slopes: Slopes, noise: float, most: float
 ) -> tuple[list[str], float]:
-    """A note where elements' forces fall as the load grows, and one where they pass `most` (N): by how much
-    they rise from the least load to the largest, K/K_v times the signal's slope over the load; and that of
-    all elements (N). K_obj goes by ratios and shows neither.
+    """A note if elements' forces fall as the load grows, and one if they pass `most` (N); then the rise of
+    all elements' force (N). A force rises from the least load to the largest by K/K_v times the signal's
+    slope over the load. K_obj is made of ratios and shows neither.
     """
     away, span = load - load.mean(), float(np.ptp(load))
     if not span:

@@ -31,7 +31,7 @@ WIDEST = 5.0  # an uncertainty of more tolerances than this is in another unit o
 
 @dataclass(frozen=True)
 class Reading:
-    """One row of the sheet: a dimension of an element. None where the cell is blank."""
+    """One row of the sheet: a dimension of an element. None if the cell is blank."""
 
     number: int  # of the element
     dimension: Measurement
@@ -133,7 +133,7 @@ def _identified(row: _Row, layout: Layout, known: dict) -> tuple[str, str]:
 
 
 def _check_unchanged(row: _Row, part_no: str, dimension: Measurement, commas: bool) -> None:
-    """Raise InputError where the row's preset cells differ from the exported sheet's."""
+    """Raise InputError if the row's preset cells differ from the exported sheet's."""
     for name, meant in (("part_no", part_no), ("unit", UNIT)):
         if row[name] != meant:
             raise row.refusal(name, "not what the sheet came with", legal=meant)
@@ -164,7 +164,7 @@ def _reading(row: _Row, number: int, dimension: Measurement, commas: bool) -> Re
 
 
 def _guess(ratio: float) -> str:
-    """The likely mistake in a value that is `ratio` times its nominal, in brackets; "" where none fits."""
+    """The likely mistake in a value that is `ratio` times its nominal, in brackets; "" if none fits."""
     likely = [text for factor, text in UNITS_TAKEN if 0.8 < ratio / factor < 1.25]
     return f" ({likely[0]}?)" if likely else ""
 

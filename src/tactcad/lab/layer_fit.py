@@ -4,14 +4,14 @@ Signal of element i at load t = offset_i + K_v,i sink_i(t), and + rate_i time(t)
 sinks are those of rigid pads at rest on the layer (contact.rigid_pads) at an approach of their own for each
 load. Free: modulus, both slopes of the face, offsets, approaches. Known within limits, and fitted with these
 as priors: K and K_v by the calibration's covariance, heights of the pads, the layer's thickness, and the
-stiffness of pads that press unread. Readings before contact fix the offsets. The load is hardly used:
+stiffness of pads that press unread. Readings before contact fix the offsets. The load has little weight:
 friction and relaxation go into the approaches.
 
-Least squares by Gauss and Newton; noise by what the fit leaves where K and K_v are as good as free. Errors of
-the estimate are followed back to each element, whose own covariance and degrees of freedom then count, as in
-`combine`. An interval is even in ln R of two elements, R = (K_r + x)/(K_m + x), of which equation (3) makes
-K_obj: as Fieller's, it opens where R comes to 1 or to K_r/K_m. A pair's interval is the same fit with the
-modulus under every other pad free, so that they tell their forces and nothing else.
+Least squares by Gauss-Newton; the noise is the residual of a fit with K and K_v nearly free. Errors of the
+estimate are traced to each element and use its own covariance and degrees of freedom, as in `combine`. An
+interval is even in ln R of two elements, R = (K_r + x)/(K_m + x), of which equation (3) makes K_obj: as
+Fieller's, it opens where R comes to 1 or to K_r/K_m. A pair's interval is the same fit with a free modulus
+under every other pad, so that those give their forces only.
 """
 
 from __future__ import annotations
@@ -31,10 +31,10 @@ from tactcad.lab.regression import KNOWN, t_quantile
 
 from .calibration_file import Sensitivity
 
-UNIFORM = 3**-0.5  # standard deviation over half-width of what lies anywhere within limits
+UNIFORM = 3**-0.5  # standard deviation over half-width of a uniform distribution
 # Of each element's force by the layer rung, against the others': 0.2 % of the mean force where pads have
 # lifted, 0.06 %
-# where all press whole. What all have in common (0.4 % of punches) is one of the modulus.
+# where all press whole. The common part (0.4 % of punches) is an error of the modulus.
 MODEL, COMMON = 0.002, 0.004
 # Standard deviation of ln K of a pad that presses and is not read: equal elements of Table 1 differ by a
 # factor of up to two.
@@ -42,15 +42,14 @@ UNREAD = 0.35
 # Of the largest load, standard deviation of every sum of forces: only keeps the approach in bounds.
 LOAD = 0.1
 STEEP = 0.3  # standard deviation of the face's slopes: 17 degrees, far beyond what is set up
-WILD = 10.0  # times their errors by which elements disagree from which on no modulus explains the readings
-# Thicknesses over a pad's side that are tried where none is known.
+WILD = 10.0  # disagreement of the elements, in their errors, above which no modulus explains the readings
+# Thicknesses over a pad's side that are tried if none is known.
 LAYERS = (0.25, 0.35, 0.5, 0.7, 1.0, 1.4, 2.0, 3.0, 5.0, 10.0, inf)
 STEPS = 40
 SETTLED = 0.1  # of a cost in squared standard errors: the estimate is then a third of one from its end
 STAGES = 4  # each finds the noise anew
-# The first stage's noise over the least; it leaves all but modulus, slopes, offsets and approaches as they
-# are
-# expected: with all free from the start, one fit in ten ended beside the best, an unread pad lifted.
+# The first stage's noise over the least; in it all but modulus, slopes, offsets and approaches keep their
+# expected values: with all free from the start, one fit in ten missed the best, with an unread pad lifted.
 ROUGH = 10.0
 # Of the largest change of a signal: error of a reading by the law of pads that lift, against single patches
 # (0.01 % of whole pads, 0.06 % where most have lifted).
@@ -59,7 +58,7 @@ SHAPE = 3.5e-4
 # known, their size would tell the approach and so K_obj, by as much as one pair does.
 FREE_HEIGHTS = 0.01
 SAME = 1e-6  # relative difference of stiffness below which two elements are no pair
-LOOSE = 1e-4  # of a prior's weight where it is as good as none
+LOOSE = 1e-4  # share of a prior's weight that leaves the parameter practically free
 THICKER = 0.02  # relative step by which the layer's part in the sinks is found
 BATCH = 250  # grasps at once: 0.3 GB
 NEWTON, LOADED = 30, 1e-4  # steps at most to the approach of a load, and its relative error
@@ -116,7 +115,7 @@ def _contact(x: bytes, y: bytes, move: bytes, length: float, width: float, body:
 class LayerFit:
     """Grasps on one layer; arrays with one entry a grasp first.
 
-    modulus     MPa; low, high: its interval (0 and inf where it is not bounded)
+    modulus     MPa; low, high: its interval (0 and inf if it is not bounded)
     object_     K_obj of a single level pad, N/mm, [estimate, low, high]; object_by_noise without the limits
                 of the load cell
     pairs       K_obj by each element other than the reference alone, [grasp, element, 3]
@@ -253,14 +252,14 @@ def fit(
     reference: int | None = None,
     time: np.ndarray | None = None,
 ) -> LayerFit:
-    """Evaluate grasps that were read alike.
+    """Evaluate grasps that were read in the same way.
 
     Parameters
     ----------
     at
         The array on its layer.
     element
-        Numbers of those read, [element].
+        Numbers of the elements read, [element].
     load
         N, [load]; where it is zero nothing touches.
     signal
@@ -272,7 +271,7 @@ def fit(
     reference
         Number of the element that pairs refer to; by default the stiffest.
     time
-        Of the loads, in any unit; with it every signal drifts at a rate of its own.
+        Of the loads, in any unit; if given, every signal has a drift rate of its own.
     """
     if time is not None:  # from 0 to 1, so that rates are volts
         time = (time - time.min()) / max(float(np.ptp(time)), 1e-300)
@@ -313,7 +312,7 @@ def _fit(
     noise = ROUGH * least
 
     def cost_of(i: np.ndarray, q: np.ndarray, state: tuple) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Of grasps i; what is left of signals and of loads."""
+        """Cost of grasps i, and the residuals of signals and loads."""
         off, over = pressed[i] - state[0], load[touching] - state[1]
         zero = before[i] - q[:, part["offset"], None]
         if time is not None:
@@ -374,7 +373,7 @@ def _fit(
             for old, new in zip(state, tried):
                 old[i[better]] = new[better]
             cost[i[better]] -= gain[better]
-            # a damped step that gains little says nothing of how far the end is
+            # a small gain by a damped step does not mean convergence
             done = better & (gain < SETTLED) & (damping[i] < 1e-3) | (damping[i] > 1e3)
             damping[i] *= np.where(better, 0.1, 10.0)
             at_work = i[~done]
@@ -651,12 +650,12 @@ def expected(
     noise
         Of a reading, V.
     readings
-        Number of loads that are read, where `load` has a few that stand for them.
+        Number of loads that are read, if `load` has only a few representatives.
     shared
-        ln K and ln K_v of every element, [element, 2], for one standard deviation of each error that all
-        have alike.
+        ln K and ln K_v of every element, [element, 2], for one standard deviation of each error common to
+        all.
     stiffness, height
-        True, where they are not as drawn and level: N/mm and mm, [grasp, pad].
+        True, if they are not as drawn and level: N/mm and mm, [grasp, pad].
     """
     n, G, T = len(at.number), len(modulus), len(load)
     rows, several = np.arange(n), (readings or T) / T
@@ -708,7 +707,7 @@ def _approaches(model: _Model, q: np.ndarray) -> np.ndarray:
     alone = 1 / (1 / (E * at.unit) + 1 / K.mean(-1))
     back = height + slope[..., :1] * at.contact.x + slope[..., 1:] * at.contact.y
     ready = np.sort(back, -1)
-    # the approach on separate springs, all alike
+    # the approach on separate, equal springs
     number = np.arange(1, n + 1)
     each = (model.load[:, None] / alone[..., None] + np.cumsum(ready, -1)) / number
     approach = np.take_along_axis(each, np.maximum((each > ready).sum(-1, keepdims=True) - 1, 0), -1)[..., 0]

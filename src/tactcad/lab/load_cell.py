@@ -1,11 +1,12 @@
-"""The force sensor, a spring in series with the element: its stiffness, how well it is known; and removed.
+"""The force sensor, a spring in series with the element: its stiffness with limits, and its removal from the
+slopes.
 
 The stage's displacement X is shared by two springs, element K and load cell K_c, so F = k X + c with k = K
 K_c/(K + K_c). With v the signal's slope: K = k K_c/(K_c - k), K_v = v/(1 - k/K_c), K_v/K = v/k. The load
 cell's stiffness is known within limits: an interval holds for every value within them.
 
 The paper averages an element's runs and regresses over d = X - F/K_c, which puts the force's noise on both
-axes; its estimates are given beside ours.
+axes; its estimates are given for comparison.
 """
 
 from __future__ import annotations
@@ -26,7 +27,7 @@ from .regression import fit_lines, rounding, steps, t_quantile
 # Relative half-width assumed of a load cell's stiffness that is given without limits. Chosen: what one
 # measurement with weights and a micrometer reaches.
 CELL_ACCURACY = 0.02
-RIGID = 1e9  # N/mm: what a calibration's file gives for a rigid load cell
+RIGID = 1e9  # N/mm: the value of a rigid load cell in a calibration's file
 
 
 @dataclass(frozen=True)
@@ -59,7 +60,7 @@ class LoadCell:
         Raises
         ------
         InputError
-            The text is none of these.
+            The text has none of these forms.
         """
         value, given, limits = text.strip().replace("\N{PLUS-MINUS SIGN}", "+-").partition("+-")
         try:
@@ -93,7 +94,7 @@ def series_removed(slope: float, load_cell: float) -> float:
     Returns
     -------
     float
-        N/mm; inf where k is no less than K_c.
+        N/mm; inf if k is no less than K_c.
     """
     if isinf(load_cell):
         return slope
@@ -101,7 +102,7 @@ def series_removed(slope: float, load_cell: float) -> float:
 
 
 def of_design(design: Design) -> LoadCell | None:
-    """The load cell of a design of facing rows; None where it has no [calibration]."""
+    """The load cell of a design of facing rows; None if it has no [calibration]."""
     rig = design.calibration
     if rig is None:
         return None
@@ -127,7 +128,7 @@ def require_spring(
     load_cell: LoadCell,
     far: Sequence[str],
 ) -> None:
-    """Raise InputError where the force (y[:, 0], N) cannot be that of a spring and a load cell in series, or
+    """Raise InputError if the force (y[:, 0], N) cannot be that of a spring and a load cell in series, or
     the signal (y[:, 1], V) that of a gauge on the spring.
 
     `slope` is of force and signal over displacement (N/mm, V/mm), `half_width` that of the force's slope,

@@ -1,8 +1,8 @@
 """A lab's log as it was written: a wide table of time and channels, from CSV with any separator, LabVIEW's
 .lvm or National Instruments' .tdms.
 
-Of CSV the separator, the decimal sign and the line of names are found from the file: the names stand right
-over the first line of numbers, with a line of units between them at most. What stands above is skipped.
+Of CSV the separator, the decimal sign and the line of names are found from the file: the names are directly
+above the first line of numbers, with at most a line of units between. Lines above the names are skipped.
 """
 
 from __future__ import annotations
@@ -26,14 +26,14 @@ from tactcad.design.messages import InputError
 LARGEST_LOG = 1_000_000_000  # bytes; ten channels at 1 kHz for an hour are 0.4 GB as text
 KIND = "a log (CSV, .lvm or .tdms)"
 SEPARATORS = ("\t", ";", ",", "|", " ")
-LOOKED_AT = 200  # lines from which the separator is told
+LOOKED_AT = 200  # lines from which the separator is found
 SAME_TIME = 1e-9  # s
 
 
 @dataclass(frozen=True)
 class LabLog:
     """A log's columns by name, each of equal length: numbers, or texts (marks). `time`: s from the first row,
-    where the file itself says it; `line`: of each row in the file, or its number."""
+    if the file has it; `line`: line of each row in the file, or its number."""
 
     path: str
     columns: dict[str, np.ndarray]
@@ -174,7 +174,7 @@ def _column(cells: Sequence[str], read: Callable[[str], float]) -> np.ndarray:
 
 
 def _seconds(text: str) -> float | None:
-    """Of a time of day or a date with one, s; None where it is neither."""
+    """Of a time of day or a date with one, s; None if it is neither."""
     plain = text.strip().replace(",", ".").replace("/", "-")
     if re.fullmatch(r"\d{1,2}:\d{2}(:\d{2}(\.\d+)?)?", plain):
         parts = [float(p) for p in plain.split(":")] + [0.0]
@@ -291,7 +291,7 @@ def _plain(values: np.ndarray) -> np.ndarray:
 
 
 def _tdms_time(channels: Sequence[Any]) -> np.ndarray | None:
-    """From the waveform's own start and increment, where the first channel that has them says them."""
+    """From the start and increment of the first channel that has them."""
     for channel in channels:
         step = channel.properties.get("wf_increment")
         if step:

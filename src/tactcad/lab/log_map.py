@@ -178,7 +178,7 @@ def read_map(path: str | Path) -> LogMap:
 
 
 def _require(steps: StepsTable, where: str) -> None:
-    """Raise InputError where a field that the way of telling steps needs is left out."""
+    """Raise InputError if a field that the way of telling steps needs is left out."""
     for needed, name, legal in (
         (steps.by == "times" and not steps.times, "times", Spans.legal),
         (steps.by != "times" and steps.column is None, "column", "the column that tells the steps"),

@@ -1,8 +1,8 @@
 """From a lab's log to readings: its rows cut into steps, each averaged, with its time.
 
 A step is a plateau of a column (a window of `hold` seconds within which the column stays within `apart`), a
-run of rows with one mark, or a span of time. A channel that never changes, or stands at a limit, is named
-and its element left out; what would give wrong readings without a word is refused.
+run of rows with one mark, or a span of time. A channel that never changes, or stays at a limit, is reported
+and its element left out; anything that would silently give wrong readings is refused.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ USUAL = 0.98  # share of the intervals that are usual: bursts of up to fifty sam
 FROM_MIDDLE = (
     4.0  # standard deviations of a plateau's middle half from which on a row belongs to the way there
 )
-STUCK = 8  # samples of a step that all stand at a channel's own limit, from which on it is saturated; chosen
+STUCK = 8  # samples of a step at a channel's own limit from which the channel counts as saturated; chosen
 NO_MARK = ("", "0", "-", "nan")
 # By how much more another channel changes than that of the pressed element, from which on they are swapped;
 # chosen: neighbours feel each other by a few per cents through what holds them.
@@ -59,7 +59,7 @@ class Taken:
     """What was taken for what.
 
     volts     signal of every kept element's channel, V, [element, row of the log]
-    left_out  elements whose channel tells nothing, each with why
+    left_out  elements whose channel has no information, each with the reason
     table     the readings, as `calibrate` or `stiffness` reads them
     """
 
@@ -96,8 +96,6 @@ def take(log: LabLog, by: LogMap) -> Taken:
     spans = _spans(log, by, time, drive)
     volts = {c.element: _volts(log, name, by) for name, c in by.channels.items()}
     columns = {c.element: name for name, c in by.channels.items()}
-    used = np.concatenate([np.arange(a, b + 1) for a, b in spans])
-    _refuse_doubled(log, volts, columns, used)
     values = {name: _values(log, by, name, q, spans) for name, q in by.quantities.items()}
     steps = tuple(
         LogStep(a, b, float(time[a : b + 1].mean()), {name: float(v[i]) for name, v in values.items()})
@@ -107,6 +105,8 @@ def take(log: LabLog, by: LogMap) -> Taken:
         n: why for n in volts if (why := _silent(volts[n], _pressed(by.log.kind, steps, n) or steps, by))
     }
     kept = {n: v for n, v in volts.items() if n not in left_out}
+    used = np.concatenate([np.arange(a, b + 1) for a, b in spans])
+    _refuse_doubled(log, kept, columns, used)  # only these: two channels at one limit are equal, not doubled
     least = 1 if by.log.kind == "calibration" else 2
     if len(kept) < least:
         why = "; ".join(f"{n}: {w}" for n, w in left_out.items())
@@ -284,7 +284,7 @@ def _values(
 
 
 def _scaled(found: np.ndarray, q: MappedQuantity, scale: float) -> np.ndarray:
-    """To mm or N; what is below q.least is zero."""
+    """In mm or N; values below q.least become zero."""
     own = found + q.offset
     return np.where(np.abs(own) < q.least, 0.0, own) * scale
 
@@ -304,7 +304,7 @@ def _refuse_doubled(
 
 
 def _silent(v: np.ndarray, steps: tuple[LogStep, ...], by: LogMap) -> str:
-    """Why a channel tells nothing; "" where it does."""
+    """Why a channel has no information; "" if it has."""
     own = np.concatenate([v[s.rows] for s in steps])
     if np.isnan(own).all() or not np.nanmax(own) - np.nanmin(own):
         return "dead: its signal never changes"

@@ -1,5 +1,5 @@
-"""A design issued again from what its elements measure: spacers as thick as the measured sheet leaves of the
-pitch, and which of equal elements stands where, so that the stop plate lies level on both rows' ledges.
+"""A design issued again from its measured elements: spacers as thick as pitch less measured sheet, and a
+place for each of the equal elements, so that the stop plate lies level on both rows' ledges.
 """
 
 from __future__ import annotations
@@ -20,8 +20,8 @@ from tactcad.parts.array.layout import Layout
 
 from .inspection_sheet import Reading, read_sheet
 
-STEP = 0.001  # mm, to which a spacer is ordered; what is held is its tolerance
-MOST_WAYS = 50_000  # of standing equal elements; beyond, neighbours are exchanged in turn
+STEP = 0.001  # mm, rounding of a spacer's ordered thickness; its tolerance is separate
+MOST_WAYS = 50_000  # orders of equal elements that are all tried; beyond, neighbours are exchanged
 
 
 @dataclass(frozen=True)
@@ -29,9 +29,9 @@ class Reissued:
     """What follows from the readings.
 
     design      with sheet and spacer as measured, its revision followed by M
-    sheet       mean thickness of the elements, mm, and of how many
-    elements    by place, the number of the element as measured that stands there
-    lean        by how much one row's ledges lie over the other's on average, mm; None where none was measured
+    sheet       mean thickness of the elements, mm, and their number
+    elements    by place, the number of the measured element there
+    lean        mean height of one row's ledges above the other's, mm; None if none was measured
     """
 
     design: Design
@@ -42,7 +42,7 @@ class Reissued:
 
     @property
     def lines(self) -> list[str]:
-        """What is said of it."""
+        """The report's lines."""
         d = self.design
         moved = [f"E{m} at E{n}" for n, m in self.elements.items() if m != n]
         lean = "" if self.lean is None else f"; rows' ledges then differ by {abs(self.lean) * 1e3:.1f} um"
@@ -71,7 +71,7 @@ def reissued(design: Design, path: str | Path) -> Reissued:
     Raises
     ------
     InputError
-        Where the sheet is not this design's, cannot be read, or holds no sheet thickness.
+        If the sheet is not this design's, cannot be read, or holds no sheet thickness.
     """
     layout = Layout(design)
     readings = read_sheet(path, layout)
@@ -102,8 +102,8 @@ def reissued(design: Design, path: str | Path) -> Reissued:
 
 
 def _paired(layout: Layout, readings: Sequence[Reading]) -> tuple[dict[int, int], float | None]:
-    """Which element as measured stands at each place: equal ones are exchanged until the rows' ledges are on
-    average as level as they can be; the first found of equal ways. And how far apart they are then, mm."""
+    """The measured element for each place: equal ones are exchanged until the mean heights of the rows'
+    ledges differ least; of equal ways the first. And that difference, mm."""
     ledge = {r.number: r.measured for r in readings if r.dimension.name == LEDGE and r.measured is not None}
     places = [p.number for p in layout.elements]
     row = {p.number: p.row for p in layout.elements}

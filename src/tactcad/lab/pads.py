@@ -1,4 +1,4 @@
-"""Where the pads of an array stand, and how much they are coupled through the object they press on."""
+"""Places of an array's pads, and their coupling through the object."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def coupling(source: str, readings: GraspReadings, share: float) -> np.ndarray |
     Returns
     -------
     array, [element, element], or None
-        Ratios, in the order of `readings.element`; None where the share is 0.
+        Ratios, in the order of `readings.element`; None if the share is 0.
 
     Raises
     ------
@@ -67,7 +67,7 @@ def coupling(source: str, readings: GraspReadings, share: float) -> np.ndarray |
 
 
 def refuse_strangers(source: str, readings: GraspReadings) -> None:
-    """Raise InputError where the design has no such element."""
+    """Raise InputError if the design has no such element."""
     number = _pads(source)[2]
     for n in readings.element:
         if n not in number:
@@ -131,7 +131,7 @@ def pads_of(design: Design) -> tuple[np.ndarray, np.ndarray, np.ndarray, float, 
 
 
 def limit_of(design: Design) -> float:
-    """By how much the pads of facing rows may stand above or below their plane, mm."""
+    """Largest height of facing rows' pads above or below their plane, mm."""
     return design.tolerance.pad_height
 
 
@@ -139,8 +139,8 @@ def springs_of(design: Design) -> tuple[Pads, np.ndarray]:
     """The pads of facing rows on their elements, and the signal of each element over its pad's sink, V/mm.
 
     A pad turns about its hinge as it sinks: a newton at its middle sinks it by 1/K and slopes it by 1/(K L),
-    up towards the hinge; a newton s further from the hinge does so (L + s)/L times. Its stop closes where the
-    nominal gap does, and is taken as rigid.
+    up towards the hinge; a newton s further from the hinge does so (L + s)/L times. Its stop closes at the
+    nominal gap and is taken as rigid.
 
     Raises
     ------

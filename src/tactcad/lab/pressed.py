@@ -26,8 +26,7 @@ from tactcad.mechanics import lumped
 from tactcad.report.figures import Figure, Figures
 
 MOST_PATCHES = 14_400  # a hundred pads: a matrix of 1.7 GB
-# Of rung layer beyond them, by which its stated error grows: 0.2 % where pads stand a millimetre apart, 2.4 %
-# at 0.2 mm.
+# Growth of rung layer's stated error beyond them: 0.2 % for pads a millimetre apart, 2.4 % at 0.2 mm.
 MANY_PADS = 0.025
 MOST_PADS = 2000  # by the law of whole pads: a matrix of 0.3 GB, and some copies
 SAME = 1e-6  # relative difference of stiffness below which two elements are no pair
@@ -61,7 +60,7 @@ ELEMENT = Figures(
 
 @dataclass(frozen=True)
 class PressedPair:
-    """A measuring element against the reference: R, and the K_obj that equation (3) makes of it."""
+    """A measuring element against the reference: R, and K_obj by equation (3)."""
 
     measuring: int
     reference: int
@@ -125,7 +124,7 @@ def press_array(
     InputError
         A load or angle out of range, a layer too thin, fewer than two pads that touch, too many pads.
     CheckFailure
-        An element is out of the estimator's range; no rung, or not the one named, keeps `within`.
+        An element is out of the estimator's range; no rung, or not the named one, keeps `within`.
     """
     if not 0 < load < inf:
         raise InputError("--load", "out of range", value=load, legal="above 0 N, finite")
@@ -184,7 +183,7 @@ def _chosen(
     load: float,
     angle: tuple[float, float],
 ) -> tuple[str, Pressed, float]:
-    """The first candidate that keeps the error, what it pressed, and the error stated for it."""
+    """The first candidate within the error, its result, and its stated error."""
     best = inf
     for rung in candidates:
         if rung == "springs":
@@ -229,7 +228,7 @@ def _on_body(pads: Pads, body: Body, load: float, angle: tuple[float, float], ru
 
 
 def _on_springs(pads: Pads, body: Body, alone: float, load: float, angle: tuple[float, float]) -> Pressed:
-    """Each pad alone, at its middle: it neither tilts nor feels the others."""
+    """Each pad alone, loaded at its middle: no tilt, no coupling."""
     back = pads.height + pads.x * tan(radians(angle[0])) + pads.y * tan(radians(angle[1]))
     approach, force, sink = springs.press(1 / pads.compliance[:, 0, 0], back, pads.stop, alone, load)
     none = np.zeros((len(sink), 2))

@@ -1,8 +1,8 @@
 """A lab's own readings from CSV: calibration runs and grasps.
 
 Columns may carry their unit (displacement_um, force_N, signal_mV); a plain name is in mm, N, V. With a column
-of time (time_s) a state may be read as often as one likes: readings that follow each other are averaged, and
-one that returns later is another reading, from which drift is told.
+of time (time_s) a state may be read any number of times: consecutive readings are averaged, and a later
+return to the state is a separate reading, from which drift is estimated.
 """
 
 from __future__ import annotations
@@ -163,12 +163,12 @@ def groups(number: np.ndarray) -> list[tuple[int, np.ndarray]]:
 def grasps(path: str | Path) -> list[GraspReadings]:
     """Read the readings for `tactcad stiffness`.
 
-    Every element must be read at every load of a run, since one approach of the array moves all of them.
+    Every element must be read at every load of a run, since one approach of the array moves all elements.
 
     Parameters
     ----------
     path : str or Path
-        CSV with the columns element, load, signal; run and sample where there are several.
+        CSV with the columns element, load, signal; run and sample if there are several.
 
     Returns
     -------
@@ -278,7 +278,7 @@ def _column_of(table: Table, quantity: str) -> tuple[str, float]:
     """The name of the quantity's column and its factor to mm, N or V; where the table has none, the plain
     name, which `numeric` then reports as missing.
 
-    Raises InputError where there are two: nothing says which one counts.
+    Raises InputError if there are two: nothing says which one counts.
     """
     known = {quantity + suffix: factor for suffix, factor in UNITS[quantity][0].items()}
     names = [name for name in table.header if name in known]

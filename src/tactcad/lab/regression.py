@@ -77,7 +77,7 @@ def fit_lines(
     weight: np.ndarray | None = None,
     time: np.ndarray | None = None,
 ) -> Lines:
-    """Weighted least squares of y[:, k] = intercept[run, k] + slope[k] x, and + drift[k] time where there is
+    """Weighted least squares of y[:, k] = intercept[run, k] + slope[k] x, and + drift[k] time if there is
     time.
 
     Parameters
@@ -142,8 +142,8 @@ def fit_lines(
     )
 
 
-# Largest factor on the variance of a slope by fitting drift too. Beyond it displacement or load goes with
-# time, and a drift cannot be told from it. Chosen: twice the standard error.
+# Largest factor on the variance of a slope by fitting drift too. Beyond that factor, displacement or load
+# goes with time, and drift cannot be separated. Chosen: twice the standard error.
 TOLD_FROM_TIME = 4.0
 
 
@@ -189,7 +189,7 @@ def extreme_deviates(
     x, y, run, weight : arrays, [reading]
         As for `fit_lines`, with one response.
     alpha : float
-        Probability that a reading is reported where all are good.
+        Probability that a reading is reported although all are good.
 
     Returns
     -------
@@ -217,8 +217,8 @@ def extreme_deviates(
     return removed[:outliers]
 
 
-# So many bad readings close together may hide one another; trying more costs time and, on good data, finds
-# nothing. Of up to 200 readings a whole tenth is tried.
+# Largest number of bad readings that may mask one another; more costs time and finds nothing in good data. Of
+# up to 200 readings a tenth is tried.
 PATIENCE = 20
 
 
@@ -317,7 +317,7 @@ def _normal_form(a: np.ndarray, b: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _start(square: np.ndarray) -> float:
-    """First guess of an element's variance, from the median of its squared residuals; their mean where the
+    """First guess of an element's variance, from the median of its squared residuals; their mean if the
     median is zero."""
     return float(np.median(square)) / MEDIAN or float(square.mean())
 

@@ -1,4 +1,4 @@
-"""Simulated readings of a calibration and a grasp, noise included, of an array whose true values are known.
+"""Simulated readings of a calibration and a grasp, with noise, for an array of known true values.
 
 For coverage tests, for the example files and for Figure 6.
 """
@@ -99,7 +99,7 @@ def approach(
     object_stiffness : float
         x, N/mm.
     pad_height : array, [element], optional
-        h: by how much each pad stands out, mm; by default all are level.
+        h: height of each pad over the plane, mm; by default all are level.
 
     Returns
     -------

@@ -18,7 +18,7 @@ from .section import Array
 
 
 def _share(x: Array | float, K: Array | float) -> Array:
-    """x/(x + K) for x from 0 to infinity, where it is 1."""
+    """x/(x + K) for x from 0 to infinity (then 1)."""
     x = np.asarray(x, dtype=float)
     finite = np.where(np.isinf(x), 1.0, x)
     return np.where(np.isinf(x), 1.0, finite / (finite + K))
@@ -42,7 +42,7 @@ def ratio_excess(K_r: Array | float, K_m: Array | float, K_obj: Array | float) -
 def object_stiffness(K_r: Array | float, K_m: Array | float, R: Array | float) -> Array:
     """Equation (3): K_obj = (K_r - R K_m)/(R - 1), N/mm.
 
-    Infinite for R = 1; NaN where also K_r = K_m, since R is then 1 for every object. Near R = 1 the result
+    Infinite for R = 1; NaN if also K_r = K_m, since R is then 1 for every object. Near R = 1 the result
     has only as many correct digits as R - 1.
     """
     R = np.asarray(R)
@@ -140,7 +140,7 @@ def ratio_interval(
         estimate = N / D
     lower, upper = np.minimum(first, second), np.maximum(first, second)
     bounded, open_ended = real & (a > 0.0), real & (a < 0.0)
-    # a bounded set holds the estimate; rounding may put an end of a very narrow one beside it
+    # a bounded set contains the estimate; by rounding, a very narrow one may miss it
     lower = np.where(bounded, np.minimum(lower, estimate), lower)
     upper = np.where(bounded, np.maximum(upper, estimate), upper)
     known = bounded | open_ended

@@ -1,9 +1,9 @@
 """A rung of the model ladder: declared once, in a module of its own.
 
 Every module in mechanics/rungs declares one or more, each a `Rung`; nothing lists them, and every list of
-rungs elsewhere is derived from them. A module without, a declaration that lacks something, or two of one name
-or place are refused when they are imported. `benchmarks/ladder_fit.py` measures their errors
-(data/ladder.json, data/accuracy.json).
+rungs elsewhere is derived from them. A module without a rung, an incomplete declaration, or two with one name
+or place are refused on import. `benchmarks/ladder_fit.py` measures their errors (data/ladder.json,
+data/accuracy.json).
 """
 
 from __future__ import annotations
@@ -29,11 +29,11 @@ class Rung:
     when             what it is good for, in the benchmarks' table
     compliance       tip compliance (mm/N) by a closed form, from the constants passed in or else the shipped
                      ones
-    elements         (shape, E, nu, width, and `mesh` where there is a choice) to `fem_ladder.Converged`
+    elements         (shape, E, nu, width, and `mesh` if there is a choice) to `fem_ladder.Converged`
     fitted           which samples its constants were fitted on, whose range therefore bounds it: "plane", and
-                     "width" for solid elements; empty where nothing is fitted
+                     "width" for solid elements; empty if nothing is fitted
     constant_moment  whether the leaf's moment is taken as the same along the slot
-    meshes           halves of the elements' order that can be chosen, rising; (None,) where there is no
+    meshes           halves of the elements' order that can be chosen, rising; (None,) if there is no
                      choice
     """
 

@@ -34,7 +34,7 @@ class Coupling:
 
 
 def layer_factor(c: np.ndarray, poisson: float) -> np.ndarray:
-    """phi of a bonded layer, c = k h; 1 where c is large."""
+    """phi of a bonded layer, c = k h; 1 if c is large."""
     m = 3 - 4 * poisson
     small = np.minimum(c, 40.0)
     top = m * np.sinh(2 * small) - 2 * small

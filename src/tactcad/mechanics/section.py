@@ -36,8 +36,8 @@ def _none() -> Array:
 class HingeSection:
     """Parameters of one element or of many: arrays (of no dimension for one element) that broadcast together.
 
-    Numbers and lists are also taken, and converted to arrays; code that is type-checked passes them to
-    `HingeSection.of`. The sketch stands at the top of the module.
+    Numbers and lists are converted to arrays; type-checked code passes them to `HingeSection.of`. The sketch
+    is at the top of the module.
 
     Parameters
     ----------
@@ -76,7 +76,7 @@ class HingeSection:
         for each in fields(self):
             kind = bool if each.name == "two_sided" else float
             object.__setattr__(self, each.name, np.asarray(getattr(self, each.name), dtype=kind))
-        self.shape  # raises ValueError where they do not broadcast
+        self.shape  # raises ValueError if they do not broadcast
 
     @classmethod
     def of(cls, **parameters: ArrayLike) -> HingeSection:

@@ -151,7 +151,7 @@ def tipping_margin(contacts: Sequence[Point], half: float) -> float:
 
 
 def tipping_pull(contacts: Sequence[Point], height: float, weight: float, load: float, at: Point) -> float:
-    """Horizontal force that would lift a wheel, N; inf where `height` is 0.
+    """Horizontal force that would lift a wheel, N; inf if `height` is 0.
 
     Parameters
     ----------
@@ -162,7 +162,7 @@ def tipping_pull(contacts: Sequence[Point], height: float, weight: float, load: 
     weight
         The cart's own, in its middle, N.
     load, at
-        Vertical load, N, and the point where it acts, mm.
+        Vertical load, N, and its point of action, mm.
     """
     if height == 0:
         return inf

@@ -88,7 +88,7 @@ NOT_ON_K = (nan, nan)
 
 @dataclass(frozen=True)
 class Effect:
-    """One effect. Sizes are relative half-widths; NaN where it does not act on K."""
+    """One effect. Sizes are relative half-widths; NaN if it does not act on K."""
 
     name: str
     how: str
@@ -174,7 +174,7 @@ def _reference(pair: BudgetPair, study: Table2Study, data: Published, array: Arr
     return effect("reference", (size, nan), off, remaining, half=half)
 
 
-# --- on K where it is computed from the drawing: the element as built, and what a model leaves out ---
+# --- on K computed from the drawing: the element as built, and the model's omissions ---
 
 
 def _as_built(pair: BudgetPair, array: ArrayModel) -> list[Effect]:

@@ -34,7 +34,7 @@ OTHERS = (3.0, 10.0)  # thicknesses in place of the design's
 @dataclass(frozen=True)
 class Fitted:
     """ln R of Table 2 by one model: K_r (N/mm), slopes of each sample's face along x and y, K_obj of each
-    sample, what is left, number of parameters, and half-widths (95 %) of slopes and ln K_obj."""
+    sample, residual, number of parameters, and half-widths (95 %) of slopes and ln K_obj."""
 
     reference: float
     slope: np.ndarray  # [sample, 2]

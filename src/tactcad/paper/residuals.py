@@ -50,7 +50,7 @@ class Residuals:
     rung: str  # the one that explanations and bands use
     residual: np.ndarray  # ln(measured/predicted) of that rung
     hinge_thickness: np.ndarray  # nominal
-    hinge_thickness_needed: np.ndarray  # NaN where none within the rung's range does
+    hinge_thickness_needed: np.ndarray  # NaN if none within the rung's range does
     load_arm: np.ndarray
     load_arm_needed: np.ndarray
     pad_half: float
@@ -69,7 +69,7 @@ class Residuals:
 
     @property
     def furthest(self) -> int:
-        """Row of the element whose stiffness is furthest off."""
+        """Row of the element with the largest deviation of stiffness."""
         return int(np.argmax(np.abs(self.residual)))
 
     @property
@@ -110,7 +110,7 @@ def residuals(
     rung: str = "solid",
     more: dict[str, np.ndarray] | None = None,
 ) -> Residuals:
-    """Table 1 against the design as it stands; `more` adds stiffnesses of slower rungs, for the matched
+    """Table 1 compared with the unchanged design; `more` adds stiffnesses of slower rungs, for the matched
     elements.
     """
     here, s = matched(data, array)
@@ -138,7 +138,7 @@ def residuals(
 def solve(s: HingeSection, name: str, K: np.ndarray, least: float, most: float, rung: str) -> np.ndarray:
     """Value of one dimension that gives each stiffness, searched from `least` to `most` times its own.
 
-    NaN where there is none. A scan brackets the value nearest to the dimension's own; secant steps on ln K
+    NaN if there is none. A scan brackets the value nearest to the dimension's own; secant steps on ln K
     against its logarithm, which is nearly straight, then converge to it.
     """
     own = np.broadcast_to(getattr(s, name), s.shape).reshape(-1)
@@ -175,7 +175,7 @@ def spread(
     """Stiffness [draw, element] with every dimension of [tolerance] drawn: half-widths are two standard
     deviations.
 
-    NaN where a draw is out of the rung's range. `contact` is the half-width (mm) over which the load's
+    NaN if a draw is out of the rung's range. `contact` is the half-width (mm) over which the load's
     position on the pad is uniform. Dimensions that one sheet and one cut share have one draw for all elements
     of an array, the others one for each. Layer and clamp only soften.
     """

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from matplotlib.axis import Axis
     from matplotlib.figure import Figure as Canvas
 
-# Okabe and Ito's palette, told apart by colour-blind readers; shapes differ as well.
+# Okabe and Ito's palette, distinct for colour-blind readers; shapes differ as well.
 BLACK, ORANGE, SKY, GREEN, BLUE, RED, PURPLE = (
     "#000000",
     "#E69F00",
@@ -98,7 +98,7 @@ def log_ticks(axis: Axis, ticks: Iterable[float]) -> None:
 
 
 def log_axes(ax: Axes, x: Iterable[float] = (), y: Iterable[float] = ()) -> None:
-    """Logarithmic where there are ticks, with plain numbers at them."""
+    """Logarithmic if there are ticks, with plain numbers at them."""
     for name, axis, ticks in (("x", ax.xaxis, x), ("y", ax.yaxis, y)):
         if ticks:
             ax.set(**{f"{name}scale": "log"})

@@ -1,4 +1,4 @@
-"""What is reviewed: a design, or an export's folder, which says what design it was made from."""
+"""The subject of a review: a design, or an export's folder, whose manifest has its design."""
 
 from __future__ import annotations
 
@@ -24,8 +24,8 @@ from tactcad.scenes.scene import Scene
 
 @dataclass(frozen=True)
 class Subject:
-    """A design that keeps its rules, the file or folder that it was read from, the scenes that an export
-    holds (None: all of the design's), and the sheets that lie there, SVG by part number."""
+    """A design that keeps its rules, its file or folder, the scenes of an export (None: all of the design's),
+    and the export's sheets, SVG by part number."""
 
     design: CommonTables
     path: Path
@@ -36,7 +36,7 @@ class Subject:
 def subject(source: str) -> Subject:
     """What `source` names: a design (a path, or a name in hardware/), or an export's folder.
 
-    Raises InputError where it is neither, or the export is damaged or was made by another version.
+    Raises InputError if it is neither, or the export is damaged or was made by another version.
     """
     if os.path.isdir(source):  # False also for texts that are not paths
         return _exported(source, Path(source))

@@ -24,14 +24,15 @@ from .taxel_table import Taxel
 
 
 def cantilevers(design: Design) -> Mechanism:
-    """The array from its carrier's upper face, where the robot's flange is.
+    """The array from its carrier's upper face, on the robot's flange.
 
-    The hinge lies level with the leaf's middle, so far from the pad's middle that pad and tip deflect as the
-    estimator says: the stop closes at its gap at the tip, and K at the pad's middle is the estimate. What is
-    left of the leaf's middle moves. The pad touches by a ball whose middle is level with the hinge, so that a
-    rigid face presses at the pad's middle, as the estimate takes it, however far the arm has turned.
+    The hinge lies level with the leaf's middle, at the distance from the pad's middle that gives the
+    estimator's deflections of pad and tip: the stop closes at its gap at the tip, and K at the pad's middle
+    is the estimate. All on the pad's side of the leaf's middle moves. The pad touches by a ball whose middle
+    is level with the hinge, so that a rigid face presses at the pad's middle, as in the estimate, at any turn
+    of the arm.
 
-    Raises CheckFailure where an element is out of the estimator's range.
+    Raises CheckFailure if an element is out of the estimator's range.
     """
     layout, e, width = Layout(design), design.element, design.sheet.thickness
     springs, signal = springs_of(design)

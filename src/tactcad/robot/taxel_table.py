@@ -39,7 +39,7 @@ class Taxel:
                 bridge; one, of a Hall chip; None of what does not read it
     joints      by name, and the sink of the pad's middle over each one's motion: mm/rad, or 1000 mm/m of a
                 slide
-    shear       force on the pad along x and y of its frame over each joint's motion; empty where none is felt
+    shear       force on the pad along x and y of its frame over each joint's motion; empty if none is felt
     neighbours  numbers of the pads beside it
     variance, covariance  of K and of how far the pad stands back from the highest, over arrays as made
     """
@@ -78,7 +78,7 @@ class Taxel:
 
     @property
     def noise_mm(self) -> float:
-        """Of the pad's sink. Raises InputError where the table has neither volts nor teslas."""
+        """Of the pad's sink. Raises InputError if the table has neither volts nor teslas."""
         for signal, noise in ((self.signal_V_per_mm, self.noise_V), (self.signal_mT_per_mm, self.noise_mT)):
             if signal and noise is not None:
                 return noise / abs(signal)
@@ -89,7 +89,7 @@ class Taxel:
 
 @dataclass(frozen=True)
 class Taxels:
-    """The table, and what it is of."""
+    """The table, and its design."""
 
     design: str
     revision: str
@@ -143,7 +143,7 @@ def csv_bytes(taxels: Taxels) -> bytes:
 def read_taxels(path: str | Path) -> Taxels:
     """The table of an export's robot/taxels.json; `path` may be the folder.
 
-    Raises InputError where it is no such file or another version's, or a taxel lacks a field, has no
+    Raises InputError if it is no such file or another version's, or a taxel lacks a field, has no
     stiffness, no way to its stop, or the number or a joint of another one.
     """
     path = Path(path)

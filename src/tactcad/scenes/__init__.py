@@ -1,5 +1,4 @@
-"""Which parts stand where, under which designator, with which intended contacts, and in which order they are
-put together.
+"""Scenes: the places of parts, their designators, intended contacts, and order of assembly.
 
 In: a design, and a pose. Out: a scene, which is a list of placements and no geometry. Which scenes there are,
 and what hangs on each, their declarations say (`rig`).
@@ -91,7 +90,7 @@ def make_scene(design: CommonTables, name: str, pose: Pose | None = None) -> Sce
     Raises
     ------
     InputError
-        Where the pose is impossible.
+        If the pose is impossible.
     """
     from .scene import REST, with_added
 

@@ -113,7 +113,7 @@ def _supply_row(item: int, supply: Supply) -> BomRow:
 
 
 def _filled(*records: object, **told: object) -> BomRow:
-    """What the records say under the columns' names, then what is `told`; empty where neither does."""
+    """The records' values under the columns' names, then those of `told`; empty if neither has one."""
     said = {name: value for r in records for name, value in vars(r).items() if name in COLUMNS}
     values: Any = dict.fromkeys(COLUMNS, "") | said | told
     return BomRow(**values)
@@ -131,7 +131,7 @@ def csv_bytes(rows: Sequence[BomRow]) -> bytes:
 
 
 def read_in_sheet(row: BomRow) -> bool | str:
-    """Whether the figures of a bought line were read in the maker's own sheet, as a bill says it."""
+    """The bill's words on whether a bought line's figures were read in the maker's own sheet."""
     return row.source_verified if row.source_verified or row.make_buy == "make" else "unread"
 
 
@@ -142,7 +142,7 @@ def _cell(value: object) -> str:
 
 
 def rows_from_csv(data: bytes) -> tuple[BomRow, ...]:
-    """The rows of a written CSV. Raises ValueError where it is not one of ours."""
+    """The rows of a written CSV. Raises ValueError if it is not one of ours."""
     lines = list(csv.reader(io.StringIO(data.decode(), newline=""), strict=True))
     if not lines or tuple(lines[0]) != COLUMNS:
         raise ValueError("the columns are not those of a bill of materials")
@@ -188,7 +188,7 @@ def json_bytes(rows: Sequence[BomRow], design: str, revision: str, scene: str) -
 
 
 def rows_from_json(data: bytes) -> tuple[BomRow, ...]:
-    """The rows of a written JSON. Raises ValueError, TypeError or KeyError where it is not one of ours."""
+    """The rows of a written JSON. Raises ValueError, TypeError or KeyError if it is not one of ours."""
     record = json.loads(data)
     if record["schema"] != SCHEMA:
         raise ValueError(f"schema {record['schema']!r} instead of {SCHEMA!r}")
@@ -196,7 +196,7 @@ def rows_from_json(data: bytes) -> tuple[BomRow, ...]:
 
 
 def check_bom(scene: Scene, as_csv: bytes, as_json: bytes) -> list[str]:
-    """Differences between the written bills and the scene, one line for each; empty where they agree."""
+    """Differences between the written bills and the scene, one line for each; empty if they agree."""
     try:
         rows, same = rows_from_json(as_json), rows_from_csv(as_csv)
     except (ValueError, TypeError, KeyError) as error:
@@ -214,12 +214,12 @@ def check_bom(scene: Scene, as_csv: bytes, as_json: bytes) -> list[str]:
     if solids != len(scene.placements):
         wrong.append(f"{solids} solids instead of {len(scene.placements)}")
     numbers = [row.part_no for row in rows]
-    wrong += [f"{n} stands on two lines" for n in sorted(set(numbers)) if numbers.count(n) > 1]
+    wrong += [f"{n} is on two lines" for n in sorted(set(numbers)) if numbers.count(n) > 1]
     return wrong + [text for row in rows for text in incomplete(row)]
 
 
 def incomplete(row: BomRow) -> list[str]:
-    """What is missing from a line for a buyer to order by it."""
+    """Data missing from a line that a buyer needs to order."""
     if row.make_buy == "make":
         return [f"{row.part_no}: no {name}" for name in ("material", "rev") if not getattr(row, name)]
     if not row.standard_designation and not row.mpn:

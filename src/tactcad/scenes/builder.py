@@ -35,8 +35,8 @@ POINTING: dict[Vector, Rotation] = {
 
 
 class Builder:
-    """Collects placements in order. A group or a step takes what is placed while it is open; `placed_in`
-    keeps what was placed for a step whose title was given with the part.
+    """Collects placements in order. A group or a step takes the parts placed while it is open; `placed_in`
+    keeps parts placed for a step named with the part.
     """
 
     def __init__(self) -> None:
@@ -54,7 +54,7 @@ class Builder:
         self._unit = ""
 
     def group(self, name: str | None) -> None:
-        """Parts placed from here on move with the group `name` (None: they stand still)."""
+        """Parts placed from here on move with the group `name` (None: they do not move)."""
         self._group = name
 
     def unit(self, name: str) -> None:
@@ -69,7 +69,7 @@ class Builder:
     def place(
         self, prefix: str, part: Part, origin: Vector, rotation: Rotation = UPRIGHT, step: str = ""
     ) -> str:
-        """Put a part in place, in the step of that title where one is given; returns its designator."""
+        """Put a part in place, in the step of that title if one is given; returns its designator."""
         name = self.put(Placement(self.name(prefix), part, origin, rotation))
         if step:
             self.placed_in.setdefault(step, []).append(name)
@@ -117,8 +117,8 @@ class Builder:
         later: Sequence[str] = (),
         **more: Any,
     ) -> None:
-        """Close a step: it takes what was placed since the step before, but `later` ones, which the next one
-        takes; parts of a subassembly are ready. What else there is to say of it: the fields of `Step`."""
+        """Close a step: it takes all parts placed since the previous step, but `later` ones, which the next
+        one takes; parts of a subassembly are ready. Other arguments are fields of `Step`."""
         names = tuple(n for n in self._open if n not in later)
         self._open = [*later]
         ready = frozenset(self._ready & set(names))

@@ -1,9 +1,9 @@
 """The moves of a scene's assembly: which part comes from where, along what way, by which hand or tool.
 
-A step states what is particular; the rest follows from the placements. A screw comes along its axis, a pin
-along its hole from the side where it stands out, any other part along the normal of what it is laid on.
-What was put together on the bench is moved as one. No CAD kernel: ways are taken from the parts' boxes,
-and the check of steps (checks/on_solids/steps.py) moves the solids along them.
+A step states exceptions; the rest follows from the placements. A screw comes along its axis, a pin along its
+hole from the side where it protrudes, any other part along the normal of the face it is laid on. Parts
+assembled on the bench move as one. No CAD kernel: ways follow from the parts' boxes, and the check of steps
+(checks/on_solids/steps.py) moves the solids along them.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from .scene import FREEDOMS, HAND, STILL, Contact, Freedom, Held, Move, Need, Pl
 
 # mm that a part starts clear of all that it comes between; chosen: fingers hold it there
 APPROACH = 20.0
-# mm that the bench is clear of what stands; chosen: two hands' width
+# mm between bench and assembly; chosen: two hands' width
 BENCH = 100.0
 SAME = 1e-6  # mm: boxes that touch
 FASTENERS = ("cap screw", "set screw", "nut")
@@ -31,8 +31,8 @@ Box = tuple[Vector, Vector]
 
 @dataclass(frozen=True)
 class Moment:
-    """A move, and where the other parts that stand there are meanwhile: offsets from their final places, mm.
-    On the bench that is only what lies there too."""
+    """A move, and the offsets of the other parts present from their final places meanwhile, mm. On the bench
+    only the parts that lie there count."""
 
     step: int
     move: Move
@@ -62,7 +62,7 @@ def box(p: Placement, shift: Vector = STILL) -> Box:
 
 
 def way_of_screw(p: Placement) -> Vector | None:
-    """Where a screw comes from: against its own axis; None for any other part."""
+    """Direction from which a screw comes: against its own axis; None for any other part."""
     if p.part.kind not in ("cap screw", "set screw"):
         return None
     return vector(-row[2] + 0.0 for row in p.rotation)
@@ -127,7 +127,7 @@ class _Assembly:
         return Move(item, start, (place,), self._by(item))
 
     def _on_bench(self, number: int) -> Vector:
-        """Where what is put together on the bench lies: out along the normal that it is brought in by."""
+        """Place on the bench of parts assembled there: out along the normal by which they come in."""
         steps = self.scene.steps
         if own := self.bench[steps[number].unit]:
             return self.at[own[0]]
@@ -159,7 +159,7 @@ class _Assembly:
         return seen if seen in best else best[0]
 
     def _out_of_hole(self, name: str, host: str) -> Vector:
-        """Along a pin's axis, from the side where most of it stands out of its hole's part."""
+        """Along a pin's axis, from the side on which most of it protrudes from its hole's part."""
         p = self.placed[name]
         axis = [row[2] for row in p.rotation]
         k = max(range(3), key=lambda i: abs(axis[i]))
@@ -169,8 +169,7 @@ class _Assembly:
     def _clear(
         self, names: Sequence[str], way: Vector, there: set[str], fastened: bool, place: Vector = STILL
     ) -> float:
-        """mm along the way until the parts are clear of all that stands beside it; a screw, of what it is
-        in."""
+        """mm along the way until the parts are clear of all others; a screw, of the part it is in."""
         k = max(range(3), key=lambda i: abs(way[i]))
         sides = [i for i in range(3) if i != k]
         far = 0.0
@@ -210,7 +209,7 @@ def _names(item: Move | tuple[str, ...]) -> tuple[str, ...]:
 
 
 def _normals(a: Box, b: Box) -> list[Vector]:
-    """Out of box b into box a, where they lie against each other."""
+    """Normals out of box b into box a at their common faces."""
     found = []
     for k in range(3):
         for sign, gap in ((1.0, a[0][k] - b[1][k]), (-1.0, b[0][k] - a[1][k])):
@@ -220,13 +219,13 @@ def _normals(a: Box, b: Box) -> list[Vector]:
 
 
 def _dominant(explode: Vector) -> Vector:
-    """Along the axis that most of it runs along; up where it is nothing."""
+    """Along the vector's largest component; up if it is zero."""
     k = max(range(3), key=lambda i: abs(explode[i])) if any(explode) else 2
     return vector(((explode[k] >= 0) - (explode[k] < 0)) * 1.0 if i == k else 0.0 for i in range(3))
 
 
 def settles(scene: Scene, number: int) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """What a step fixes, and what it leaves adjustable: as it says, or by the contacts that it closes."""
+    """Freedoms that a step fixes and leaves: as it states, or by the contacts that it closes."""
     step = scene.steps[number]
     placed = {p.designator: p for p in scene.placements}
     there = {d for s in scene.steps[: number + 1] for d in s.designators}

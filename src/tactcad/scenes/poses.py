@@ -22,7 +22,7 @@ def poses(design: CommonTables, name: str) -> tuple[Pose, ...]:
 
 
 def pose_of(given: Sequence[str], design: CommonTables) -> Pose | None:
-    """The pose that KEY=VALUE texts describe; None where there are none. Raises InputError where they
+    """The pose that KEY=VALUE texts describe; None if there are none. Raises InputError if they
     describe none.
     """
     grasping, cart = (getattr(design, table, None) for table in ("grasping", "cart"))

@@ -1,6 +1,6 @@
 """What must hold for parts to make a sensor, and the dimensions that it depends on.
 
-numpy is loaded when a limit or a value is made: which scenes a design has is known without.
+numpy is loaded only for limits and values: listing a design's scenes does not need it.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 Deviations = dict[str, "Array"]  # by variable: (arrays built, pieces) deviations from nominal
 Matters = Literal["pads", "plate", "neither", "joint"]
-# Least interference of a pressed pin, mm; chosen: what a plug gauge tells from none.
+# Least interference of a pressed pin, mm; chosen: the least that a plug gauge shows.
 LEAST_PRESS = 0.002
 SHEET = "sheet: thickness"  # the variable of the one sheet that all elements are cut from
 
@@ -30,9 +30,9 @@ class DimensionLimits:
 
     name          part and dimension, as stack and findings call it
     lower, upper  deviations from nominal, of shape (pieces,); mm unless the name says otherwise
-    stated        part number and limit that it is of; empty where it is of elements, or general
+    stated        part number and limit that it is of; empty if it is of elements, or general
     apart         of no array: drawn by chance of its own, so that an array is the same with and without it
-    element       the limit of an element that it is; empty where it is of another part
+    element       the limit of an element that it is; empty if it is of another part
     matters       to what: to the pads on the surface plate and all that stands on them, to the stop plate on
                   the ledges, to neither, or to a screwed joint alone
     wire          how it grows where the wire leaves every face of its piece further out, mm a mm
@@ -79,7 +79,7 @@ class Requirement:
 
     name          what must hold
     unit          of value and limits
-    lower, upper  limits, -inf or inf where there is none
+    lower, upper  limits, -inf or inf if there is none
     value         (arrays, instances) of arrays that were put together
     linear        where the value is a sum of deviations: the nominal value, and each variable's coefficient;
                   such a value does not depend on the array's contacts

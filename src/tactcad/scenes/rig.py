@@ -1,4 +1,4 @@
-"""A rig: a scene with all that hangs on it, declared once, beside the function that makes it.
+"""A rig: a scene with everything that depends on it, declared once, next to the function that makes it.
 
 A family of sensors names the folder or module of its rigs (facing rows: scenes/rigs). Every module there
 declares one, its `RIG`; nothing lists them. A module without, a declaration that lacks something, or two of
@@ -31,7 +31,7 @@ ARRAY = "array"  # the rig that every design has: the sensor itself
 
 @dataclass(frozen=True)
 class Rig:
-    """What a scene consists of, and what must hold for it.
+    """A scene's declaration: tables, parts, rules and requirements.
 
     name          of the scene
     tables        of the design that it needs
@@ -65,8 +65,8 @@ def none(*_: Any) -> tuple[()]:
 
 
 def all_rigs(spec: type[CommonTables]) -> dict[str, Rig]:
-    """Every rig of the family whose designs are of that class, by name: the array, then in the order in which
-    their tables stand in a design."""
+    """Every rig of the family whose designs are of that class, by name: the array, then in the order of their
+    tables in a design."""
     return _rigs(next(f.name for f in all_families().values() if f.spec is spec))
 
 

@@ -1,5 +1,5 @@
-"""What must hold for the rigs: four wheels on a plane, the roller in its seat; and for gauges to be bonded
-where they read: place on the hinge, leaf on its backing, pins."""
+"""Requirements on the rigs: four wheels on a plane, the roller in its seat; and for bonding gauges: place on
+the hinge, leaf on its backing, pins."""
 
 from __future__ import annotations
 
@@ -44,10 +44,11 @@ AXLE_HEIGHT, WHEEL, BORES, SHANKS = (
 )
 # Shank of an ISO 4762 screw of product grade A (ISO 4759-1:2000).
 SHANK = "h13"
-# mm that the roller may lie beside its seat's middle: the load's place along the arm is as uncertain. Where
-# the seat is in the tip does not matter: the guide sets the roller by the pad's edge, after it is bonded.
+# mm, largest offset of the roller from its seat's middle, which shifts the load along the arm. The seat's
+# place in the tip does not matter: the guide sets the bonded roller by the pad's edge.
 ROLLER_PLACE = 0.02
-# Wheels around the cart: the fourth stands off the plane of three by the alternating sum of their heights.
+# Wheels around the cart: the fourth's distance from the plane of three is the alternating sum of their
+# heights.
 AROUND = (1.0, -1.0, 1.0, -1.0)
 
 
@@ -67,8 +68,8 @@ def wheels(layout: Layout, known: dict[str, DimensionLimits]) -> list[Requiremen
 
 
 def loose_wheel(a: Built) -> Array:
-    """How far a wheel stands off the plane of the other three, axles tightened while the cart is pressed on a
-    surface plate: each wheel gives way by half its play on the shank. A shank that would not enter is
+    """Distance of a wheel from the plane of the other three, if the axles are tightened with the cart pressed
+    on a surface plate: each wheel yields by half its play on the shank. A shank that does not enter is
     polished until it does."""
     import numpy as np
 
@@ -137,7 +138,7 @@ def _on_hinge(
 
 
 def _on_backing(rig: BondingLayout, known: dict[str, DimensionLimits]) -> Requirement:
-    """The rear body stands off its rest until the leaf lies on the tongue."""
+    """The rear body is clear of its rest until the leaf lies on the tongue."""
     nest, body = f"bonding nest{_kind(rig)}: tip over rest", "bonding: rear body's height over the leaf"
     known[nest] = variable(nest, -TIP, TIP, stated=((_nest(rig), TIP_OVER_REST),))
     own = general(rig.design.element.rear_height)

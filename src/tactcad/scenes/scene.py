@@ -87,7 +87,7 @@ FREEDOMS: tuple[Freedom, ...] = ("x", "y", "z", "rx", "ry", "rz")
 
 @dataclass(frozen=True)
 class Held:
-    """Bodies whose freedoms contacts set: along x, y, z, or turns about them.
+    """Bodies whose freedoms contacts fix: along x, y, z, or turns about these axes.
 
     bodies  designators of each, which move as one
     by      what they lie on, or hang on
@@ -100,7 +100,7 @@ class Held:
 
 @dataclass(frozen=True)
 class Need:
-    """Parts that a step needs to stand there, or `away`: not there yet; and why."""
+    """Parts that must be in place for a step, or `away`: not yet in place; with the reason."""
 
     what: tuple[str, ...]
     why: str
@@ -109,20 +109,20 @@ class Need:
 
 @dataclass(frozen=True)
 class Step:
-    """A step of the assembly: what is put in place, from which side (mm, for the exploded view), and how.
+    """A step of the assembly: its parts, their direction (mm, for the exploded view), and its instructions.
 
     `fan` spreads the step's parts over the outer half of that way, in their order, so many abreast; 0: all
-    come together. A `bench` step is done away from what stands already, which the next other step brings in.
+    come together. A `bench` step is done away from the assembly; the next other step brings its parts in.
     `ready` ones were put together before. `unit` names the sub-assembly of the scene that the step belongs
-    to; empty where the scene is one. `tools` are what it needs besides the drivers of its screws. A step on
-    `elements` handles them one by one: which is which must be seen.
+    to; empty if the scene is one. `tools`: those needed besides the drivers of its screws. A step on
+    `elements` handles them one by one, so each must be identifiable.
 
     `order` states the moves that do not follow from the placements (scenes/moves.py), in turn: a Move; or
     designators that come together on their usual way; () brings in what lies on the bench. The step's other
-    parts follow one by one. `at` is where its parts stay for now: an offset from their final place, mm.
-    `held` names what contacts set, which the check of steps tries with the solids. `sets` and `leaves` say
-    which freedoms it fixes and leaves, where contacts do not tell; `needs` what else must be there or away.
-    `limit` is what the step has to reach: the assembly drawing notes it.
+    parts follow one by one. `at`: offset of its parts from their final place for now, mm. `held`: bodies
+    fixed by contacts, which the check of steps tries with the solids. `sets` and `leaves`: freedoms that it
+    fixes and leaves, if contacts do not show them; `needs`: other parts that must be in place or away.
+    `limit`: the limit that the step must reach, noted on the assembly drawing.
     """
 
     title: str
@@ -179,26 +179,26 @@ class Scene:
     name
         Such as "array".
     placements
-        Which part stands where.
+        The parts and their places.
     contacts
         Pairs that are meant to meet.
     supplies
         Lines of the bill without a solid.
     cover
-        Designators of what is taken off to look inside.
+        Designators of the parts taken off to look inside.
     groups
-        What moves as one: a name and designators; parts in none stand still.
+        Parts that move as one: a name and designators; parts in none do not move.
     motions
         Ways of the groups that are checked for collisions.
     steps
         Of the assembly; they place every designator once.
     ready
-        Scenes, at their places, that were put together before and whose parts stand in this one.
+        Scenes, at their places, that were assembled before and whose parts are in this one.
 
     Raises
     ------
     ValueError
-        Where designators are not unique, the steps do not place each once, or two parts share a number.
+        If designators are not unique, the steps do not place each once, or two parts share a number.
     """
 
     name: str

@@ -1,4 +1,5 @@
-"""What several rigs share: stand, cart with holder and sample, and the vertical axis with the force gauge."""
+"""Assemblies shared by several rigs: stand, cart with holder and sample, and the vertical axis with the force
+gauge."""
 
 from __future__ import annotations
 
@@ -7,6 +8,8 @@ from dataclasses import replace
 
 from tactcad.design.fields import present
 from tactcad.parts import rigs
+from tactcad.parts.array.leads import BESIDE as BOARDS_OFF
+from tactcad.parts.array.leads import Bench
 from tactcad.parts.array.supplies import supplies
 from tactcad.parts.bought import screws, standard_parts
 from tactcad.parts.bought.standard_parts import STAGES, bearing
@@ -28,7 +31,7 @@ from tactcad.parts.rigs.stand import BASE_SCREW, BASE_UNDER_HEAD, POST_SCREWS, S
 
 from .builder import Builder
 from .moves import APPROACH
-from .scene import AGAINST_Y, ALONG_Y, STILL, Move
+from .scene import AGAINST_Y, ALONG_Y, STILL, Move, Need
 
 CORNERS = tuple((sx, sy) for sx in (-1, 1) for sy in (-1, 1))
 STAND = "BP1"  # the base plate
@@ -36,7 +39,11 @@ AXIS_LIFT = 200.0  # exploded views: the vertical axis over everything else
 THREAD, LENGTH, UNDER = PLATE_SCREW
 SQUARE = "precision square, 100 mm"
 SHIMS = "shim foil, 0.01 and 0.02 mm, scissors"
-BESIDE: Vector = (-300.0, 0.0, 2.0)  # where the cart is put together, mm from its place on the base plate
+BESIDE: Vector = (
+    -300.0,
+    0.0,
+    2.0,
+)  # place of the cart during its assembly, mm from its place on the base plate
 OVER: Vector = (0.0, 0.0, 2.0)
 RAISED = 6.0  # mm that the force axis is driven up while something is brought in under it
 JAM_SPANNER = f"spanner {screws.JAM_NUT[2][0]:g} mm: the tip's jam nut"
@@ -64,7 +71,7 @@ def place_stand(b: Builder, rig: StandLayout, stages: bool) -> str:
 
 
 def place_cart(b: Builder, rig: CartLayout, roll: float) -> str:
-    """Cart with holder, put together beside the base plate; returns the lid's designator."""
+    """Cart with holder, assembled next to the base plate; returns the lid's designator."""
     b.group("cart")
     b.unit("cart with holder and sample")
     c, bear = rig.cart, rig.bearing
@@ -195,9 +202,25 @@ def place_sample(
         "Lay the sample on the middle of the lid, clean and dry, and open the vacuum.",
         order=[Move((object_,), (0.0, front, high), ((0.0, 0.0, high), STILL))],
         sets=(f"{object_} on {lid}: all, by the vacuum",),
+        leaves=(f"{object_}: all, while the vacuum is shut",),
     )
     b.group(None)
     return object_
+
+
+def boards_on_bench(b: Builder, bench: Bench) -> None:
+    """The step that brings the boards, on their plates: bench equipment beside the base plate."""
+    on = f"blocks {bench.block:g} mm high" if bench.block else "the bench"
+    b.step(
+        "Boards on the bench",
+        (0, 0, 0),
+        f"Lay the boards on their plates (guide wiring) on {on}, {BOARDS_OFF:g} mm off the ends of the base "
+        "plate, row 1's at +x, lead clamps towards the array. Clamp each bundle as there, then, supplies "
+        "off, plug its socket. The leads reach wherever the array is moved: they hang loose and pull at "
+        "nothing.",
+        leaves=("boards: along x and y, by the leads' slack", "sockets: up, by hand"),
+        needs=(Need(("CA1", STAND), "its leads reach boards beside the base plate"),),
+    )
 
 
 def place_force_axis(
@@ -309,11 +332,11 @@ def driven(
     off: float = 0.0,
     at: Vector = STILL,
 ) -> list[Move | tuple[str, ...]]:
-    """A stage is fixed: its moving half, and what stands on it, is driven to one end, the screws of the side
-    that is then free go in, then those of the other side, and it is driven back.
+    """Fix a stage: its moving half, with the parts on it, is driven to one end, the screws of the side that
+    is then free go in, then those of the other side, and it is driven back.
 
-    `fixings` are the screws, each with the side along the axis that it is on; `off` is how far, mm, the
-    moving half stands from the middle of its travel at last; `at` is where the stage is meanwhile.
+    `fixings` are the screws, each with the side along the axis that it is on; `off`: final distance, mm, of
+    the moving half from the middle of its travel; `at`: the stage's place meanwhile.
     """
     by, here = "its micrometer", at
     moves: list[Move | tuple[str, ...]] = []

@@ -12,7 +12,7 @@ import numpy as np
 from tactcad.parts.language.description import Extrusion, Hole, Part, Revolution
 from tactcad.scenes.scene import Placement
 
-# A screw stands in its hole's axis within this (mm and radians).
+# Largest deviation of a screw from its hole's axis (mm and radians).
 COAXIAL = 1e-6
 
 
@@ -20,7 +20,7 @@ def thread_overlap(first: Placement, second: Placement) -> float:
     """Largest overlap (mm3) that a thread between the two explains: pi/4 (D^2 - d^2) e, with D the thread's
     major diameter, d the tapped hole's as drilled, e the length of full thread that the screw reaches into.
 
-    The screw's axis is its part's z. 0 where neither stands in a tapped hole of the other.
+    The screw's axis is its part's z. 0 if neither is in a tapped hole of the other.
     """
     return max((_ring(hole, *ends) for hole, *ends in engaged(first, second)), default=0.0)
 
@@ -37,7 +37,7 @@ def thread_range(hole: Hole) -> tuple[float, float]:
 
 
 def engaged(first: Placement, second: Placement) -> Iterator[tuple[Hole, float, float]]:
-    """Tapped holes of either part in whose axis the other one stands, and from where to where it does."""
+    """Tapped holes of either part with the other one in their axis, and the range along that axis."""
     for tapped, screw in ((first, second), (second, first)):
         turn, low_high = np.array(tapped.rotation), _along_z(screw.part)
         axis = np.array(screw.rotation)[:, 2]

@@ -31,7 +31,7 @@ from .occt import subshapes
 
 
 def write_step(shape: TopoDS_Shape) -> bytes:
-    """The shape as a STEP file, without names or colours. Raises ValueError where the kernel cannot write
+    """The shape as a STEP file, without names or colours. Raises ValueError if the kernel cannot write
     it."""
     writer, stream = STEPControl_Writer(), BytesIO()
     set_up_writer()
@@ -44,7 +44,7 @@ def write_step(shape: TopoDS_Shape) -> bytes:
 
 
 def read_step(data: bytes) -> TopoDS_Shape:
-    """The shape in a STEP file, mm. Raises ValueError where there is none."""
+    """The shape in a STEP file, mm. Raises ValueError if there is none."""
     silence()
     reader = STEPControl_Reader()
     if reader.ReadStream("written.step", BytesIO(data)) != IFSelect_RetDone or not reader.TransferRoots():
@@ -71,7 +71,7 @@ def silence() -> None:
 
 
 def read_step_solid(model: ModelFile) -> TopoDS_Shape:
-    """The one solid of a STEP file. Raises InputError where file, hash or solid are not as described."""
+    """The one solid of a STEP file. Raises InputError if file, hash or solid are not as described."""
     if _sha256(model.path) != model.sha256:
         raise InputError(
             model.path, "the STEP file has changed since it was described", legal=f"sha256 {model.sha256}"
@@ -82,7 +82,7 @@ def read_step_solid(model: ModelFile) -> TopoDS_Shape:
 def model_file(path: str | Path) -> ModelFile:
     """Describe a STEP file as a bought part's body: its hash, and its solid's volume (mm3) and box (mm).
 
-    Raises InputError where there is no such file, or not one solid in it.
+    Raises InputError if there is no such file, or not one solid in it.
     """
     sha256 = _sha256(str(path))
     facts = measure(_only_solid(str(path)))
@@ -93,7 +93,7 @@ def model_file(path: str | Path) -> ModelFile:
 def kept_model(shape: Any, folder: Path) -> ModelFile:
     """A build123d solid as a bought part's body: written once as STEP in `folder`, under its content's name.
 
-    Raises InputError where it is not one solid.
+    Raises InputError if it is not one solid.
     """
     from build123d import export_step
 
@@ -136,7 +136,7 @@ def to_bytes(shape: TopoDS_Shape) -> bytes:
 
 
 def from_bytes(data: bytes) -> TopoDS_Shape:
-    """The shape that `to_bytes` wrote. Raises ValueError where the bytes hold none."""
+    """The shape that `to_bytes` wrote. Raises ValueError if the bytes hold none."""
     shape = TopoDS_Shape()
     BRepTools.Read_s(shape, BytesIO(data), BRep_Builder())
     if shape.IsNull():

@@ -30,7 +30,7 @@ STIFFNESS = ("stiffness", "expected_error")  # N/mm; relative, at most
 FORCES = ("yield_force", "rated_force", "rated_deflection")  # N, N, mm
 
 
-# Of a chunk: all of them, which takes views instead of copies, or those of an index.
+# Designs of a chunk: all, as views instead of copies, or those of an index.
 Rows = slice | NDArray[np.int64]
 ALL = slice(None)
 
@@ -40,7 +40,7 @@ class Refused:
 
     def __init__(self, count: int) -> None:
         self.valid = np.ones(count, bool)
-        self._reason: NDArray[Any] | None = None  # made when one is refused: mostly none is
+        self._reason: NDArray[Any] | None = None  # made only when one is refused, which is rare
 
     @property
     def reason(self) -> NDArray[Any]:
@@ -80,9 +80,9 @@ def closed_forms(
     columns
         The designs.
     refused
-        Which of them are not to be measured; filled in with those that closed forms refuse.
+        Mask of those not to be measured; those refused by closed forms are added.
     results
-        By column, NaN where nothing is known: filled in.
+        By column, NaN if nothing is known: filled in.
     """
     rungs = [rung for rung in study.measure.rungs if rung in ladder.CLOSED_FORMS]
     if not rungs:
@@ -107,7 +107,7 @@ def closed_forms(
 
 
 def _forces(d: Design, section: HingeSection, rung: str, result: ladder.Result) -> list[Floats]:
-    """In the order of FORCES, each over all designs; NaN where out of the rung's range."""
+    """In the order of FORCES, each over all designs; NaN if out of the rung's range."""
     per_newton = np.full(section.shape, np.nan)
     if result.valid.any():
         per_newton[result.valid] = _stress(section.rows(result.valid.reshape(-1)), rung)
@@ -153,7 +153,7 @@ def alike(study: Study, columns: dict[str, Column], refused: Refused) -> Iterato
 
 
 def _misnamed(design: CommonTables, material: dict[str, Floats]) -> Column:
-    """Why these values may not bear the material's name, as when their file is read; "" where they may."""
+    """Why these values may not bear the material's name, as when their file is read; "" if they may."""
     why = []
     for values in zip(*material.values()):
         own = {path.partition(".")[2]: float(value) for path, value in zip(material, values)}

@@ -1,7 +1,7 @@
-"""From a target to a design: the array that feels what is to be felt, and how surely.
+"""From a target to a design: the array that measures the target's objects, with its interval.
 
-In: what is to be felt, with how much room, force and tolerance (TARGET.toml). Out: a design file that every
-rule accepts, its predicted interval and yield, what limits it, and alternatives.
+In: objects, room, force and tolerances (TARGET.toml). Out: a design file that keeps every rule, its predicted
+interval and yield, its limits, and alternatives.
 """
 
 from .synthesise import Synthesis, design

@@ -1,5 +1,5 @@
-"""The bounds that an answer lies on, and the base's own answer to the target: what it breaks, and the fields
-that decide how much room an array takes."""
+"""The bounds that an answer lies on, the base design's own result for the target, and the fields that decide
+an array's size."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from .made_arrays import MadeSensor
 from .search import Found, refusals, search
 from .target import Target
 
-BESIDE = 4.0  # s, for each search beside the answer where the object is a body
+BESIDE = 4.0  # s, for each further search if the object is a body
 NEAR = 0.02  # relative; a limit with less room left is one that the answer lies on
 # Fields of the base design that bound the search, and the factor of a step that eases them.
 OF_BASE = {
@@ -36,7 +36,7 @@ OF_BASE = {
     "readout.force_resolution": 1.1,
     "calibration.step": 1 / 1.1,
 }
-# The field that eases a limit of `Candidates.misses` which is not called by it.
+# The field that eases a limit of `Candidates.misses`, for limits that do not bear a field's name.
 EASED_BY = {
     "strength": "rating.yield_factor",
     "stop": "grasp.overload",
@@ -44,8 +44,8 @@ EASED_BY = {
     "calibration": "calibration.step",
 }
 # A clamp of M2 screws and 2 mm dowels: plates that M2 screws and set screws reach through, and the shortest
-# rear body that keeps the rules of holes, webs and heads. Long stacks take tie rods; short ones cap screws,
-# whose heads need more room, and the axis's threads outside the carrier's screws.
+# rear body that keeps the rules of holes, webs and heads. Long stacks use tie rods; short ones cap screws,
+# whose heads need more room, with the axis's threads outside the carrier's screws.
 COMPACT: dict[str, Any] = {
     "holes.dowel_hole": 2.012,
     "holes.web": 1.0,
@@ -85,10 +85,10 @@ SIZES: dict[str, Callable[[Layout], float]] = {
 class Bound:
     """A bound that the answer lies on.
 
-    field, value  of the target, or of its base design
+    field, value  its value in the target or in the base design
     whose         "written" in the target file, "default" of it, or "base design"
-    beyond        the value one step further; None where no such value is legal
-    half_width    relative, of the best around the answer there; None where none keeps the rules
+    beyond        the value one step further; None if no such value is legal
+    half_width    relative, of the best around the answer there; None if none keeps the rules
     """
 
     field: str
@@ -99,7 +99,7 @@ class Bound:
 
 
 def touched(found: Found) -> list[str]:
-    """Fields whose values hold the candidate where it is."""
+    """Fields whose values bound the candidate."""
     c, stand = found.candidate, found.candidate.stand
     target, e, numbers = stand.target, stand.base.element, found.row
     wish, room, (low, high) = target.elements, target.room, stand.limits
@@ -134,7 +134,7 @@ def touched(found: Found) -> list[str]:
 
 
 def bound(found: Found, field: str) -> Bound | None:
-    """A bound with what one step beyond it would give; None where the field has no further to go."""
+    """A bound with the result one step beyond it; None if the field cannot go further."""
     target = found.candidate.stand.target
     if field in OF_BASE:
         value = paths(target.base)[field]
@@ -157,17 +157,17 @@ def bound(found: Found, field: str) -> Bound | None:
 
 
 def narrowest(c: Any) -> Any:
-    """The goal of searches beside the answer."""
+    """The goal of all searches but the answer's."""
     return c.half_width
 
 
 def soon(target: Target) -> float:
-    """Until when a search beside the answer goes on, of `time.perf_counter`."""
+    """End of a further search, of `time.perf_counter`."""
     return time.perf_counter() + BESIDE if target.on_layer else inf
 
 
 def near(target: Target, found: Found) -> list[Stand]:
-    """Stands of a target that are the found one's, but for tolerances or for more kinds than it may have."""
+    """The target's stands that equal the found one but for tolerances or more kinds."""
     here = found.candidate.stand
     own = here.base.sheet, here.base.material.alloy, here.base.gauge, here.base.readout
 
@@ -179,7 +179,7 @@ def near(target: Target, found: Found) -> list[Stand]:
 
 
 def _placed(stand: Stand, here: Stand) -> Stand:
-    """The stand with the pads where the found one has them, or as near as its room lets them be."""
+    """The stand with the found one's pad places, or the nearest that its room allows."""
     if not stand.on_layer:
         return stand
     d, array, least = stand.base, here.base.array, stand.target.room.pitch
@@ -190,8 +190,8 @@ def _placed(stand: Stand, here: Stand) -> Stand:
 
 
 def numbers(found: Found, stand: Stand) -> Any:
-    """The found candidate's numbers on another stand: a kind more has half of the last one's elements; None
-    for fewer kinds."""
+    """The found candidate's numbers on another stand: an added kind takes half of the last one's elements;
+    None for fewer kinds."""
     row, more = found.row, stand.kinds - found.candidate.stand.kinds
     if more < 0:
         return None
@@ -211,8 +211,8 @@ def with_value(design: Design, path: str, value: Any) -> Design:
 
 
 def compact(found: Found) -> Target | None:
-    """The target on its base with the compact clamp, where the room binds the candidate and that clamp is the
-    smaller one and keeps every rule with as many elements; else None."""
+    """The target on its base with the compact clamp, if the room binds the candidate and that clamp is
+    smaller and keeps every rule with as many elements; else None."""
     target, base, room = found.candidate.stand.target, found.design, ("room.length", "room.width")
     if all(found.candidate.misses[name][0] <= -NEAR for name in room):
         return None
@@ -230,8 +230,7 @@ def _with_clamp(base: Design, clamp: dict[str, Any]) -> Design:
 
 
 def base_breaks(target: Target) -> list[str]:
-    """By what the base design as it is does not meet the target: room, forces, half-width, and every rule
-    that it breaks."""
+    """Why the unchanged base design misses the target: room, forces, half-width, and every broken rule."""
     base, room, layout = target.base, target.room, Layout(target.base)
     made, wanted = MadeSensor(target, base), target.target.half_width
     broken = [f"rule {f.check}: {f.broken}" for f in broken_rules(base)]

@@ -1,9 +1,9 @@
 """Candidates: arrays of a few kinds of element, many at a time, with what each of them can do.
 
 A candidate is a row of whole numbers: for each kind an arm (steps of ARM mm), a hinge's thickness (steps of
-THICKNESS mm) and how many there are; then the slot's length and its fillet's radius, which all share. Steps
-are what a drawing states and a shop's wire can tell apart. One candidate becomes a design with its kinds
-dealt out over the rows so that different ones are neighbours.
+THICKNESS mm) and a count; then the slot's length and its fillet's radius, which all share. Steps are as fine
+as a drawing states and a shop's wire can cut. In a candidate's design the kinds are spread over the rows so
+that different ones are neighbours.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ from .target import ARM, THICKNESS, Target
 
 SLOT, RADIUS = 0.02, 0.01  # mm, steps
 LEAST_STEPS = 4  # of a calibration: one more than a line needs
-PLAIN = 6.0  # mm, an arm that stands for any where arms do not matter
+PLAIN = 6.0  # mm, any arm, for quantities that do not depend on it
 POINTS = 3  # of the object's range, by logarithm, that decide: its ends and middle
 # A stop stays open by so much at the largest force, beyond its tolerances, mm; chosen: four steps of its gap.
 AIR = 0.02
@@ -69,10 +69,10 @@ SEARCHED = (
 
 @dataclass(frozen=True)
 class Stand:
-    """One choice of what is not searched: sheet, alloy, hinge tolerance and how many kinds of element.
+    """One choice of the parameters that are not searched: sheet, alloy, hinge tolerance and number of kinds.
 
     base      the target's base design with sheet, alloy, tolerance, pitch, forces and rows set
-    pattern   how kinds are dealt out over the rows: 0 spread evenly, else one of chance
+    pattern   how kinds are spread over the rows: 0 evenly, else a random order
     springs   whether a body counts as a spring under each pad, for a first guess
     tried     numbers of the poses on a body at which a candidate is tried; none for all of them
     """
@@ -107,7 +107,7 @@ class Stand:
 
     @cached_property
     def widths(self) -> Array:
-        """Width of the array along the rows, mm, by the elements of the longer row, from none on."""
+        """Width of the array along the rows, mm, by the number of elements in the longer row, from 0 on."""
         most = int(self.target.room.elements[1]) // self.target.room.rows + 1
         return np.array([0.0, *(array_width(_with_rows(self.base, n)) for n in range(1, most + 1))])
 
@@ -124,7 +124,7 @@ class Stand:
 
     @property
     def in_a_row(self) -> int:
-        """Elements of the longer row of the largest array asked for; more miss room.elements alone."""
+        """Elements in the longer row of the largest array allowed; more violate room.elements alone."""
         return ceil(self.target.room.elements[1] / self.target.room.rows)
 
     @cached_property
@@ -140,7 +140,7 @@ class Stand:
 
     @cached_property
     def smallest_output(self) -> float:
-        """What the read-out tells from none, V, with all elements that the room takes."""
+        """Smallest output that the read-out resolves, V, with all elements that the room takes."""
         return smallest_output(_with_rows(self.base, max(self.most // self.target.room.rows, 1)))
 
     @cached_property
@@ -154,7 +154,7 @@ class Stand:
         wish, e = self.target.elements, self.base.element
         longest = max(p.arm + p.hinge.l / 2 for p in self.layout.elements)
         room = (self.target.room.length / 2 - (self.layout.carrier_length / 2 - longest)) / ARM
-        # at least what is asked for, so that a room too narrow for that is what is found to be missed
+        # at least the number asked for, so that a too narrow room is the limit reported
         searched = max(self.most, int(self.target.room.elements[0]))
         low = [ceil(wish.arms[0] / ARM - 1e-9), ceil(wish.hinges[0] / THICKNESS - 1e-9), wish.of_a_kind]
         high = [
@@ -187,7 +187,7 @@ def _with_rows(d: Design, elements: int) -> Layout:
 
 
 def stands(target: Target) -> list[Stand]:
-    """Every choice of what is not searched."""
+    """Every choice of the parameters that are not searched."""
     out = []
     stock = target.stock
     choices = stock.sheets, stock.alloys, stock.hinge_tolerances, stock.gauges, stock.powers
@@ -316,7 +316,7 @@ class Candidates:
 
     @cached_property
     def misses(self) -> dict[str, Array]:
-        """By limit, how far each candidate is beyond it, relative; 0 and below where it is kept."""
+        """Relative excess of each candidate over each limit; 0 and below where the limit is kept."""
         s, e = self.stand, self.elements
         grip, d = s.target.grasp, s.base
         tip = tip_compliance(self.section, e.stiffness, self.arm)
@@ -325,7 +325,7 @@ class Candidates:
         closing = largest_closing_force(self.section, e.stiffness, self.arm, s.give, overload, rated)
         closing = np.minimum(closing * tip, land_room(s.layout, s.layout.common_hinge))
         least_gap = closing - 2.0 * d.stop.tolerance - 2.0 * seat(s.layout) - STEP_MM - AIR / 2
-        # at its lower limit a hinge bears less, about as t^2, and gives way more, about as t^-3
+        # at its lower limit a hinge bears less, about as t^2, and deflects more, about as t^-3
         thin = d.tolerance.hinge_thickness / self.thickness
         strong = d.rating.yield_factor * (1.0 + 2.5 * thin)
         soft = tip * (1.0 + 3.5 * thin)
@@ -348,7 +348,7 @@ class Candidates:
 
     @property
     def of_shape(self) -> dict[str, Array]:
-        """Misses that hang on no force."""
+        """Misses that do not depend on force."""
         s, room = self.stand, self.stand.target.room
         length: Any = self.layout.carrier_length
         return {
@@ -373,7 +373,7 @@ class Candidates:
 
     @cached_property
     def violation(self) -> Array:
-        """Sum of what is beyond limits; inf where the estimator does not reach."""
+        """Sum of all excesses over limits; inf if the estimator does not reach."""
         total = sum(np.maximum(v, 0.0) for v in self.misses.values())
         known = np.isfinite(self.elements.stiffness).all(axis=1) & np.isfinite(self.half_width)
         return np.where(known & self.known_as_made & np.isfinite(total), total, np.inf)
@@ -416,7 +416,8 @@ class Candidates:
 
     @cached_property
     def cut(self) -> Array:
-        """Wire's way around all elements, mm: each as long as the longest arm's, whose rear is the base's."""
+        """Wire path around all elements, mm: each taken as long as the one with the longest arm and the
+        base's rear."""
         d = self.stand.base.element
         around = 2.0 * (self.arm.max(axis=1) + self.slot + d.seat_length + d.rear_length + d.rear_height)
         return self.total * around
@@ -431,8 +432,8 @@ class Candidates:
 def order(count: list[int], rows: int, pattern: int = 0) -> list[list[int]]:
     """Kind of every place, row by row: each kind spread evenly along both rows, or by `pattern`, a seed.
 
-    A pair that feels the same spot of the object gives its ratio best, so each kind's elements are dealt out
-    where it lags most behind its share.
+    A pair at the same spot of the object gives the best ratio, so the next place goes to the kind furthest
+    behind its share.
     """
     total = sum(count)
     dealt = [0] * len(count)

@@ -6,8 +6,8 @@ each, and K and K_v known with errors, leave f_i + x s_i with the variance
 
   v_i = sigma^2 (K_i + x)^2/K_v,i^2 + f_i^2 var K + c^2 var K_v - 2 f_i c cov(K, K_v)
 
-(relative variances of K and K_v). The generalised least squares of lab/combine.py weighs with w_i, inverse to
-v_i with variances averaged over elements where they are estimated; then x has the variance
+(relative variances of K and K_v). The generalised least squares of lab/combine.py uses weights w_i inverse to
+v_i, with estimated variances averaged over the elements; then x has the variance
 
   sum_i w_i^2 (s_i - s_mean)^2 v_i/S^2,  S = sum_i w_i (s_i - s_mean)^2,  mean by weights w_i,
 
@@ -18,8 +18,8 @@ combine's misfit.
 
 Readings of many arrays at once are evaluated by the rules of lab/combine.py: weights from covariances that
 are averaged with the elements' common one, the interval by the elements' own, degrees of freedom by Welch and
-Satterthwaite, and the widening where elements disagree; over arrays instead of in a loop, and near a K_obj
-that is known, so that nothing is searched.
+Satterthwaite, and the widening for disagreement. All arrays are evaluated at once, near the known K_obj, so
+no search is needed.
 """
 
 from __future__ import annotations
@@ -72,8 +72,8 @@ class Bounds:
 
 def motion(e: Elements, count: Array, x: Array, force: float, loads: int) -> InGrasp:
     """Deflections and forces of elements on separate springs x (N/mm) under `loads` even loads up to `force`
-    (N); `count` says how many there are of each. x broadcasts against (..., elements). The one place where a
-    synthesis asks the object's model for forces."""
+    (N); `count` is the number of each. x broadcasts against (..., elements). The only place where synthesis
+    uses the object's model for forces."""
     share = x / (e.stiffness + x)
     total = (count * e.stiffness * share).sum(axis=-1, keepdims=True)  # N per mm of approach
     load = force * (np.arange(loads) + 1.0) / loads
@@ -86,8 +86,8 @@ def motion(e: Elements, count: Array, x: Array, force: float, loads: int) -> InG
 def weights(
     m: InGrasp, e: Elements, known: Knowledge, count: Array, x: Array, noise: float
 ) -> tuple[Array, Array, Array]:
-    """v_i at a K_obj, in its parts by the readings' noise (V) and by belief in K and K_v; and what stands for
-    v_i in the lab's weights."""
+    """v_i at a K_obj, in its parts by the readings' noise (V) and by the uncertainty of K and K_v; and the
+    value that the lab's weights use for v_i."""
     by_noise = (noise * (e.stiffness + x) / e.signal) ** 2
     belief = Covariance.of(known.of_k, known.of_v, known.cross)
     weighed = belief.moderated(known.dof, count).along(m.f, m.s, x)
@@ -119,17 +119,17 @@ def bounds(
     e
         Elements, of shape (..., elements).
     count
-        How many there are of each; broadcasts with them.
+        Number of each; broadcasts with them.
     known
-        Errors of belief in them.
+        Stated errors of K and K_v.
     x
         True K_obj, N/mm; broadcasts with (..., elements), so that (points, 1, 1) gives (points, ...).
     noise
         Of one averaged reading, V.
     force, loads
-        Largest force on the array, N, and how many even loads up to it are read.
+        Largest force on the array, N, and the number of even loads read up to it.
     used
-        As `count`, where only some of those that carry the load are evaluated.
+        As `count`, if only some of the elements under load are evaluated.
     """
     m = motion(e, count, x, force, loads)
     count = count if used is None else used
@@ -182,13 +182,13 @@ LEVEL = 0.95
 REWEIGHTED = 6  # fits, each weighted at the K_obj of the one before; each shrinks the change by the interval
 PARABOLAS = 12  # through the misfit about its least
 MOST = 50.0  # steps that a parabola moves K_obj by
-HALVINGS = 20  # of the way from the best K_obj to FARTHEST times it: to 1e-6 of it
+HALVINGS = 20  # bisections between the best K_obj and FARTHEST times it: to 1e-6 of that range
 FARTHEST = 30.0  # an interval that reaches so many times K_obj is no interval
 
 
 @dataclass(frozen=True)
 class Covariance:
-    """Of ln f and ln s of every element by what is believed of it, or by estimates of that; one shape."""
+    """Covariance of every element's ln f and ln s, stated or estimated; of one shape."""
 
     ff: Array
     fs: Array
@@ -205,8 +205,8 @@ class Covariance:
         return np.maximum(f * f * self.ff + 2.0 * f * y * self.fs + y * y * self.ss, 0.0)
 
     def moderated(self, dof: float, count: Array) -> Covariance:
-        """Averaged with that of all elements in common, as the lab makes its weights; with two elements, and
-        where it is known, as it is. `count` says how many there are of each."""
+        """Averaged with the common covariance of all elements, as in the lab's weights; unchanged for two
+        elements or if it is known. `count` is the number of each."""
         if dof >= 1e6:
             return self
         total = np.broadcast_to(count, self.ss.shape).sum(axis=-1, keepdims=True)
@@ -322,7 +322,7 @@ class Evaluation:
         return x
 
     def _end(self, sign: float, best: Array, limit: Array, weights: Covariance) -> Array:
-        """Where the misfit passes the limit; 0 or inf where it does not."""
+        """K_obj at which the misfit passes the limit; 0 or inf if it does not."""
         inner, outer = np.zeros_like(best), np.full_like(best, np.log(FARTHEST))
         for _ in range(HALVINGS):
             middle = 0.5 * (inner + outer)

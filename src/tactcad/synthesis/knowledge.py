@@ -1,4 +1,4 @@
-"""What is known of an array's elements when it is used: relative errors of K and K_v, standard deviations.
+"""Knowledge of an array's elements in use: standard deviations of the relative errors of K and K_v.
 
 drawn       all dimensions lie within their tolerances
 inspected   the hinge's thickness is measured, the rest lies within tolerances
@@ -112,12 +112,12 @@ def reading_noise(design: Design) -> float:
 
 
 def knowledge(target: Target, design: Design, e: Elements, steps: Array | None = None) -> Knowledge:
-    """What `target.known` says of these elements.
+    """The elements' errors under `target.known`.
 
     Parameters
     ----------
     target, design
-        What is asked for, and the design's tolerances, read-out and calibration.
+        The target, and the design with its tolerances, read-out and calibration.
     e
         The elements.
     steps
@@ -147,8 +147,8 @@ def knowledge(target: Target, design: Design, e: Elements, steps: Array | None =
 
 
 def _dimensions(target: Target, design: Design, e: Elements) -> list[tuple[str, float, Array, float]]:
-    """Name, half-width, derivative of ln K and ln K_v, and the share that all elements have alike, of every
-    quantity that an uncalibrated array's elements are not known in."""
+    """Name, half-width, derivative of ln K and ln K_v, and the share common to all elements, of every
+    quantity that is uncertain in an uncalibrated array."""
     t = design.tolerance
     rows = []
     for name, parameter in as_built.DIMENSIONS.items():
@@ -164,7 +164,7 @@ def _dimensions(target: Target, design: Design, e: Elements) -> list[tuple[str, 
 
 
 def _softening(design: Design, e: Elements) -> dict[str, tuple[Array, Array]]:
-    """ln K and ln K_v of elements over those as drawn where the recast layer, or the clamp's turn, is at its
+    """Change of ln K and ln K_v from those as drawn with the recast layer, or the clamp's turn, at its
     limit."""
     t = design.tolerance
     cut = elements(as_built.without_layer(e.section, t.recast_layer), design)

@@ -2,9 +2,9 @@
 
 Arrays are built virtually (room `stacks`), with its correlations: one sheet, one machine's offset; each
 has one recast layer and one clamp that turns, anywhere up to their limits. Each is calibrated once, with as
-many degrees of freedom as its runs leave, and pressed on objects over the range. It meets the target where it
-goes together, all pads touch from the first load on, no stop closes and no hinge is overloaded under the
-largest force, and the interval that its own readings give is no wider than wanted at every object.
+many degrees of freedom as its runs leave, and pressed on objects over the range. An array meets the target if
+it can be assembled, all pads touch from the first load on, no stop closes and no hinge is overloaded under
+the largest force, and its interval is within the wanted half-width for every object.
 """
 
 from __future__ import annotations
@@ -45,8 +45,8 @@ class Yield:
     count, share   arrays made of each distribution, and the lower share
     interval       of the share, Clopper and Pearson's, 95 %
     distribution   the one that gives it
-    why            by what an array lacks, how many of that distribution lack it
-    half_widths    of every array's interval, largest over the range, relative; inf where it lacks anything
+    why            by failure, the number of arrays of that distribution with it
+    half_widths    of every array's interval, largest over the range, relative; inf if it lacks anything
                    else
     """
 
@@ -98,7 +98,7 @@ class MadeSensor:
 
     def kept_by(self, share: float, count: int, seed: int = SEED) -> float:
         """The least half-width (relative) that a share of the arrays keep, whichever their distribution; inf
-        where too many lack anything else."""
+        if too many lack anything else."""
         made_ = (self._built(name, count, np.inf, seed).half_widths for name in DECIDING)
         return max(float(np.quantile(widths, share, method="higher")) for widths in made_)
 
@@ -110,8 +110,7 @@ class MadeSensor:
         return Yield(count, met / count, of_share(met, count), name, why, widths)
 
     def _tried(self, name: Distribution, count: int, seed: int) -> tuple[dict[str, int], Array]:
-        """By what arrays lack, how many do; and their half-widths: made once, whatever they are held
-        against."""
+        """Number of arrays by failure, and their half-widths: computed once for any wanted half-width."""
         known = self.__dict__.setdefault("tried", {})
         if (name, count, seed) not in known:
             rng, why, widths = np.random.default_rng(seed), dict[str, int](), []
@@ -172,7 +171,7 @@ class MadeSensor:
     def softening(
         self, count: int, distribution: Distribution, rng: np.random.Generator
     ) -> tuple[Array, Array]:
-        """Recast layer, mm, and turn of the clamp, rad/(N mm), of arrays, (count, 1): alike in an array's
+        """Recast layer, mm, and turn of the clamp, rad/(N mm), of arrays, (count, 1): equal for an array's
         elements, and never negative."""
         t = self.design.tolerance
         share = np.abs(within_limits(rng.standard_normal((2, count, 1)), distribution))
@@ -211,7 +210,7 @@ class MadeSensor:
 
     @property
     def cannot_bear(self) -> str:
-        """Why the array as drawn does not bear the target's forces; "" where it does."""
+        """Why the array as drawn does not bear the target's forces; "" if it does."""
         e, (_, largest) = self.drawn, self.worst()
         gaps = np.array([stop_gap(self.layout, p) for p in self.layout.elements])
         arm = np.array([p.arm for p in self.layout.elements])
@@ -226,7 +225,7 @@ class MadeSensor:
         return self.target.known.how == "calibrated"
 
     def known(self, e: Elements) -> Knowledge:
-        """What is known of elements as made; uncalibrated it is what the drawing says, the same for all."""
+        """Knowledge of elements as made; if uncalibrated, the drawing's values, the same for all."""
         if self.calibrated:
             return knowledge(self.target, self.design, e, self.steps)
         return knowledge(self.target, self.design, self.drawn)
@@ -237,7 +236,7 @@ class MadeSensor:
         return np.max([(at.high - at.low) / 2.0 / x for x, at in zip(self.points, read)], axis=0)
 
     def read(self, e: Elements, rng: np.random.Generator) -> list[Evaluated]:
-        """What is said of arrays as made at each of `points`: known once, then read on every object."""
+        """Results of arrays as made at each of `points`: calibrated once, then read on every object."""
         known, grip, ones = self.known(e), self.target.grasp, np.ones(1)
         used, (K, signal, errors) = self._used(e, known, rng), self._believed(e, known, rng)
         n = e.stiffness.shape[1]
@@ -278,8 +277,9 @@ class MadeSensor:
     ) -> tuple[Array, Array, Covariance]:
         """K and K_v as believed, and the covariance of the errors as stated.
 
-        Calibrated, every run errs; their scatter is all that the lab knows of it. Otherwise elements are as
-        drawn, or as drawn with the thickness that was measured, and the stated variances are the true ones.
+        If calibrated, every run has an error, which the lab knows by the runs' scatter only. Otherwise
+        elements are as drawn, or as drawn with the measured thickness, and the stated variances are the true
+        ones.
         """
         if not self.calibrated:
             drawn = self.drawn

@@ -1,4 +1,4 @@
-"""Arrays on a body: what `tactcad stiffness --thickness` will say of them, and the search for the best.
+"""Arrays on a body: the result that `tactcad stiffness --thickness` would give, and the search for the best.
 
 The interval is that of lab/layer_fit.py, linear about the truth (`layer_fit.expected`): rigid pads that tilt
 and lift, coupled through the layer, its thickness within limits. The body's large strain, which the fit does
@@ -27,7 +27,7 @@ from .candidates import LEAST_STEPS, POINTS, Candidates, Stand, order
 from .knowledge import Knowledge, knowledge
 from .target import Target
 
-LOADS = 4  # that stand for all that are read
+LOADS = 4  # representatives of all loads that are read
 AROUND = 8  # directions in which the face falls away
 UNTRIED = 10.0  # depth of a candidate that is not tried: worse than all that are
 CLEAR = 0.3  # mm between facing pads at least: arms turn, and rules refuse less
@@ -67,8 +67,8 @@ def level(modulus: Array) -> Poses:
 
 @dataclass(frozen=True)
 class LayerGrasps:
-    """One array on the target's body: places (mm), K (N/mm) and K_v (V/mm) of its elements by number, what is
-    known of them, and the noise of a reading, V."""
+    """One array on the target's body: places (mm), K (N/mm) and K_v (V/mm) of its elements by number, their
+    uncertainties, and the noise of a reading, V."""
 
     target: Target
     design: Design
@@ -98,7 +98,7 @@ class LayerGrasps:
 
     @cached_property
     def calibration(self) -> Sensitivity:
-        """What is known of each element, as a lab's calibration would have it."""
+        """Each element's values and errors, in the form of a lab's calibration."""
         k, one, rig = self.known, np.ones(len(self.x)), self.design.calibration
         se, se_v = np.sqrt(k.of_k * one), np.sqrt(k.of_v * one)
         cell, half = (
@@ -151,7 +151,7 @@ class LayerGrasps:
 
 
 def of_elements(known: Knowledge, pick: Callable[[Array], Array]) -> Knowledge:
-    """What is known, of the elements that `pick` takes of arrays."""
+    """The knowledge of the arrays' elements chosen by `pick`."""
     place, common = known.place, known.common
     return replace(
         known,
@@ -164,7 +164,7 @@ def of_elements(known: Knowledge, pick: Callable[[Array], Array]) -> Knowledge:
 
 
 class CandidatesOnLayer(Candidates):
-    """Candidates whose interval and forces are those of rigid pads on a body."""
+    """Candidates with interval and forces of rigid pads on a body."""
 
     def feel(self) -> tuple[Array, Array, Array]:
         """As on springs where other limits are broken anyway, and then too deep."""
@@ -199,7 +199,8 @@ class CandidatesOnLayer(Candidates):
 
 
 def others(stand: Stand, rng: np.random.Generator) -> Iterator[Stand]:
-    """The stand with kinds dealt out otherwise, another pitch along or across the rows, or other pads."""
+    """Variants of the stand: another order of kinds, another pitch along or across the rows, or other
+    pads."""
     for pattern in rng.choice(PATTERNS, 4, replace=False):
         if pattern != stand.pattern:
             yield replace(stand, pattern=int(pattern))

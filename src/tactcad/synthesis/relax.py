@@ -8,12 +8,10 @@ from typing import Any
 
 from .target import TABLES, Target
 
-# Not tried, there is no more or less of them: other sheets, alloys, gauges and powers, known.how, another
-# target.base.
-# Each field that can be eased: which way one step eases it. A step is 10 %, or one of what comes in ones, or
-# 0.01 mm of a hinge.
+# Sheets, alloys, gauges, powers, known.how and target.base are not tried: they have no order. For each field
+# that can be eased, the direction of an easing step: 10 %, or 1 for a count, or 0.01 mm for a hinge.
 STEP, HINGE_STEP = 0.10, 0.01
-FURTHEST = 8.0  # times, a field is eased at most before it is said that it alone does not help
+FURTHEST = 8.0  # largest factor by which a field is eased before it is reported not to help alone
 CLOSE = 0.02  # relative; the least change is found to within this
 
 
@@ -148,17 +146,17 @@ def least_change(target: Target, name: str, possible: Callable[[Target], bool]) 
     Parameters
     ----------
     target
-        Impossible as it stands.
+        An impossible target.
     name
         The field, of EASES.
     possible
-        Whether a target is; called for each value tried.
+        Whether a target is possible; called for each value tried.
 
     Returns
     -------
     tuple or None
-        The value and the target with it, for which `possible` holds, while for one CLOSE nearer it does not;
-        None where FURTHEST times does not do.
+        The value and the target with it, for which `possible` holds, but not for one nearer by CLOSE; None if
+        FURTHEST times the value does not suffice.
     """
     low, high = 1.0, FURTHEST
     furthest = EASES[name](target, high)

@@ -1,4 +1,4 @@
-"""What spreads the estimate of K_obj: Sobol's first and total shares of its variance, by what errs.
+"""Causes of the spread of K_obj: Sobol's first and total shares of its variance, by cause.
 
 Arrays are made, known and read once each; y = ln of the estimate over the true K_obj. First and total
 effects are Jansen's estimators (Saltelli et al. 2010, Comput. Phys. Commun. 181, 259, table 2 c and f) with
@@ -83,12 +83,12 @@ def variance_shares(sensor: MadeSensor, count: int = COUNT, seed: int = SEED) ->
     again = rng.integers(count, size=(RESAMPLED, count))
     every = np.vstack([np.arange(count), again])  # the sample itself, then its bootstrap
     variance = np.concatenate([y_a[every], y_b[every]], axis=1).var(axis=1)
-    out = [Share(PADS, 0.0, 0.0)]  # slopes do not see them once all pads touch, which every array is held to
+    out = [Share(PADS, 0.0, 0.0)]  # slopes do not depend on them once all pads touch, as every array must
     for name in a:
         y_c = estimate({**a, name: b[name]})
-        # c, unlike table 2 b, is steady where a single cause has nearly all of the variance
+        # formula c, unlike b of table 2, is stable if a single cause has nearly all of the variance
         total = ((y_a - y_c) ** 2 / 2.0)[every].mean(axis=1) / variance
-        # no cause has more alone than with others: what the sample says beyond that is chance
+        # a first share never exceeds the total one: any excess is sampling error
         first = np.clip(1.0 - ((y_b - y_c) ** 2 / 2.0)[every].mean(axis=1) / variance, 0.0, total)
         if total[0] > LEAST:
             errors = float(first[1:].std()), float(total[1:].std())
@@ -135,6 +135,6 @@ def _estimator(sensor: MadeSensor, rest: dict[str, Array]) -> Callable[[dict[str
 
 
 def _of_belief(sensor: MadeSensor) -> tuple[str, ...]:
-    """Causes by what is known of the elements."""
+    """Causes by the knowledge of the elements."""
     how = sensor.target.known.how
     return {"calibrated": (CALIBRATION,), "inspected": (GAUGES, INSPECTION), "drawn": (GAUGES,)}[how]

@@ -1,5 +1,5 @@
-"""From a target to a synthesis: first the answer, the chosen design and the bounds that it lies on, or that
-there is none; then what limits it and alternatives, or the least changes, while there is time."""
+"""From a target to a synthesis. First the answer: the chosen design and the bounds it lies on, or that there
+is none. Then its limits and alternatives, or the least changes, as time allows."""
 
 from __future__ import annotations
 
@@ -37,10 +37,10 @@ MARGINS = (1.0, 1.1, 1.2, 1.35, 1.5, 1.75, 2.0)  # between wanted and nominal ha
 CURVE = 25  # points of the object's range in the report
 RATIOS = (2.0, 4.0, 6.0, 10.0, 16.0, 30.0)  # K_r/K_m; the paper proposes about 10
 PAPERS_RATIO = 10.0
-SAME_RATIO = 0.03  # relative, within which a ratio counts as the asked one
+SAME_RATIO = 0.03  # relative deviation within which a ratio counts as the one asked for
 GAIN = 0.01  # relative gain below which an eased field is not said to limit
-QUICK = 2e-3  # relative; searches beside the answer stop there
-# s from the beginning on, where nothing else is asked: the search for the answer, and all before the report;
+QUICK = 2e-3  # relative; all searches but the answer's stop there
+# s from the beginning on, if nothing else is asked: the search for the answer, and all before the report;
 # with bounds, yield and report they keep 30 s and 2 minutes.
 SEARCHING, IN_ALL = 20.0, 105.0
 # The same with a body under the pads: a candidate costs milliseconds, and so do arrays made.
@@ -68,7 +68,7 @@ class TimeIsOver(Exception):
 class Alternative:
     """One design of the front.
 
-    name, what   of the entry, and what was held beside the interval
+    name, what   its figure, and what was kept besides the interval
     found        its candidate
     half_width   relative, nominal, largest over the range
     """
@@ -127,14 +127,14 @@ class Synthesis:
 
     target      as asked
     found       the chosen candidate
-    wanted      half-width that arrays must keep, relative; without one asked, the least that
+    wanted      half-width that arrays must keep, relative; if none is asked for, the least that
                 `target.share` of them keep
     made        its yield
     solid       K of every element by solid elements, N/mm
-    met         whether the target is, as far as it asks for anything
-    bounds      what the answer lies on
-    left_out    parts of the report that there was no time for
-    unknown     what of the report is not known, and why
+    met         whether every wish of the target is met
+    bounds      bounds that the answer lies on
+    left_out    parts of the report that time did not allow
+    unknown     unknown entries of the report, with reasons
     binding     fields whose easing narrows the interval, the bounds apart
     """
 
@@ -172,7 +172,8 @@ class Synthesis:
 
     @cached_property
     def base_half_width(self) -> float | None:
-        """Of the base design as it is, under the same forces and knowledge; None beyond the estimator."""
+        """Half-width of the unchanged base design, under the same forces and knowledge; None outside the
+        estimator's range."""
         sensor = MadeSensor(self.target, self.target.base)
         if not np.isfinite(sensor.drawn.stiffness).all():
             return None
@@ -184,7 +185,7 @@ class Synthesis:
 
     @cached_property
     def base_breaks(self) -> list[str]:
-        """By what the base design as it is does not meet the target."""
+        """Why the unchanged base design misses the target."""
         return bounds.base_breaks(self.target)
 
     @cached_property
@@ -204,8 +205,8 @@ class Synthesis:
         return float(K.max() / K.min())
 
     def coupling(self, share: float) -> float:
-        """By how much, relative, K_obj is believed too large at the middle of the range where the pads are
-        coupled by a share of a half-space's and `--coupling 0` is said."""
+        """Relative excess of K_obj at the middle of the range if the pads are coupled by a share of a
+        half-space's coupling and `--coupling 0` is given."""
         s, grip, alone = self.sensor, self.target.grasp, np.eye(len(self.sensor.drawn.stiffness))
         x, shares = float(np.median(s.points)), share * half_space_shares(s) * (1.0 - alone) + alone
         felt = coupled_estimate(s.drawn, s.known(s.drawn), x, s.noise, grip.force, grip.loads, shares)
@@ -243,11 +244,11 @@ def attempt(
     target
         What is asked for.
     arrays
-        To be made of each distribution for the yield.
+        Number made of each distribution for the yield.
     within
-        Relative, by how much more search might change the answer.
+        Relative change of the answer at which the search may stop.
     until
-        Of `time.perf_counter`, when the best yet is taken.
+        Of `time.perf_counter`; then the best so far is taken.
     near, evolve
         A candidate of nearly the same target, and whether more is looked at than what lies around it. With
         one, only what the least change of a field needs is found.
@@ -288,7 +289,7 @@ def _in_turn(
     until: float,
     left: int,
 ) -> Found:
-    """The search on one of the `left` stands that share the time until then."""
+    """The search on one of `left` stands that share the remaining time."""
     now, start = time.perf_counter(), bounds.numbers(near, stand) if near else None
     until = now + max(until - now, 0.0) * min(1.0, _cores() / left)
     return search(stand, goal, rules=rules, start=start, evolve=evolve, within=within, until=until)
@@ -311,7 +312,7 @@ def _worth(got: Synthesis) -> tuple[bool, bool, float, float]:
 
 
 def tries(target: Target) -> list[tuple[float, list[Stand]]]:
-    """What is searched until the target is met: margins between wanted and nominal half-width, and stands."""
+    """Searches to run until the target is met: margins between wanted and nominal half-width, and stands."""
     everything, least = stands(target), target.target.least
     if target.target.half_width is not None and least in ("room", "cut", "kinds"):
         return [(margin, everything) for margin in MARGINS]
@@ -331,7 +332,7 @@ def _made(target: Target, found: Found, arrays: int, only_met: bool) -> tuple[Yi
     sensor = MadeSensor(target, found.design)
     if asked is not None:
         return sensor.built(arrays, asked / 100.0), asked / 100.0
-    # a little above the least that enough of them keep, so that the share asked for is kept for sure
+    # slightly above the least that enough of them keep, so that rounding cannot lose the share asked for
     wanted = sensor.kept_by(1.0 - (1.0 - target.target.share) / 2.0, arrays)
     wanted = float(f"{1.005 * wanted:.3g}") if np.isfinite(wanted) else found.half_width
     return sensor.built(arrays, wanted), wanted
@@ -355,20 +356,20 @@ def design(
     arrays
         To be made of each distribution for the yield.
     seconds
-        Time to take: the best design found by then, and what of the report is. The bounds and the yield are
+        Time budget: the best design by then, and the parts of the report done by then. Bounds and yield are
         never left out.
     tell
-        Called with (done, total, what comes next).
+        Called with (done, total, name of the next task).
     answered
-        Called with the answer, before what the report tells beside it is begun.
+        Called with the answer, before the rest of the report is begun.
     ending
-        Seconds that are to be left for what the caller does with the result; asked after `answered`.
+        Returns the seconds to leave for the caller's own work; called after `answered`.
 
     Returns
     -------
     Synthesis
-        `met` says whether the target is; where it is not, `changes` has the least change of each field that
-        alone would make it possible.
+        `met`: whether the target is met; if not, `changes` has for each field the least change that alone
+        would make the target possible.
     """
     started = time.perf_counter()
     tell(0, 1, "searching")
@@ -401,7 +402,7 @@ def design(
 
 
 def _told(got: Synthesis, tasks: Sequence[Task], done: dict[int, Any]) -> Synthesis:
-    """The answer with what was found beside it, in the order of the tasks whichever came first."""
+    """The answer with the other results, in the order of the tasks, not of their completion."""
     part = [task.name.partition(": ")[0] for task in tasks]
     found: dict[str, list] = {name: [] for name in part}
     for n in sorted(done):
@@ -424,7 +425,7 @@ def _told(got: Synthesis, tasks: Sequence[Task], done: dict[int, Any]) -> Synthe
 
 
 def _beside(got: Synthesis) -> Iterator[Task]:
-    """What the report tells beside the answer, what matters most first."""
+    """The report's other tasks, most important first."""
     on = (*relax.NOT_NARROWING, *(b.field for b in got.bounds))
     if not got.target.on_layer:  # they are those of springs
         yield Task("variance shares", lambda: tuple(variance_shares(got.sensor)))
@@ -446,7 +447,7 @@ def _solid(got: Synthesis) -> tuple[float, ...] | str:
 
 
 def _near(target: Target, found: Found, goal: Goal = bounds.narrowest) -> Found:
-    """The best for nearly the same target: around the found one; from anywhere where nothing is there."""
+    """The best for nearly the same target: near the found one; a full search if there is none."""
     some, until = bounds.near(target, found), bounds.soon(target)
     for evolve in (False,) if target.on_layer else (False, True):
         near = [

@@ -1,4 +1,4 @@
-"""What is to be felt and with what: one frozen dataclass a table of a target file.
+"""A target file: one frozen dataclass a table.
 
 Lengths in mm, forces in N, stiffnesses in N/mm, stresses in MPa.
 """
@@ -70,7 +70,7 @@ class Wish:
 
 @dataclass(frozen=True)
 class Object:
-    """[object]: what is felt, as stiffness under one pad, or as modulus and thickness."""
+    """[object]: the object, by its stiffness under one pad, or by modulus and thickness."""
 
     stiffness: tuple[float, ...] | None = given(
         _range(Number("N/mm", 1e-3, 1e4, "K_obj"), "least and largest stiffness under one pad"),
@@ -122,7 +122,7 @@ class Room:
 
 @dataclass(frozen=True)
 class Stock:
-    """[stock]: what is at hand to make it."""
+    """[stock]: available sheets, alloys and gauges."""
 
     sheets: tuple[float, ...] = given(
         Numbers(_spec(Sheet, "thickness"), 1, 8, "sheet thicknesses"), None, "the base design's"
@@ -147,7 +147,7 @@ class Stock:
 
 @dataclass(frozen=True)
 class Kinds:
-    """[elements]: what may be chosen of them."""
+    """[elements]: ranges of the elements' dimensions."""
 
     arms: tuple[float, ...] = given(
         _range(Number("mm", 0.1, 100, "arm length"), "shortest and longest arm"), (4.0, 8.0)
@@ -166,7 +166,7 @@ class Kinds:
 
 @dataclass(frozen=True)
 class Known:
-    """[known]: what is known of each element when the array is used."""
+    """[known]: how well each element is known in use."""
 
     how: str = given(
         OneOf(KNOWN, "from the drawing, from an inspection, or from a calibration"), "calibrated"
@@ -212,7 +212,7 @@ class Target:
 
     @property
     def stiffness_range(self) -> tuple[float, float]:
-        """Least and largest K_obj, N/mm; under one level pad of the base's where the object is a body."""
+        """Least and largest K_obj, N/mm; if the object is a body, under one level pad of the base's."""
         return self.range_of(self.base)
 
     def range_of(self, design: Design) -> tuple[float, float]:

@@ -110,7 +110,7 @@ def _base_name(got: Synthesis) -> str:
 
 
 def _object(got: Synthesis) -> str:
-    """What is pressed, where it is a body: "0.4 to 1.4 MPa, a layer of 10 mm within 5 %, inclined up to 3
+    """The object, if it is a body: "0.4 to 1.4 MPa, a layer of 10 mm within 5 %, inclined up to 3
     degrees"."""
     if not got.target.on_layer:
         return ""
@@ -122,8 +122,8 @@ def _object(got: Synthesis) -> str:
 
 
 def _inclined(got: Synthesis) -> list[dict[str, Any]]:
-    """Half-width over both angles of the face, degrees, at the softest, middle and stiffest object; None
-    where an element would be pressed beyond what it bears."""
+    """Half-width over both angles of the face, degrees, at the softest, middle and stiffest object; None if
+    an element would be overloaded."""
     most = got.target.object.angle[1]
     if not most:
         return []
@@ -171,9 +171,8 @@ def _inclined_part(r: dict[str, Any]) -> str:
 
 
 def _beyond(got: Synthesis) -> dict[str, float]:
-    """By limit that the best candidate does not keep, how far beyond it is, relative; its half-width only
-    where it keeps all others, and nothing that hangs on its elements where the estimator does not reach
-    them."""
+    """Relative excess of the best candidate over each limit that it misses; its half-width only if it keeps
+    all others, and nothing that depends on its elements if they are out of the estimator's range."""
     c = got.found.candidate
     misses = {name: float(v[0]) for name, v in c.misses.items()}
     if c.out_of_range:
@@ -186,7 +185,7 @@ def _beyond(got: Synthesis) -> dict[str, float]:
 
 
 def _room(got: Synthesis) -> dict[str, str]:
-    """By size of the room that the answer lies on or misses, the base's fields that decide it."""
+    """For each size of the room that the answer lies on or misses, the base's fields that decide it."""
     names = [b.field for b in got.bounds] + list(_beyond(got))
     sides = [name.removeprefix("room.") for name in names if name.removeprefix("room.") in SIZES]
     room, design = got.target.room, got.found.design
@@ -372,9 +371,9 @@ def _pressed_how(r: dict[str, Any]) -> str:
         )
     lines = ", ".join(f"{percent(c['share'])}: {c['shift']:+.1%}" for c in r["coupling"][1:])
     return (
-        "Pads are taken to press on separate springs. Where the object couples them, K_obj is believed "
-        f"larger by so much of itself, at a share of a half-space's coupling of {lines}; <code>tactcad "
-        "stiffness</code> widens its interval for that unless <code>--coupling</code> says what is known."
+        "Pads are taken to press on separate springs. If the object couples them, K_obj comes out too "
+        f"large, at a share of a half-space's coupling of {lines}; <code>tactcad stiffness</code> widens "
+        "its interval for that unless <code>--coupling</code> gives the share."
     )
 
 
@@ -384,7 +383,7 @@ def _read_from(r: dict[str, Any]) -> str:
 
 
 def _ticks(low: float, high: float) -> list[float]:
-    """Both ends, and round numbers between that stand clear of them."""
+    """Both ends, and round numbers between that do not touch them."""
     steps = [a * 10.0**n for n in range(-4, 5) for a in (1, 1.5, 2, 3, 5, 7)]
     clear = (high / low) ** 0.06
     return [low, *(v for v in steps if low * clear <= v <= high / clear), high]
@@ -470,7 +469,7 @@ def _ratio_part(r: dict[str, Any]) -> str:
         "diminishing returns from 10 "
         "on. Here a stiffer reference is also read with less signal and calibrated less well "
         "behind the load cell, a softer "
-        "element is held back by its stop and its strength, and both sides are weighed over the "
+        "element is limited by its stop and its strength, and both sides are weighed over the "
         "whole range.</p>"
     )
 
@@ -531,7 +530,7 @@ def answer(r: dict[str, Any]) -> str:
     if r["met"] is False:
         rules = "; ".join(line for line in base["breaks"] if line.startswith("rule "))
         told = f" {base['name']} as it is breaks {rules}." if rules else ""
-        return f"Impossible as asked: the best there is {_why_not(r)}.{told}"
+        return f"Impossible as asked: the best candidate {_why_not(r)}.{told}"
     e = r["elements"]
     if base["breaks"]:
         than = f"{base['name']} as it is does not meet the target: {'; '.join(base['breaks'])}"
@@ -576,7 +575,7 @@ def no_other_change(got: Synthesis) -> str:
 
 
 def refuse_taken(out: str | Path) -> None:
-    """Raise InputError where `out` is no new or empty folder, which is replaced in one step."""
+    """Raise InputError if `out` is no new or empty folder, which is replaced in one step."""
     path = absolute(out)
     if os.path.islink(path):
         legal = "the folder that it leads to, or a new folder"
@@ -604,7 +603,7 @@ def refuse_unwritable(out: str | Path) -> None:
 def write(got: Synthesis, out: str | Path) -> None:
     """design.toml, report.json and report.html: the whole folder in one step, or nothing.
 
-    Raises InputError where `out` is taken or cannot be written to, CheckFailure where there is no room.
+    Raises InputError if `out` is taken or cannot be written to, CheckFailure if there is no room.
     """
     folder = absolute(out)
     refuse_taken(out)
@@ -618,7 +617,7 @@ def write(got: Synthesis, out: str | Path) -> None:
             for name, data in files.items():
                 (making / name).write_bytes(data)
                 flush_entry(making / name)
-            making.rename(folder)  # an empty folder gives way, any other refuses
+            making.rename(folder)  # an empty folder is replaced, any other is refused
             flush_entry(folder.parent)
     except OSError as error:
         raise refusal(str(out), error) from error

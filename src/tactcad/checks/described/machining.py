@@ -41,7 +41,7 @@ def check_machining(part: Part, limit: Machining) -> list[Finding]:
 
 
 def _thin(check: str, part: Part, at: Vector, wall: float, limit: Machining, what: str) -> Iterator[Finding]:
-    """A wall is flagged where it is thinner than advised, and fails where no workshop would make it."""
+    """A wall is flagged if it is thinner than advised, and fails if no workshop would make it."""
     message = f"{what}, advised {limit.wall:g}, at least {limit.wall_least:g}"
     for finding in at_least(check, part.part_no, wall, limit.wall, message, at):
         yield finding if wall < limit.wall_least - SAME else replace(finding, severity="flag")

@@ -38,7 +38,7 @@ def assembly_sheets(
     """All sheets of a scene, their layout clean: `rows` are its bill of materials, `shapes` the solids by
     part number, each in its own frame (mm).
 
-    Raises CheckFailure where the scene is larger than the sheet at 1:100, or a view leaves no clean layout.
+    Raises CheckFailure if the scene is larger than the sheet at 1:100, or a view leaves no clean layout.
     """
     name = f"Assembly: {scene.name.replace('-', ' ')}"
     block = block_of(design.design, f"{design.name}-{scene.name}", name, draft, sample)
@@ -90,7 +90,7 @@ class AssemblyOrder:
 def assembly_written(order: AssemblyOrder) -> Written:
     """All sheets of the scene as PDF and SVG.
 
-    Raises CheckFailure where they cannot be drawn, or differ from the scene when read back.
+    Raises CheckFailure if they cannot be drawn, or differ from the scene when read back.
     """
     from tactcad.solids.step import from_bytes
 
@@ -105,8 +105,8 @@ def assembly_written(order: AssemblyOrder) -> Written:
 
 
 def assembly_faults(pdf: bytes, number: str, revision: str, rows: Sequence[BomRow]) -> list[str]:
-    """What is wrong with an assembly's PDF: pages without number, revision or sheet count; items that have a
-    solid and not just one balloon; rows of the bill that are not in the parts list as the bill has them."""
+    """Faults of an assembly's PDF: pages without number, revision or sheet count; solid items without exactly
+    one balloon; rows of the bill that differ in the parts list."""
     pages = pdf_runs(pdf)
     wrong = []
     for n, runs in enumerate(pages, start=1):

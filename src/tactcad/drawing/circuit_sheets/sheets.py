@@ -58,7 +58,7 @@ class CircuitOrder:
 def circuit_written(order: CircuitOrder) -> Written:
     """All its sheets as PDF and SVG.
 
-    Raises CheckFailure where a layout is not clean, or the PDF lacks a component when read back.
+    Raises CheckFailure if a layout is not clean, or the PDF lacks a component when read back.
     """
     design = taken_as(order.design, Design, "the circuit's sheets")
     sheets = circuit_sheets(design, order.draft, order.sample)
@@ -73,7 +73,7 @@ def circuit_written(order: CircuitOrder) -> Written:
 
 
 def circuit_sheets(design: Design, draft: bool = False, sample: bool = False) -> list[DrawnSheet]:
-    """Every sheet, its layout clean; raises CheckFailure where it is not."""
+    """Every sheet, its layout clean; raises CheckFailure if it is not."""
     layout = Layout(design)
     circuit = netlist(layout)
     rows = [

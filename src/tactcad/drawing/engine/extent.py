@@ -31,7 +31,7 @@ def projected_box(placements: Iterable[Placement], right: Vector, eye: Vector) -
     up = (up[0] / size, up[1] / size, up[2] / size)
     axes = np.array([right, up])
     points: dict[str, NDArray[np.float64]] = {}
-    spans: dict[tuple, Box] = {}  # equal parts turned alike differ by their place alone
+    spans: dict[tuple, Box] = {}  # equal parts with equal rotation differ by their place only
     corners = []
     for p in placements:
         key = (p.part.part_no, p.rotation)
@@ -98,6 +98,6 @@ def part_box(part: Part) -> tuple[Vector, Vector]:
 
 
 def box_of(p: Placement) -> Extent:
-    """Of a placed part, in the scene; exact where it is not turned by odd angles."""
+    """Of a placed part, in the scene; exact if it is not turned by odd angles."""
     corners = np.array([placed(p, corner) for corner in box_corners(part_box(p.part))])
     return np.array([corners.min(axis=0), corners.max(axis=0)])

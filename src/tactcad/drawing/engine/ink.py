@@ -56,7 +56,7 @@ _FILE = Path("mpl-data", "fonts", "ttf", "DejaVuSans.ttf")
 
 
 def font_file() -> Path:
-    """The font's file in the matplotlib package. Raises CheckFailure where it is missing."""
+    """The font's file in the matplotlib package. Raises CheckFailure if it is missing."""
     spec = find_spec("matplotlib")
     for folder in (spec.submodule_search_locations if spec else None) or ():
         if (Path(folder) / _FILE).is_file():
@@ -118,7 +118,7 @@ def width(text: str, height: float) -> float:
 def ink_box(text: str, height: float) -> Box:
     """x_min, y_min, x_max, y_max of the ink (mm), baseline from (0, 0); a text of blanks has no area.
 
-    Raises CheckFailure where the font lacks a letter.
+    Raises CheckFailure if the font lacks a letter.
     """
     pen, corners = 0.0, []
     for letter in text:
@@ -131,7 +131,7 @@ def ink_box(text: str, height: float) -> Box:
 
 @dataclass(frozen=True)
 class Stroke:
-    """A line through points; closed where the last one joins the first."""
+    """A line through points; closed if the last one joins the first."""
 
     points: tuple[Point, ...]
     line: LineType = VISIBLE
@@ -240,7 +240,7 @@ class Hatch:
     @cached_property
     def _lines(self) -> tuple[Chord, ...]:
         step = self.spacing * sqrt(2.0)
-        met: dict[int, list[float]] = {}  # x + y where the outlines meet line k
+        met: dict[int, list[float]] = {}  # x + y at the outlines' intersections with line k
         for (ax, ay), (bx, by) in self.outlines():
             a, b = (ay - ax) / step, (by - bx) / step
             for k in range(ceil(min(a, b)), ceil(max(a, b))):

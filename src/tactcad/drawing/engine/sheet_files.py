@@ -1,5 +1,5 @@
-"""Sheets as files, at the paper's size: one vector PDF, the same bytes in every process, with texts that
-readers find again; and SVG, whose texts are held to the width that they have in the PDF.
+"""Sheets as files, at the paper's size: one vector PDF, the same bytes in every process, with searchable
+texts; and SVG, with texts of the same width as in the PDF.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ class Written:
 def pdf_bytes(sheets: Sequence[DrawnSheet], title: str, author: str, date: str) -> bytes:
     """The sheets, a page each at the paper's size, dated midnight (UTC) of `date` (YYYY-MM-DD).
 
-    Raises CheckFailure where the font is missing.
+    Raises CheckFailure if the font is missing.
     """
     from reportlab.pdfbase import pdfmetrics
     from reportlab.pdfbase.ttfonts import TTFont

@@ -23,7 +23,7 @@ ALIKE = 1e-6  # mm: coordinates nearer than this are one
 class Coordinate:
     """A feature's coordinate along one axis of the part, a point of it in the part (x, y, z), and an edge's
     other end; whether it is a mere corner between edges. None is the coordinate 0. `states` names the part's
-    characteristic that it is."""
+    characteristic for it."""
 
     name: str
     variable: Variable | None
@@ -34,7 +34,7 @@ class Coordinate:
 
     @property
     def contour(self) -> Owner | None:
-        """What it belongs to."""
+        """Its owner."""
         return self.variable.contour if self.variable else None
 
     @property
@@ -94,7 +94,7 @@ class Sketch:
         return True
 
     def stating(self, name: str, rows: tuple[Measure, ...], plain: str = "") -> Dimension:
-        """The dimension that states the characteristic of that name; a plain one where none is left."""
+        """The dimension that states the characteristic of that name; a plain one if none is left."""
         c = self.unstated.get(name)
         if c is None:
             return Dimension(plain or name, rows)
@@ -105,7 +105,7 @@ class Sketch:
 
     def must(self, dimension: Dimension) -> Dimension:
         """A dimension that has to determine something new, with the limits of the characteristic of its name.
-        Raises CheckFailure where it repeats others."""
+        Raises CheckFailure if it repeats others."""
         if dimension.characteristic is None and dimension.name in self.unstated:
             s = self.stating(dimension.name, dimension.rows)
             dimension = replace(dimension, limits=s.limits, key=s.key, characteristic=s.characteristic)

@@ -1,4 +1,4 @@
-"""Cells in a plane: islands on four foil beams, of two stiffnesses in turn, each with a magnet over a
+"""Cells in a plane: islands on four foil beams, of two alternating stiffnesses, each with a magnet over a
 three-axis Hall chip (the paper's Figure 1(b))."""
 
 from __future__ import annotations

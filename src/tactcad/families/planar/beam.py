@@ -124,7 +124,7 @@ def fit() -> dict[str, Any]:
 
 
 def out_of_range(beam: FoilBeam) -> str:
-    """What of the beam lies outside the fit's range, with what is legal; empty where nothing does."""
+    """Dimensions of the beam outside the fit's range, with the legal range; empty if none is."""
     r = fit()["range"]
     for name, value in (
         ("w/s", beam.width / beam.length),

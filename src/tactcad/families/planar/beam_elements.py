@@ -1,7 +1,7 @@
 """A foil beam with filleted roots between a rigid island and a clamped frame, by solid elements.
 
 The beam is symmetric in all three planes through its middle, so its ends' six relative motions do not mix,
-and each is solved on an eighth of it: Lagrange elements of order 4 in the foil's plane and quadratic
+and each is solved on an eighth of the beam: Lagrange elements of order 4 in the foil's plane and quadratic
 through half its thickness (tactcad.fem.space). The root's fillet is tangent to the rigid edge.
 """
 

@@ -109,7 +109,7 @@ class Cell:
         """c of F = K z (1 + c z^2), 1/mm2, of the island pressed straight down.
 
         A guided end that sinks by z stretches its beam by 3 z^2/(5 s), the integral of half the slope's
-        square of z (3 u^2 - 2 u^3); the energy of what is held of it is added.
+        square of z (3 u^2 - 2 u^3); the energy of the constrained part of that stretch is added.
         """
         k = closed.stiffness(self.beam)["axial"] * len(self.roots) * self.held
         return float(2.0 * k * (3.0 / (5.0 * self.beam.length)) ** 2 / self.stiffness[2, 2])

@@ -127,8 +127,8 @@ class Stacked:
 
 
 def figures(arrays: Stacked) -> dict[str, np.ndarray]:
-    """Stiffness of every cell as built, N/mm: K goes with t^3, the foil's thickness being one cause for
-    all; and how far its pad stands back from the highest, um."""
+    """Stiffness of every cell as built, N/mm: K goes with t^3, and the foil's thickness is common to all; and
+    the distance of its pad below the highest, um."""
     from .sensor import rows
 
     at = np.array([row.stiffness for row in rows(arrays.layout, "", None)])
@@ -143,7 +143,7 @@ def figures(arrays: Stacked) -> dict[str, np.ndarray]:
 def limits(
     layout: PlanarLayout, _scenes: Sequence[Scene]
 ) -> tuple[dict[str, DimensionLimits], list[Requirement]]:
-    """Variables of the layers and of every magnet and chip, and what must hold for them."""
+    """Variables of the layers, magnets and chips, and their requirements."""
     d, tol, n = layout.design, layout.design.tolerance, len(layout.elements)
     name, t = d.name, layout.design.planar.thickness
     foil = d.foil_tolerance
@@ -218,7 +218,7 @@ def _deviations(part: Part, limit: str, who: str, pieces: int = 1) -> DimensionL
 
 
 def _layers(layout: PlanarLayout) -> dict[str, Part]:
-    """Layers that slip over the dowels, by the names of their variables; none of bonded ones."""
+    """Layers that slip over the dowels, by the names of their variables; none if bonded."""
     if not layout.screwed:
         return {}
     return {
@@ -230,8 +230,8 @@ def _layers(layout: PlanarLayout) -> dict[str, Part]:
 
 
 def _fits(layout: PlanarLayout) -> Iterator[DimensionLimits]:
-    """Holes and spigots, holes and dowels; how far the two dowel holes of a layer stand off their places,
-    along the line between them."""
+    """Fits of holes and spigots, and of holes and dowels; the error of distance between a layer's two dowel
+    holes."""
     n = len(layout.elements)
     yield _deviations(parts.foil(layout), SPIGOT, "foil", n)
     yield _deviations(parts.post(layout), SPIGOT, "post", n)

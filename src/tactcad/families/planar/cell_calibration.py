@@ -1,12 +1,12 @@
 """From loads in three directions to every cell's 3 x 3 matrix, with intervals, nonlinearity and crosstalk.
 
 A run is one set-up: weights on one pad along x, along y or straight down. Its slope, field over load, is one
-column of the matrix. Set-ups differ: a weight's line is not quite the axis, which looks like a force across
-it. These errors, in N a N, have one law for all cells of a kind. In part they are each cell's own, and their
-covariance is pooled over the cells; in part all cells of a run share them, where the array is turned once
+column of the matrix. Set-ups differ: a weight's line is not exactly the axis, which acts like a force across
+it. These errors, in N a N, follow one law for all cells of a kind. One part is each cell's own, with its
+covariance pooled over the cells; another part is shared by all cells of a run, if the array is turned once
 for all of them, and then only the runs count.
 
-What bends is taken off by the design (`cell_response.bend`). Tilted magnets bend otherwise: what is left of a
+The design's nonlinearity (`cell_response.bend`) is subtracted. Tilted magnets have another one: the rest of a
 run is m q + c q (q - q_full), so that a column m holds at the largest load, and c is common to its runs.
 """
 
@@ -92,7 +92,7 @@ def calibrate(layout: PlanarLayout, path: str | Path, level: float) -> list[Cell
 
 
 def refuse_strangers(layout: PlanarLayout, rows: Rows) -> None:
-    """Raise InputError where the design has no such cell."""
+    """Raise InputError if the design has no such cell."""
     number, count = rows.values(ELEMENT.name), len(layout.elements)
     for i in np.flatnonzero(number > count)[:1]:
         raise InputError(
@@ -104,7 +104,7 @@ def refuse_strangers(layout: PlanarLayout, rows: Rows) -> None:
 
 
 def refuse_overrange(layout: PlanarLayout, rows: Rows) -> None:
-    """Raise InputError where a chip reads its full scale: what it felt is not known."""
+    """Raise InputError if a chip reads its full scale: what it felt is not known."""
     for f in FIELD:
         for i in np.flatnonzero(np.abs(rows.values(f.name)) >= layout.chip.full_scale)[:1]:
             raise InputError(
@@ -174,7 +174,7 @@ def _cell_runs(
 
 
 def _axis(rows: Rows, number: int, at: NDArray[np.int64], force: Array) -> int:
-    """The axis along which a run's loads are. Raises InputError where they are along none, or too few."""
+    """The axis of a run's loads. Raises InputError if they are along none, or too few."""
     load = np.abs(force).max(axis=0)
     axis = int(np.argmax(load))
     if np.delete(load, axis).max() > ALONG * load[axis]:
@@ -236,13 +236,13 @@ def _law_along(axis: int, cells: Sequence[Sequence[_Run]]) -> tuple[Array, float
         slopes = np.array([r.slope for r in found if r.axis == axis])
         errors.append((slopes - slopes.mean(axis=0)) @ np.linalg.inv(_mean(found)).T)
     least, many = min(map(len, errors)) - 1.0, len(cells)
-    if many == 1 or len(numbers) > 1:  # which runs belong together is not told: as if all were shared
+    if many == 1 or len(numbers) > 1:  # the file does not group the runs: treat the error as shared
         total = sum(e.T @ e / (len(e) - 1) for e in errors) / many
         return np.asarray(total), least
     e = np.stack(errors)
     shared = e.mean(axis=0)
     own = e - shared
-    by_run = shared.T @ shared / least  # it holds 1/many of what is each cell's own
+    by_run = shared.T @ shared / least  # it contains 1/many of each cell's own variance
     by_cell = np.einsum("cri,crj->ij", own, own) / ((many - 1) * least) * (1.0 - 1.0 / many)
     a, b = float(np.trace(by_run)), float(np.trace(by_cell))
     dof = (a + b) ** 2 / (a**2 / least + b**2 / ((many - 1) * least)) if a + b > 0.0 else least

@@ -24,7 +24,7 @@ from .cell_matrices import Matrices, read_matrices, to_csv, to_json, to_text
 from .cell_tables import PlanarDesign
 
 LEAST = 3  # loads above zero from which on all cells together give K_obj
-SHOWN_RATIO = 20.0  # of a map's ends, at most: what is beyond has the end's colour
+SHOWN_RATIO = 20.0  # range of a map's colours; values beyond take the end's colour
 
 
 def _refuse(args: argparse.Namespace, *options: str) -> None:

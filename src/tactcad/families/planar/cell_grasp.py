@@ -70,7 +70,7 @@ def fields(layout: PlanarLayout, path: str | Path) -> list[CellFields]:
     layout
         Of the design.
     path
-        CSV with the columns element, load (N), bx, by, bz (mT); run and sample where there are several. Every
+        CSV with the columns element, load (N), bx, by, bz (mT); run and sample if there are several. Every
         cell at every load, and without load in every run. Repeated readings are averaged.
 
     Raises
@@ -129,7 +129,7 @@ def _sample(layout: PlanarLayout, rows: Rows, number: int, own: NDArray[np.int64
 def forces(layout: PlanarLayout, read: CellFields, known: Matrices, level: float) -> CellForces:
     """Forces of all cells at all loads, with intervals.
 
-    Raises InputError where a cell was not calibrated.
+    Raises InputError if a cell was not calibrated.
     """
     cells, rows = places(layout, read), _rows(read, known)
     n, states = read.field.shape[:2]
@@ -183,8 +183,8 @@ def _rows(read: CellFields, known: Matrices) -> NDArray[np.int64]:
 def as_rows(read: CellFields, found: CellForces, known: Matrices) -> tuple[GraspReadings, Sensitivity]:
     """Normal forces as the estimators of one component take them: signals of equal noise on springs K.
 
-    A weight in error falsifies force and measured K alike, and no sink: the signal over the sink then has the
-    sinks' own error. Where K is the design's, it has the matrix' error.
+    A wrong weight changes force and measured K by the same factor, but no sink: the signal over the sink then
+    has the sinks' own error. If K is the design's, it has the matrix' error.
     """
     rows = _rows(read, known)
     k, own = known.stiffness[rows], known.stiffness_se[rows] / known.stiffness[rows]
@@ -233,7 +233,7 @@ def by_neighbours(
     variance = found.error**2 / 2.0 / (away @ away) + of_bow
     k, limit = known.stiffness[rows], known.stiffness_limit[rows]
     own = (known.stiffness_se[rows] / k) ** 2
-    # a measured K shares the matrix' error, and the sink has none of it: as in `as_rows`
+    # a measured K shares the matrix' error, the sink does not: as in `as_rows`
     measured = own > 0.0
     by_force, both = g**2 * of_matrix, np.where(measured, 0.0, g**2 * of_matrix)
     by_sink = g**2 * np.where(measured, own, of_matrix)

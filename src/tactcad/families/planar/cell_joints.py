@@ -19,7 +19,7 @@ from .sensor import magnet_lever
 
 
 def cells(design: PlanarDesign) -> Mechanism:
-    """The array from its board's lower face, where the robot's flange is.
+    """The array from its board's lower face, on the robot's flange.
 
     A cell turns about its island's middle in the foil's mid-plane: there the compliance matrix of a cell is
     diagonal, since it is its own image in that plane and under quarter turns. So sink and two tilts are its
@@ -75,7 +75,7 @@ def cells(design: PlanarDesign) -> Mechanism:
         island = replace(placed["F1"], designator=name, part=islands[e.kind.name])
         x, y, z = island.origin
         own = (placed.pop(f"{part}{e.number}") for part in ("FP", "P", "M"))
-        # the post, up to half of what stands out: above that the ball touches
+        # the post, up to half of its free length: above that the ball touches
         box = [(-d / 2, -d / 2, t / 2), (d / 2, d / 2, H - design.post.stand_out / 2)]
         moved = (replace(island, origin=(x + e.x, y + e.y, z)), *own)
         moving.append(
@@ -85,14 +85,14 @@ def cells(design: PlanarDesign) -> Mechanism:
 
 
 def _neighbours(numbers: dict[tuple[int, int], int], e: CellPlace) -> tuple[int, ...]:
-    """Beside it in its row and in its column."""
+    """Neighbours in its row and in its column."""
     beside = ((e.row - 1, e.column), (e.row, e.column - 1), (e.row, e.column + 1), (e.row + 1, e.column))
     return tuple(numbers[at] for at in beside if at in numbers)
 
 
 def _parted(layout: PlanarLayout, foil: Placement) -> tuple[dict[str, Part], Placement]:
-    """By kind what of the foil moves, about its island's middle, and the foil without: parted where the
-    beams' middles are."""
+    """For each kind the moving part of the foil, about its island's middle, and the rest of the foil: cut at
+    the beams' middles."""
     t = layout.design.planar.thickness
     part = replace(foil.part, characteristics=(), geometric=(), datums=())  # its pieces are not made
     spigots = [f for f in part.features if f.name == "spigot"]

@@ -1,4 +1,4 @@
-"""Kinds of cells and where every cell and layer stands.
+"""Kinds of cells, and the place of every cell and layer.
 
 Frame: x along a row's cells, y along a column's, both from the array's middle; z = 0 is the foil's lower
 face, + towards the object. Lengths in mm.
@@ -52,7 +52,7 @@ class Kind:
 
     @property
     def rim(self) -> float:
-        """How far an ear stands over its beam: room for the root's fillet and its own corner."""
+        """Height of an ear over its beam: room for the root's fillet and its own corner."""
         return 2.0 * self.table.fillet
 
     @property
@@ -188,7 +188,7 @@ class CellPlace:
 
 @dataclass(frozen=True)
 class PlanarLayout:
-    """Where everything stands; cells are numbered along x, row by row from the least y."""
+    """Places of all cells and layers; cells are numbered along x, row by row from the least y."""
 
     design: PlanarDesign
 
@@ -303,7 +303,7 @@ class PlanarLayout:
 
     @property
     def board_z(self) -> float:
-        """The board's upper face, on which the chips stand."""
+        """The board's upper face, which carries the chips."""
         return round(-self.design.magnet.height - self.design.hall.gap - self.chip.height, 9)
 
     @property

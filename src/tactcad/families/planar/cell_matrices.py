@@ -138,7 +138,7 @@ class Matrices:
 
 
 def read_matrices(path: str) -> Matrices:
-    """A calibration from the CSV of `to_csv`. Raises InputError where it is not one."""
+    """A calibration from the CSV of `to_csv`. Raises InputError if it is not one."""
     rows = read(
         path,
         (

@@ -1,4 +1,4 @@
-"""What is measured on every cell of a foil as cut."""
+"""Measurements on every cell of a cut foil."""
 
 from __future__ import annotations
 

@@ -29,8 +29,8 @@ def places(design: PlanarDesign) -> tuple[np.ndarray, np.ndarray, np.ndarray, fl
 def springs(design: PlanarDesign) -> tuple[Pads, np.ndarray]:
     """The pads on their cells, and the field of each over its pad's sink, mT/mm.
 
-    A force at a pad's middle sinks it straight: it tips by moments only, which a flat face leaves small; they
-    are not counted. The stop closes where the island's way down ends.
+    A force at a pad's middle sinks it straight: only moments tip it, which are small on a flat face and are
+    neglected. The stop closes at the end of the island's travel.
     """
     layout = PlanarLayout(design)
     x, y, _, length, width = places(design)
@@ -45,5 +45,5 @@ def springs(design: PlanarDesign) -> tuple[Pads, np.ndarray]:
 
 
 def limit(_design: PlanarDesign) -> float:
-    """By how much the pads may stand above or below their plane, mm: their posts' lengths."""
+    """Largest height of the pads above or below their plane, mm: by their posts' lengths."""
     return POST_TOLERANCE

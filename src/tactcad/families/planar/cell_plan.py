@@ -40,7 +40,7 @@ from .cell_layout import PlanarLayout
 LABELS = ("X", "Z")  # of the kinds' details
 ROOM = (95.0, 95.0)  # mm of paper for a cell; of one that is to be spared
 SPARE_ROOM = (72.0, 72.0)
-AROUND = 0.06  # of a cell's opening, shown beside it
+AROUND = 0.06  # detail of a cell's opening
 SPIGOT = "spigot"  # name of the holes in the middle of cells
 
 Point = tuple[float, float]
@@ -81,8 +81,8 @@ def _about(contour: Contour, at: Point) -> tuple:
 
 
 def kinds_of(part: Part) -> list[list[SheetCell]]:
-    """Equal cells together, the kind of the first cell first. Raises CheckFailure unless they stand on a
-    regular grid, and two kinds alternate."""
+    """Cells grouped by kind, that of the first cell first. Raises CheckFailure unless they form a regular
+    grid in which two kinds alternate."""
     cells = cells_of(part)
     xs, ys = (sorted({round(c.at[k], 6) for c in cells}) for k in (0, 1))
     steps = [b - a for values in (xs, ys) for a, b in pairwise(values)]
@@ -109,7 +109,7 @@ def pad_places(layout: PlanarLayout, plan: Box) -> tuple[Linear, ...]:
 def cell_plan(part: Part, notes: Sequence[str], spare: bool = False) -> SheetPlan:
     """The sheet of a foil or a spacer; `spare` asks for smaller details.
 
-    Raises CheckFailure where its cells do not repeat, or a dimension is missing or given twice.
+    Raises CheckFailure if its cells do not repeat, or a dimension is missing or given twice.
     """
     kinds = kinds_of(part)
     cells = [cell for some in kinds for cell in some]
@@ -273,11 +273,11 @@ def _square(sketch: Sketch, owner: Owner, contour: Contour) -> list[Linear]:
 
 
 def _level(sketch: Sketch, owner: Owner, contour: Contour, k: int, value: float) -> Level:
-    """The level of the line that stands at a value along axis k."""
+    """The level of the line at a value along axis k."""
     for i, s in enumerate(contour):
         if isinstance(s, Line) and max(abs(p[k] - value) for p in (s.start, s.end)) < ALIKE:
             return level(Spot(owner, i).place(k))
-    raise CheckFailure(f"drawings: {sketch.part.part_no}: no edge stands at {'xy'[k]} = {value:g}")
+    raise CheckFailure(f"drawings: {sketch.part.part_no}: there is no edge at {'xy'[k]} = {value:g}")
 
 
 def _beams(sketch: Sketch, shown: Part, cell: SheetCell, owners: Sequence[Owner]) -> list[Linear]:

@@ -27,8 +27,8 @@ def matrix(layout: PlanarLayout, kind: Kind) -> Array:
 
 
 def bend(layout: PlanarLayout, kind: Kind, force: Array) -> Array:
-    """What the field differs from `matrix` times forces, [n, 3]: the cell stiffens as it sinks, and a
-    magnet's field is no straight line."""
+    """Difference of the field from `matrix` times forces, [n, 3]: the cell stiffens as it sinks, and a
+    magnet's field is nonlinear."""
     inner = force * DOWN
     load = np.stack([wrench(f, layout.pad_height) for f in np.eye(3)], axis=1)
     motion = inner @ (kind.cell.compliance @ load).T

@@ -30,7 +30,7 @@ class Chip:
     source: str
 
 
-PLACE_LENGTH = 25.0  # mm up to which an etched place is held: as the row "etched" of the processes names it
+PLACE_LENGTH = 25.0  # mm, up to which an etched place keeps its tolerance: row "etched" of the processes
 
 
 @dataclass(frozen=True)
@@ -64,8 +64,8 @@ class FoilProcess:
         return max(self.tolerance_share * thickness, self.tolerance_least)
 
     def place(self, length: float) -> float:
-        """Diameter of the zone in which a hole stands, mm, on a sheet of that length: its least tolerance
-        holds up to PLACE_LENGTH, beyond in proportion (chosen)."""
+        """Diameter of a hole's position tolerance, mm, on a sheet of that length: the least up to
+        PLACE_LENGTH, beyond in proportion (chosen)."""
         return round(self.tolerance_least * max(1.0, length / PLACE_LENGTH), 3)
 
 

@@ -13,7 +13,8 @@ from .sensor import kind_figures, rated_force, rows
 
 
 def check_strength(design: PlanarDesign) -> Iterator[Finding]:
-    """Cells that are rated below the force asked for, a flag a kind; pads whose K is not linear up to it."""
+    """A flag for each kind of cells rated below the force asked for, and for pads whose K is not linear up to
+    that force."""
     layout = PlanarLayout(design)
     shown = {row.kind: row for row in rows(layout, "", None)}
     for kind in layout.used:

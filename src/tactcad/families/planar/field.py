@@ -1,4 +1,4 @@
-"""The field of a disc magnet, axially magnetised, and what a three-axis Hall chip below it feels.
+"""The field of an axially magnetised disc magnet, and its reading by a three-axis Hall chip below.
 
 Two discs of magnetic charge, +- Br/mu0 each, integrated by Gauss' rule over the radius and the trapezoid
 rule over the angle: within 1e-6 of the largest field from half a radius off the magnet on (tests compare
@@ -31,7 +31,7 @@ class Magnet:
 
 @lru_cache(maxsize=16)
 def _charges(radius: float) -> tuple[Array, Array, Array]:
-    """x, y and area of the points that stand for a disc of charge, mm and mm2."""
+    """x, y and area of the points that represent a disc of charge, mm and mm2."""
     q, weight = np.polynomial.legendre.leggauss(RADII)
     r = radius * (q + 1.0) / 2.0
     area = (weight * radius / 2.0 * r)[:, None] * np.full(ANGLES, 2.0 * pi / ANGLES)
@@ -40,7 +40,7 @@ def _charges(radius: float) -> tuple[Array, Array, Array]:
 
 
 def field(magnet: Magnet, at: NDArray) -> NDArray:
-    """Field (mT) of a magnet whose lower face's middle is the origin, at points (..., 3)."""
+    """Field (mT) of a magnet at points (..., 3); the origin is the middle of its lower face."""
     x, y, area = _charges(magnet.radius)
     total = np.zeros(at.shape, dtype=at.dtype)
     for z, sign in ((magnet.height, 1.0), (0.0, -1.0)):
@@ -60,7 +60,8 @@ def on_axis(magnet: Magnet, z: float) -> float:
 def felt(
     magnet: Magnet, gap: float, lever: float, motion: NDArray, beside: tuple[float, float] = (0.0, 0.0)
 ) -> NDArray:
-    """Field at a chip `gap` below a magnet at rest and `beside` it, for island motions (..., 6): mm and rad.
+    """Field at a chip `gap` below a magnet at rest, offset by `beside`, for island motions (..., 6): mm and
+    rad.
 
     The magnet's lower face is `lever` below the island's middle. A turn moves it and tips it; to first
     order of the turn, the field is that of the upright magnet at the chip's place as the magnet sees it,

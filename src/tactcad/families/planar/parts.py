@@ -46,15 +46,16 @@ SPIGOT = 0.01  # mm by which a post's spigot may be thinner than drawn; chosen, 
 SPIGOT_SHORT = 0.02  # mm that a spigot ends inside the foil; chosen
 FOOT_THICKNESS = 0.02  # mm, plus and minus; chosen: precision strip
 DOWEL_HOLE = "dowel hole diameter"
-# Zone of dowel holes and flatness of the stop face, mm: chosen, what a jig borer and a fine mill hold in one
-# clamping; field of a reamed hole: ISO 286, H8 of 1 to 3 mm; depth of the sunk lands, plus and minus: chosen.
+# Zone of dowel holes and flatness of the stop face, mm: chosen, achievable by a jig borer and a fine mill in
+# one clamping; field of a reamed hole: ISO 286, H8 of 1 to 3 mm; depth of the sunk lands, plus and minus:
+# chosen.
 PLATE_ZONE, STOP_FLAT, REAMED, LAND_DEPTH = 0.02, 0.01, 0.014, 0.01
 FOOT_INSET = (
     0.03  # mm that a foot plate stays inside the island's edge all round; chosen: the etching's tolerance
 )
 WEB = 0.8  # mm of base left over the chips' pocket, at least: checks/data/shop.toml's floor of a pocket
 FRAME_CORNER = 0.5  # mm; chosen: a cutter of 1 mm, and room for the outer chips
-CHIP_ROOM = 0.2  # mm over and beside a chip; chosen: soldered boards' usual tolerance
+CHIP_ROOM = 0.2  # mm above and around a chip; chosen: soldered boards' usual tolerance
 SPRING_STEEL, GLASS_EPOXY = Material("1.4310", 7900, "+C1300", "EN 10151"), Material("FR4", 1850)
 NEODYMIUM = Material("NdFeB, nickel plated", 7500)
 PACKAGE = Material("moulded package", 1800)
@@ -62,7 +63,7 @@ STAINLESS_BAR = Material("X8CrNiS18-9 (1.4305)", 7900, standard="EN 10088-3", ma
 
 
 def screw_places(layout: PlanarLayout) -> tuple[tuple[float, float], ...]:
-    """Along the border, corners included, at most LARGEST_STEP apart; none of bonded layers."""
+    """Along the border, corners included, at most LARGEST_STEP apart; none for bonded layers."""
     if not layout.screwed:
         return ()
     x, y = (h - border / 2.0 for h, border in zip(layout.half, layout.borders))
@@ -73,7 +74,7 @@ def screw_places(layout: PlanarLayout) -> tuple[tuple[float, float], ...]:
 
 
 def dowel_places(layout: PlanarLayout) -> tuple[tuple[float, float], ...]:
-    """Two, midway between a corner's screw and the next one along x, at opposite corners; none of bonded
+    """Two, midway between a corner's screw and the next one along x, at opposite corners; none for bonded
     layers."""
     if not layout.screwed:
         return ()
@@ -89,7 +90,7 @@ def stack_height(layout: PlanarLayout) -> float:
 
 
 def screw_length(layout: PlanarLayout) -> float | None:
-    """The longest ISO 4762 length that ends inside the cover; None where none engages one diameter."""
+    """The longest ISO 4762 length that ends inside the cover; None if none engages one diameter."""
     cover, under = layout.design.housing.cover_thickness, stack_height(layout)
     fits = [n for n in CAP_SCREW_LENGTHS[SCREW] if METRIC[SCREW].d <= n - under <= cover]
     return max(fits, default=None)
@@ -118,7 +119,7 @@ def foil_zone(layout: PlanarLayout, process: FoilProcess) -> float:
 
 def dowel_bore(layout: PlanarLayout, process: FoilProcess | None, thickness: float) -> Characteristic:
     """Limits of the dowels' holes in a steel sheet of that process, None in a milled plate: the pair passes
-    over the pins with its own places and the base's at their worst."""
+    over the pins at the worst of its own and the base's positions."""
     zone = PLATE_ZONE if process is None else foil_zone(layout, process)
     least = dowel_limits(DOWEL)[1] + LEAST_PLAY + PLATE_ZONE + zone
     if process is None:
@@ -143,8 +144,8 @@ def _up(size: float) -> float:
 def _through(
     layout: PlanarLayout, thickness: float, bore: Characteristic, tapped: bool = False
 ) -> list[Feature]:
-    """The screws' and dowels' holes of a layer, along +z from its lower face; what a pin is pressed into is
-    modelled as wide as the pin."""
+    """The screws' and dowels' holes of a layer, along +z from its lower face; a press-fit hole is modelled as
+    wide as the pin."""
     m = METRIC[SCREW]
     holes: list[Feature] = []
     for x, y in screw_places(layout):
@@ -161,7 +162,7 @@ def _through(
 
 
 def _stated(layout: PlanarLayout, *bores: Characteristic) -> tuple[Characteristic, ...]:
-    """Limits of holes; none of dowels where no layer has them."""
+    """Limits of holes; none for dowels if no layer has them."""
     return tuple(c for c in bores if c.name != DOWEL_HOLE or layout.screwed)
 
 
@@ -171,8 +172,7 @@ def contour_note(process: FoilProcess, thickness: float) -> str:
 
 
 def _placed(features: Sequence[Feature], zones: Mapping[str, float]) -> dict[str, Any]:
-    """Geometric tolerances of holes by their names, and the datums that they stand from; no more where there
-    are none."""
+    """Geometric tolerances of holes by their names, and their datums; empty if there are no holes."""
     there = {f.name for f in features}
     places = tuple(
         Geometric(f"{name.replace('_', ' ')} holes", "position", zone, (name,), FRAME, True)

@@ -1,4 +1,4 @@
-"""Rules that every planar design keeps; each names the field to look at and what is legal."""
+"""Rules for every planar design; each names the field at fault and its legal range."""
 
 from __future__ import annotations
 

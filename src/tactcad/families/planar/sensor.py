@@ -72,7 +72,7 @@ class KindFigures:
 
 
 def pad_compliance(kind: Kind, height: float) -> Array:
-    """The pad's motion by a force on it, mm/N, 3 x 3."""
+    """The pad's motion under a force on it, mm/N, 3 x 3."""
     load = np.stack([wrench(f, height) for f in np.eye(3)], axis=1)
     return load.T @ kind.cell.compliance @ load
 
@@ -115,7 +115,7 @@ def stiffness_error() -> float:
 
 
 def rated_force(layout: PlanarLayout, kind: Kind, stress: float) -> tuple[float, float]:
-    """Force at yield with the rated shear beside it, and rated force, N."""
+    """Force at yield together with the rated shear, and rated force, N."""
     at_yield = layout.design.material.yield_strength / stress
     return at_yield, min(layout.design.rating.force, at_yield / layout.design.rating.yield_factor)
 
@@ -275,8 +275,8 @@ def strength(layout: PlanarLayout) -> bytes:
 
 def stop_stress(layout: PlanarLayout, kind: Kind, gap: float) -> float:
     """Stress of a cell that is pressed down on its stop, `gap` mm deep, with the rated shear of the force
-    that closes it, MPa: of bending, of the beams' stretch by 3 z^2/(5 s^2) where the island cannot turn,
-    and of tipping."""
+    that closes it, MPa: by bending, by the beams' stretch of 3 z^2/(5 s^2) if the island cannot turn, and by
+    tipping."""
     cell = kind.cell
     down = wrench(np.array([0.0, 0.0, -1.0]), layout.pad_height) / cell.compliance[2, 2]
     tip = wrench(np.array([layout.design.rating.shear, 0.0, 0.0]), layout.pad_height)

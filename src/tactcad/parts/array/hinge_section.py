@@ -95,7 +95,7 @@ def design_alloy(design: Design) -> Alloy:
 
 
 def design_gauge(design: Design) -> Gauge:
-    """The design's strain gauge, alike on all elements."""
+    """The design's strain gauge, the same on all elements."""
     return _filled(Gauge, design.gauge)
 
 
@@ -142,7 +142,7 @@ def _filled(kind: Callable[..., T], table: object) -> T:
     return kind(**{name: getattr(table, name) for name in inspect.signature(kind).parameters})
 
 
-# Where a section's parameter stands in the design file; the first four an element may override.
+# A section's parameters and their fields in the design file; an element may override the first four.
 PATHS = {
     "hinge_thickness": "element.hinge_thickness",
     "hinge_length": "element.hinge_length",
@@ -160,8 +160,8 @@ PATHS = {
 
 
 def in_design(why: Reason | None, layout: Layout, place: ElementPlace) -> str:
-    """Why the estimator refuses an element, with the design's own fields and what they give for it:
-    "... (array.row_arms: load_arm 30, element.body_height: 4)". "" for None.
+    """Why the estimator refuses an element, with the design's own fields and their values: "...
+    (array.row_arms: load_arm 30, element.body_height: 4)". "" for None.
     """
     if why is None:
         return ""
@@ -180,7 +180,7 @@ def _path(name: str, layout: Layout, place: ElementPlace) -> str:
 
 def not_reached(layout: Layout, places: Sequence[ElementPlace], section: HingeSection, rung: str) -> str:
     """Why a rung does not reach the first of these elements that it does not, their parameters in `section`;
-    "" where it reaches all."""
+    "" if it reaches all."""
     for place, why in zip(places, validity.first_broken(section, rung).ravel()):
         if why:
             return f"rung {rung} does not reach element {place.number}: {in_design(why, layout, place)}"

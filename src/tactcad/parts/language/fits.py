@@ -34,7 +34,7 @@ def deviations(code: str, size: float) -> tuple[float, float]:
     Raises
     ------
     ValueError
-        Where the tables do not hold the code or the size.
+        If the tables do not have the code or the size.
     """
     match = _CODE.fullmatch(code)
     letter, grade = (match[1], match[2]) if match else ("", "")
@@ -60,6 +60,6 @@ def deviations(code: str, size: float) -> tuple[float, float]:
 def general(size: float, grade: str = "m") -> float:
     """Plus and minus of a linear size without its own tolerance, mm (ISO 2768-1:1989, fine, medium, coarse).
 
-    Raises ValueError where the table ends.
+    Raises ValueError if the table ends.
     """
     return float(_row(_GENERAL, abs(size), f"ISO 2768-{grade}")[grade])

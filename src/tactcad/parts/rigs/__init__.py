@@ -1,8 +1,8 @@
 """Parts of the rigs around the array: calibration, sample stiffness, grasping and bonding.
 
-In: where things stand, derived once from the design (`StandLayout`, `cart_layout`, `guide_layout`,
-`bonding_rigs`; the second and third are None where the design has no such tables). Out: parts for the
-scenes, which see them here by name.
+In: the rigs' layouts, derived once from the design (`StandLayout`, `cart_layout`, `guide_layout`,
+`bonding_rigs`; the second and third are None if the design has no such tables). Out: parts for the scenes,
+which import them from here.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
-"""The fixture in which gauges are bonded: where its surfaces are, derived once from the design; nest and
-clamp.
+"""The fixture for bonding gauges: its surfaces, derived once from the design; nest and clamp.
 
-The element lies on its back, gauge face up, its slot over a tongue: that finds the hinge, which cannot be
-seen from the face that the gauge is bonded to, and backs the leaf. Beside the element the tongue can be seen.
+The element lies on its back, gauge face up, its slot over a tongue. The tongue locates the hinge, which is
+invisible from the face that takes the gauge, and backs the leaf. At both sides of the element the tongue can
+be seen.
 
           pad  gauge                 pins
           ___  =====          |  |            |  |
@@ -45,8 +45,8 @@ TONGUE, TIP = 0.005, 0.02
 TONGUE_PLACE = 0.05  # mm, from the pins' datum, plus and minus; chosen: pins only keep elements upright
 # Element over the nest's floor in front, mm; chosen: crumbs of adhesive do not lift it.
 FLOOR_GAP = 0.5
-# Rear body over its rest where the leaf lies on the tongue, beside what general tolerances take; chosen: so
-# that the tongue bears, and never the rest alone.
+# Gap of the rear body over its rest with the leaf on the tongue, besides general tolerances; chosen: so that
+# the tongue bears, and never the rest alone.
 DROP = 0.05
 TONGUE_EDGE = 0.025  # radius of the tongue's edges, plus and minus mm; chosen: one pass of the wire
 BASE = 10.0  # nest under the rest, mm; chosen: the pins' holes, and for a vice to hold it
@@ -100,7 +100,7 @@ class BondingLayout:
 
     @property
     def clamp_edge(self) -> float:
-        """x of the nearest clamp edge: from here on some rear body stands lower than the ledge."""
+        """x of the nearest clamp edge: from here on some rear body is lower than the ledge."""
         return round(self.array.clamp_edge - max(self._hinges), 9)
 
     @property
@@ -144,8 +144,8 @@ class BondingLayout:
 
     @property
     def front_floor(self) -> float:
-        """Depth of the nest's floor beside the tongue, below the gauge face: the rest's where that is hardly
-        lower."""
+        """Depth of the nest's floor next to the tongue, below the gauge face: the rest's depth if that is
+        hardly lower."""
         floor = round(self.array.ledge_of(self.hinge) + FLOOR_GAP, 9)
         return floor if self.rest - floor >= 2 * ROOT else self.rest
 
@@ -161,7 +161,7 @@ class BondingLayout:
 
     @property
     def sill(self) -> float:
-        """x of the step from the floor beside the tongue down to the rest."""
+        """x of the step from the floor next to the tongue down to the rest."""
         return round(self.clamp_edge - SILL, 9)
 
     @property
@@ -186,7 +186,7 @@ class BondingLayout:
 
     @property
     def pin_y(self) -> float:
-        """y of the pins beside the element, which enters at any limits."""
+        """y of the pins at the element's sides; the element enters at any limits."""
         thick = self.design.sheet.thickness + present(self.design.tolerance.sheet_thickness)
         pins = dowel_limits(self.design.clamp.dowel)[1]
         return round(ceil(100 * ((thick + pins + PLACE) / 2 + BESIDE)) / 100, 6)
@@ -269,7 +269,7 @@ class BondingLayout:
 
     @cached_property
     def bar_material(self) -> Material:
-        """Steel, or the plates' alloy where a bar of steel would be too thin to run on its pins."""
+        """Steel, or the plates' alloy if a steel bar would be too thin to guide on its pins."""
         return STAINLESS_PLATE if self._height_of(STAINLESS_PLATE) >= GUIDED else plate_material(self.design)
 
     @property

@@ -24,14 +24,14 @@ from ..language.metric import METRIC, SUNK, TAP_REACH, corners, engagement, sunk
 from ..language.part_materials import BRASS, RUBBER, STAINLESS
 from ..language.plate import plate
 
-# mm that a wheel may stand off the plane of the other three; chosen: the thinnest feeler that is handled.
+# mm, largest gap of a wheel to the plane of the other three; chosen: the thinnest practical feeler.
 LOOSE_WHEEL = 0.02
 EDGE = 4.0  # screws of lid and holder from their edge
-GROOVE_WALL = 1.0  # least material beside plenum and groove
+GROOVE_WALL = 1.0  # least material around plenum and groove
 
 
 def cart_layout(design: Design) -> CartLayout | None:
-    """The cart of a design; None where it lacks one of the tables cart, holder and sample."""
+    """The cart of a design; None if it lacks one of the tables cart, holder and sample."""
     if design.cart is None or design.holder is None or design.sample is None:
         return None
     return CartLayout(design, design.cart, design.holder, design.sample)
@@ -58,8 +58,8 @@ class CartLayout:
 
     @cached_property
     def axle_length(self) -> float:
-        """Shortest ISO 4762 screw whose plain shank carries the whole bearing: even for the thickest shims
-        there is one.
+        """Shortest ISO 4762 screw whose plain shank carries the whole bearing: there is one even for the
+        thickest shims.
 
         The standard's threaded length is 2 d + 12; longer screws have a plain shank for the rest.
         """
@@ -89,7 +89,7 @@ class CartLayout:
 
     @property
     def contacts(self) -> tuple[tuple[float, float], ...]:
-        """Where the wheels touch the base plate: the mid-planes, in order around the cart."""
+        """The wheels' contacts with the base plate: the mid-planes, in order around the cart."""
         x, y = self.cart.wheel_base / 2, self.wheel_y
         return ((x, y), (-x, y), (-x, -y), (x, -y))
 
@@ -186,9 +186,9 @@ def cart_plate(rig: CartLayout) -> Part:
       |  o       o  |   +-> x
       +-o---------o-+
 
-    The inner rings are clamped between shims, the outer rings stand a shim free of plate and head: nothing
-    can bind. The shanks' play in the bores (up to 0.14 mm) lets all four wheels be set on a flat plate
-    before the axles are tightened.
+    The inner rings are clamped between shims, so the outer rings clear plate and head by a shim and cannot
+    bind. The shanks' play in the bores (up to 0.14 mm) lets all four wheels be set on a flat plate before the
+    axles are tightened.
     """
     c, t = rig.cart, rig.cart.thickness
     m = METRIC[rig.axle_thread]
@@ -235,7 +235,7 @@ SHIM_TOLERANCE = 0.02
 
 
 def axle_shim(rig: CartLayout) -> Part:
-    """Ring beside an inner ring, narrower than the shield: the outer ring stays free.
+    """Ring next to an inner ring, narrower than the shield: the outer ring stays free.
 
     +---+
     | o |   o: bore for the axle
@@ -412,7 +412,7 @@ def sample(rig: CartLayout, dents: tuple[tuple[float, float], ...] = (), depth: 
     number = f"SAMPLE-{rig.sample.side:g}x{rig.sample.side:g}x{t:g}-rubber"
     if (
         pressed
-    ):  # one pad and the force gauge's tip make equal dents in different places: the first one stands for all
+    ):  # one pad and the force gauge's tip make equal dents in different places: only the first is listed
         x, y = dents[0]
         number += f"-pressed-{len(pockets)}x{depth:g}mm-at-{x + 0.0:g}x{y + 0.0:g}"
     return Part(

@@ -164,7 +164,7 @@ def shaft_thread(
 
 
 def roller_tip(rig: StandLayout) -> Part:
-    r"""Tip for the pads: a nose with a half-round seat for the roller, which stands out by its radius.
+    r"""Tip for the pads: a nose with a half-round seat for the roller, which protrudes by its radius.
 
     Contour in (x, z), z = 0 the roller's lowest line, extruded along y by 10.
 
@@ -212,7 +212,7 @@ OVER_PAD, LEAST_OVER_PAD, BESIDE_ROLLER = 1.0, 0.5, 0.1
 
 
 def longest_roller(layout: Layout) -> float:
-    """That clears the pads beside the one that it stands on, mm."""
+    """Longest roller that clears the pads next to the loaded one, mm."""
     d = layout.design
     return round(2 * (d.array.pitch - d.sheet.thickness / 2 - BESIDE_ROLLER), 9)
 
@@ -226,9 +226,9 @@ def roller_length(layout: Layout) -> float:
 
 
 SEAT_RADIUS, NOSE = "seat radius", "nose"
-NOSE_HEIGHT = 0.05  # mm, plus and minus; chosen: the roller stands out of it
+NOSE_HEIGHT = 0.05  # mm, plus and minus; chosen: the roller protrudes from it
 SEAT = 0.005  # mm, plus and minus; chosen: two to three passes of the wire
-# Radial, mm: what a pin's feel tells from none; more would let the roller lie beside the seat's middle.
+# Radial, mm: the least play felt with a pin; more would let the roller lie off the seat's middle.
 LEAST_AROUND_ROLLER = 0.001
 
 

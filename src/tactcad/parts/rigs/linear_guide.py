@@ -1,5 +1,5 @@
-"""The vertical guide of the grasping set-up: where it and the array on it are, derived once from the design;
-its rail, carriage, and the riser between post and rail.
+"""The vertical guide of the grasping set-up: its place and the array's, derived once from the design; its
+rail, carriage, and the riser between post and rail.
 """
 
 from __future__ import annotations
@@ -41,12 +41,12 @@ from .frame import (
     UNDER_RAIL,
 )
 
-# y that the array keeps before the end stop's pin, which stands out of the riser under the rail
+# y clearance of the array to the end stop's pin, which protrudes from the riser under the rail
 BEFORE_END_STOP = BAR_FRONT + BAR + RAIL_HEIGHT - END_STOP_OUT - 0.5
 
 
 def guide_layout(design: Design) -> GuideLayout | None:
-    """The guide of a design; None where it has no grasping table or no cart under it."""
+    """The guide of a design; None if it has no grasping table or no cart under it."""
     cart = cart_layout(design)
     return (
         GuideLayout(design, design.grasping, cart)
@@ -82,8 +82,8 @@ class GuideLayout:
 
     @property
     def raised(self) -> float:
-        """By how much the guide stands higher than for the published array: a longer one would meet the end
-        stop, or the riser that it stands in, when it is lifted."""
+        """Height of the guide over that for the published array: a longer one would hit the end stop, or its
+        riser, when it is lifted."""
         if self.array.carrier_size[1] / 2 <= BEFORE_END_STOP:
             return 0.0
         # the riser's lower end, at the lowest row that it can have, over the lifted carrier
@@ -212,34 +212,33 @@ def carriage() -> Part:
 RAIL_FLAT = 0.01  # mm, of the face under the rail; chosen: makers of width 9 ask 0.01 to 0.02 of 100
 RISER_SCREW, RISER_UNDER_HEAD = 16.0, 9.0  # M4 into the post: 7 mm engaged, head deep in the riser
 
-# Pin below the rail's end that the carriage comes down on: it stands 8 mm out, where the carriage is solid
-# from 6.5 on, and the foot passes it.
+# Pin below the rail's end that the carriage comes down on: it protrudes 8 mm, the carriage is solid from 6.5
+# mm on, and the foot passes the pin.
 STOP_PIN, STOP_LENGTH = "3", 16.0
 STOP_DEPTH = STOP_LENGTH - END_STOP_OUT
 
 
 def stop_below(rig: GuideLayout) -> float:
-    """How far the end stop's pin stands below the rail's middle, mm: 0.5 clear of its end."""
+    """Distance of the end stop's pin below the rail's middle, mm: 0.5 clear of its end."""
     return rig.grasping.rail_length / 2 + 2.0
 
 
-# The latch: a pin by hand through a hole in the bar into a hole beside the rail, under the lifted
-# carriage's side; out of use it stands in a hole beside the bar. D10 leaves it 0.012 of play at least. It
-# stands out of the bar's front by 4 mm or more, which fingers pull it by; the bar's hole is 1 mm wider all
-# around.
+# The latch: a pin pushed by hand through a hole in the bar into a hole next to the rail, under the lifted
+# carriage's side; it is stored in a hole next to the bar. D10 leaves it 0.012 of play at least. It protrudes
+# from the bar's front by 4 mm or more for the fingers; the bar's hole is 1 mm wider all around.
 LATCH, LATCH_KEPT, LATCH_FIT = 7.25, 16.0, "D10"
 LATCH_LENGTH, LATCH_DEPTH, LATCH_AIR = 30.0, 6.0, 1.0
 
 
 def latch_above(rig: GuideLayout) -> float:
-    """How far the latch's holes stand over the rail's middle, mm: with the carriage lifted all the way."""
+    """Height of the latch's holes over the rail's middle, mm, for the carriage lifted all the way."""
     lowest = rig.carriage_middle + rig.grasping.lift - CARRIAGE_LENGTH / 2
     # to a tenth: the carriage comes down on it by less
     return floor(10 * (lowest - dowel_diameter(STOP_PIN) / 2 - rig.riser_middle)) / 10
 
 
 def latch_on_bar(rig: GuideLayout) -> float:
-    """How far the latch, with the carriage on it, stands over the bar's lower end, mm."""
+    """Height of the latch, with the carriage on it, over the bar's lower end, mm."""
     lifted = rig.bar_bottom + rig.grasping.lift
     return round(rig.riser_middle + latch_above(rig) - latch_lies() - lifted, 9)
 

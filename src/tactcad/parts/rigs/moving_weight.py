@@ -93,8 +93,7 @@ PLATFORM_UNDER_HEAD = 3.5  # heads sunk by 0.5: the weights lie flat
 
 
 def platform(rig: GuideLayout) -> Part:
-    """Plate on the bar's upper end; the weights' pin stands over the array's middle. z = 0 is the
-    underside.
+    """Plate on the bar's upper end; the weights' pin is above the array's middle. z = 0 is the underside.
 
     +-----------+
     |   O   O   |   bar, sunk from above

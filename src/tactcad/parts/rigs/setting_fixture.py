@@ -1,8 +1,7 @@
 """The setting fixture: a floor for the pads and two steps for the end plates' lower edges, in one contour.
 
-While the clamping screws are tightened it sets the pads' height, the plates' level, and with a pin at the
-left edge of each plate how they stand to each other. Where a row has blanks a strip on the floor carries
-their fronts.
+While the clamping screws are tightened it sets the pads' height, the plates' level and, by a pin at the left
+edge of each plate, the plates' alignment. For a row with blanks, a strip on the floor carries their fronts.
 """
 
 from __future__ import annotations
@@ -27,11 +26,11 @@ BASE = 12.0
 # mm that the foot reaches beyond the plates, the steps stay short of their outer faces, and the channel is
 # longer than the stack at each end; chosen: a finger, room for a nut's socket, the stack's own limits twice
 BEYOND, SHORT, AIR = 3.0, 1.0, 0.5
-# mm, plus and minus, of the steps over the floor, and the zones of what is level with it; chosen: wire, one
+# mm, plus and minus, of the steps over the floor, and the zones of faces level with it; chosen: wire, one
 # contour, four passes
 STEP, LEVEL = 0.003, 0.003
 FLOOR = "step over the floor"
-PIN_OUT = 5.0  # mm that a pin stands over the step: half the plate's height or so
+PIN_OUT = 5.0  # mm, height of a pin over the step: about half the plate's height
 ROOT = 0.2  # mm: what the wire leaves in a corner
 EDGE = 5.0  # mm of fixture beyond the pins
 
@@ -71,7 +70,7 @@ class SettingLayout:
 
     def over_floor(self, name: str, step: str) -> Characteristic:
         """Limits of a step's height: higher by half the play, so that elements in the middle of their limits,
-        pressed down on their pins, stand square; to a micrometre."""
+        pressed down on their pins, are square; to a micrometre."""
         raised = round(self.play / 2, 3)
         low, high = (round(self.step + raised + side * STEP, 6) for side in (-1, 1))
         return Characteristic(f"{FLOOR}, {name}", self.step, high, low, True, ("floor", step))
@@ -92,8 +91,8 @@ class SettingLayout:
 
     @property
     def pins_square(self) -> bool:
-        """Whether both pins stand far enough apart to keep the plates from turning about z; a short stack of
-        long bodies is turned by hand, and nothing stands on it: the dowels hold its plates to each other."""
+        """Whether the pins are far enough apart to keep the plates from turning about z; a short stack of
+        long bodies is turned by hand, which is harmless: the dowels align its plates."""
         long, wide = self.array.end_plate_half, self.array.stack / 2 + self.design.clamp.end_plate_thickness
         return self.pin_y >= LEVER * hypot(long, wide)
 
@@ -110,7 +109,7 @@ class SettingLayout:
 
     @property
     def blanks_y(self) -> tuple[float, float]:
-        """Where the blanks begin and end along y."""
+        """Start and end of the blanks along y."""
         ys = [self.array.position_y(index) for _, index in self.array.blanks()]
         half = self.design.sheet.thickness / 2
         return min(ys) - half, max(ys) + half
@@ -187,7 +186,7 @@ def setting_fixture(rig: SettingLayout) -> Part:
 
 
 def setting_strip(rig: SettingLayout) -> Part:
-    """Strip under the fronts of a row's blanks, as high as their flat faces stand over the floor.
+    """Strip under the fronts of a row's blanks, as high as their flat faces are over the floor.
 
     +-----------------+   ^ y
     +-----------------+   +-> x

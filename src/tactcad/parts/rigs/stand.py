@@ -1,5 +1,5 @@
-"""The stand of calibration and sample stiffness: where base plate, post and the force gauge's vertical axis
-are, derived once from the design; its plates, and the stages, the smallest sold that do for the array.
+"""The stand of calibration and sample stiffness: places of base plate, post and the force gauge's vertical
+axis, derived once from the design; its plates, and the smallest stages sold that suit the array.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from tactcad.design.fields import present
 from tactcad.design.tree import Design
 
 from ..array.layout import Layout
+from ..array.leads import Bench, on_bench
 from ..bought.standard_parts import STAGES, Stage
 from ..language.description import Extrusion, Feature, Part, Purchase, Revolution
 from ..language.limits import FACES, Geometric
@@ -41,7 +42,7 @@ from .linear_guide import guide_layout
 
 @dataclass(frozen=True)
 class StandLayout:
-    """Derived dimensions (mm) of the stand, which is sized for the set-ups that the design has."""
+    """Derived dimensions (mm) of the stand, sized for the design's set-ups."""
 
     design: Design
 
@@ -96,7 +97,7 @@ class StandLayout:
         return round(self.gauge_bottom(touch) + 45.0, 9)
 
     def stage_middle(self, touch: float) -> float:
-        """z of the vertical stage's fixed plate: the row of threads nearest to where it is needed."""
+        """z of the vertical stage's fixed plate: the row of threads nearest to the height needed."""
         return ROW_PITCH * round(self.axis_middle(touch) / ROW_PITCH)
 
     @property
@@ -124,17 +125,33 @@ class StandLayout:
         return self.post_rows[-1] + 15.0
 
 
+def calibration_bench(layout: Layout) -> Bench:
+    """Boards beside the base plate, while any pad stands under the roller."""
+    rig, d = StandLayout(layout.design), layout.design
+    high = BASE[1] + rig.pads_up - d.element.pad_height - d.element.recess_depth
+    x, y = (max(abs(pad[i]) for pad in pad_middles(layout)) for i in (0, 1))
+    return on_bench(layout, rig.base_length / 2, high, (x, y))
+
+
+def grasping_bench(layout: Layout) -> Bench:
+    """Boards beside the base plate, the array lifted."""
+    guide = guide_layout(layout.design)
+    assert guide is not None
+    high = BASE[1] + guide.array_z + layout.design.element.recess_depth + guide.grasping.lift
+    return on_bench(layout, StandLayout(layout.design).base_length / 2, high)
+
+
 AIR = 0.5  # mm between things that pass each other; chosen, as under the cart
 
 
 def calibration_stage(layout: Layout) -> Stage:
     """The smallest stage that reaches every pad, clears the post, and is not covered by the carrier; the
-    smallest of all where none does, which a rule then says."""
+    smallest of all if none does, which a rule then reports."""
     return next((s for s in STAGES if not faults_of(s, layout)), STAGES[0])
 
 
 def faults_of(stage: Stage, layout: Layout) -> list[str]:
-    """What is wrong with a stage for that array, in words."""
+    """Faults of a stage for that array, in words."""
     wanted = present(layout.design.calibration).stage_travel
     wrong = []
     if stage.travel < wanted:
@@ -170,8 +187,8 @@ def most_elements(layout: Layout) -> int:
 
 
 def base_plate(rig: StandLayout) -> Part:
-    """Base plate under the post, one for all set-ups: with the threads of the horizontal stages where the
-    design has a calibration. The cart's wheels roll beside them.
+    """Base plate under the post, one for all set-ups: with the threads of the horizontal stages if the design
+    has a calibration. The cart's wheels roll clear of them.
 
     +---------------------------+
     |          O O              |   the post's four screws, from below

@@ -32,7 +32,7 @@ THREAD_COLUMN = 4.0  # mm of the post's width that a column of M4 threads takes
 BACK = 35.0  # mm, half the height of gauge plate and axis plate
 SEAT = 10.0  # mm, the roller's seat (roller_tip.py)
 LID = "holder.lid_thickness"
-# Scene, load (N) and its origin, what is allowed (um) and why, fields that change the load or the allowance.
+# Scene, load (N) and its origin, allowance (um) and its reason, fields that change the load or the allowance.
 Load = tuple[str, float, str, float, str, tuple[str, ...]]
 
 
@@ -58,7 +58,7 @@ def calibration_lines(design: Design) -> Iterator[Deflection]:
 
 
 def series_give(design: Design) -> float:
-    """Compliance that stand and mount of the calibration add to the gauge's own, mm/N."""
+    """Compliance of the calibration's stand and mount, in series with the gauge's, mm/N."""
     return sum(1e-3 * line.gives / line.load for line in _in_series(design))
 
 

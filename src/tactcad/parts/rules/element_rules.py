@@ -1,4 +1,4 @@
-"""Rules on the elements and how they stand to each other."""
+"""Rules on the elements and their distances."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ SHARE_OF_HINGE = 0.25
 
 
 def at(place: ElementPlace, field: str, layout: Layout) -> str:
-    """Path of a hinge field of one element: its override where it has one."""
+    """Path of a hinge field of one element: its override if it has one."""
     own = layout.design.element.override.get(place.number)
     if own is not None and getattr(own, field) is not None:
         return f"element.override.{place.number}.{field}"
@@ -42,7 +42,7 @@ def pitch_is_sheet_and_spacer(layout: Layout) -> Iterator[Finding]:
         and_spacer = "array.spacer" if layout.spacer >= 0.05 else "0.05"
         yield wrong(
             "array.pitch",
-            "leaves no room for a spacer beside the sheet",
+            "leaves no room for a spacer next to the sheet",
             d.array.pitch,
             f"at least sheet.thickness + {and_spacer} = {least:g} mm",
         )

@@ -181,7 +181,7 @@ def _bears(rigs: Sequence[BondingLayout]) -> str:
 
 def borne(rig: BondingLayout, backed: bool) -> float:
     """Pressure on the gauge at which a leaf of this kind yields, MPa, in the fixture or without its tongue.
-    Raises CheckFailure where elements do not reach it."""
+    Raises CheckFailure if elements do not reach it."""
     from tactcad.fem.bonded_leaf import clamped
     from tactcad.parts.array.hinge_section import hinge_section
 
@@ -235,7 +235,8 @@ def resistance(rig: BondingLayout) -> str:
 
 
 def coat(rig: BondingLayout) -> str:
-    """Half of what the pads stand out, at most a tenth of a millimetre, since a coating stiffens, too."""
+    """Half of the pads' height over the face, at most a tenth of a millimetre, since a coating also
+    stiffens."""
     thick = min(0.1, rig.design.element.pad_height / 2)
     return (
         f"Coat gauge, jumpers and terminals, no thicker than {thick:.2g} mm over the face and clear of the "

@@ -19,7 +19,7 @@ from tactcad.parts.rigs.frame import (
     pad_middles,
     under_carrier_screw,
 )
-from tactcad.parts.rigs.stand import StandLayout
+from tactcad.parts.rigs.stand import StandLayout, calibration_bench
 from tactcad.parts.rigs.stiffness import calibration_lines, calibration_loads, series_give
 from tactcad.parts.rules.calibration_rules import FITS
 
@@ -38,6 +38,7 @@ from ..shared_rigs import (
     STAND,
     THREAD,
     UNDER,
+    boards_on_bench,
     driven,
     place_force_axis,
     place_stand,
@@ -46,7 +47,11 @@ from ..shared_rigs import (
 from .array import array, carrier_tools, flatness_tools
 
 BACK_DOWN: Rotation = DOWN  # half a turn about x: pads up
-IN_FRONT: Vector = (0.0, -250.0, RAISED / 2)  # where the mount is put together, mm from its place
+IN_FRONT: Vector = (
+    0.0,
+    -250.0,
+    RAISED / 2,
+)  # place of the mount during its assembly, mm from its final place
 OUT_OF_X: Rotation = ((0, 0, -1), (0, 1, 0), (1, 0, 0))  # local z runs along -x
 
 
@@ -54,7 +59,7 @@ def calibration(design: Design, pose: Pose = REST) -> Scene:
     """Scene `calibration`: the roller on the pad of pose.element, which it has pushed pose.deflection mm
     down.
 
-    pose.height lifts the roller. Raises InputError where the array has no such element.
+    pose.height lifts the roller. Raises InputError if the array has no such element.
     """
     rig = StandLayout(design)
     pads = pad_middles(rig.array)
@@ -94,12 +99,14 @@ def calibration(design: Design, pose: Pose = REST) -> Scene:
         ),
     )
     _mounted_array(b, rig, under, contact, dx, dy, pose)
+    boards_on_bench(b, calibration_bench(rig.array))
     b.step(
         "Calibrate, then fit the stop plate",
         (0, 0, 0),
         f"Above a pad, set x by the edge of the pad to {c.load_point:g} mm; {c.step * 1e3:g} um steps to "
-        f"{c.travel * 1e3:g} um. {_limits(design)} Afterwards take the array off its mount, set it in the "
-        "setting fixture as in the step Coplanar pads of the array's own guide, still clamped, "
+        f"{c.travel * 1e3:g} um. {_limits(design)} Afterwards drive the roller up, pull "
+        "the sockets off, free the leads, take the mount off the stages and the array off the mount. Set "
+        "it in the setting fixture as in the step Coplanar pads of the array's own guide, still clamped, "
         "and take the carrier off it there (hex key of its screws). Read the pads' heights on the "
         "surface plate again and go on in that guide with the step Stop plate. Zero every signal anew.",
         tools=(*flatness_tools(rig.array), *carrier_tools(design)),
@@ -125,9 +132,7 @@ def _stages(b: Builder, rig: StandLayout, dx: float, dy: float) -> str:
     t, half = stage.plate, stage.size / 2
     below, at = STAND, (0.0, 0.0)
     stages: list[tuple[str, ...]] = []
-    seats: list[
-        tuple[str, str, Vector]
-    ] = []  # fixed half, what it lies on, where its threads have their middle
+    seats: list[tuple[str, str, Vector]] = []  # fixed half, the part under it, the middle of its threads
     for level, (axis, out, side) in enumerate((("x", OUT_OF_X, (-1, 0)), ("y", AGAINST_Y, (0, -1)))):
         z = 2 * t * level
         b.group(None if axis == "x" else "stage-x")
@@ -220,9 +225,10 @@ def _mounted_array(
         "Array on its mount",
         (0, 0, 120),
         "On the bench: lay the array (its own guide, but without stop plate and set screws: the stops "
-        "would close before the end of the travel) on the mount with its carrier down, its rows across "
-        "the mount's longer side and row 1 at the end marked x, and fix it by four screws from below. "
-        "Leads leave along x, loose.",
+        "would close before the end of the travel; leads on their sockets, guide wiring) on the mount with "
+        "its carrier down, its rows across the mount's longer side and row 1 at the end marked x, and fix "
+        "it by four screws from below. "
+        "Leads leave along x, sockets unplugged.",
         bench=True,
         at=IN_FRONT,
     )
@@ -246,8 +252,8 @@ def _mounted_array(
 
 
 def _series(design: Design) -> str:
-    """How much the compliance of stand and mount lowers the apparent stiffness of the stiffest element, and
-    how to separate the two.
+    """Effect of the stand's and mount's compliance on the apparent stiffness of the stiffest element, and how
+    to separate the two.
     """
     give, cell = series_give(design), present(design.calibration).load_cell_stiffness
     known = [load for load in calibration_loads(design) if not load.refused]
@@ -301,7 +307,7 @@ def _motions(design: Design, pads: Iterable[tuple[float, float]], px: float, py:
 
 
 def check_travel(design: Design, _scene: Scene) -> list[Finding]:
-    """Fail where the travel makes a hinge yield, flag where it passes the rated deflection; each with the
+    """Fail if the travel makes a hinge yield, flag if it passes the rated deflection; each with the largest
     travel that does not.
 
     An element whose strength the estimator cannot compute is flagged by the strength check.

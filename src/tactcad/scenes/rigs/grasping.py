@@ -58,7 +58,7 @@ from tactcad.parts.rigs.moving_weight import (
     PLATFORM_UNDER_HEAD,
     ballast_thickness,
 )
-from tactcad.parts.rigs.stand import StandLayout
+from tactcad.parts.rigs.stand import StandLayout, grasping_bench
 from tactcad.parts.rigs.stiffness import grasping_lines
 from tactcad.parts.rules.grasping_rules import FITS
 from tactcad.parts.rules.rule import fits, wrong
@@ -80,7 +80,16 @@ from ..scene import (
     Scene,
     whole_um,
 )
-from ..shared_rigs import CORNERS, SHIMS, SQUARE, cart_on_base, place_cart, place_sample, place_stand
+from ..shared_rigs import (
+    CORNERS,
+    SHIMS,
+    SQUARE,
+    boards_on_bench,
+    cart_on_base,
+    place_cart,
+    place_sample,
+    place_stand,
+)
 from .array import array, without_gaps
 
 # Relative difference allowed between the parts' weight and the design's: the ballast is turned to weight
@@ -103,6 +112,7 @@ def grasping(design: Design, pose: Pose = REST) -> Scene:
     lift = pose.height - pose.deflection
     below, z = place_axis(b, rig, rail, lift)
     b.group(None)
+    boards_on_bench(b, grasping_bench(rig.array))
     up, lid_text = (0.0, 0.0, g.lift), "The array hangs on the latch over it."
     cart_on_base(b, text=lid_text)
     axis = tuple(b.groups["axis"])
@@ -173,7 +183,7 @@ def _latched(on: bool) -> list[Move]:
 
 
 def _guide(b: Builder, rig: GuideLayout, post: str, latched: bool) -> str:
-    """Riser, rail, end stop, and the latch under the lifted carriage or beside it; returns the rail's
+    """Riser, rail, end stop, and the latch under the lifted carriage or in store; returns the rail's
     designator."""
     b.supplies += supplies("guide", {})
     front = POST_Y - rig.riser_depth
@@ -228,7 +238,7 @@ def _guide(b: Builder, rig: GuideLayout, post: str, latched: bool) -> str:
 
 
 def check_moving_weight(design: Design, scene: Scene) -> list[Finding]:
-    """A finding where what moves is heavier than asked for (no ballast can mend that), or lighter."""
+    """A finding if the moving parts are heavier than asked for (which no ballast can mend), or lighter."""
     weight, wanted = moving_weight(scene), present(design.grasping).moving_weight
     if abs(weight - wanted) <= AGREES * wanted:
         return []
@@ -237,8 +247,8 @@ def check_moving_weight(design: Design, scene: Scene) -> list[Finding]:
 
 
 def _poses(design: Design) -> Iterator[Pose]:
-    """Without weights; lifted; and the pads in the sample: by its travel, but no deeper than they stand out
-    of the arms' root fillets."""
+    """Without weights; lifted; and with the pads in the sample: by its travel, but no deeper than they
+    protrude from the arms' root fillets."""
     yield Pose(weights=0)
     yield Pose(height=present(design.grasping).lift, weights=0, cart=present(design.cart).roll)
     e = design.element
@@ -293,7 +303,7 @@ def place_axis(b: Builder, rig: GuideLayout, rail: str, lift: float) -> tuple[st
         "Ballast",
         (0, 0, 305),
         "Slide all that moves up off the guide on the carriage's transport rail and weigh it without that "
-        f"rail: with the ballast it must be {rig.grasping.moving_weight:g} N, "
+        f"rail, leads held up: with the ballast it must be {rig.grasping.moving_weight:g} N, "
         f"{rig.grasping.moving_weight / NEWTON:.1f} g. Turn the ballast thinner until it is; then slide it "
         "back, on the latch.",
         tools=("balance, 0.1 g",),
@@ -303,7 +313,7 @@ def place_axis(b: Builder, rig: GuideLayout, rail: str, lift: float) -> tuple[st
 
 
 def _trim(rig: GuideLayout, mass: float) -> tuple[float, float]:
-    """Thickness (mm) and mass (g) of the ballast, from everything else that moves; no mass where that is too
+    """Thickness (mm) and mass (g) of the ballast, from all other moving parts; no mass if those are too
     heavy.
 
     A pin that is longer because of the ballast weighs slightly more itself, which is taken into account.
@@ -393,8 +403,8 @@ def _place_carried(b: Builder, rig: GuideLayout, rail: str, lift: float, standin
     b.step(
         "Array under the foot",
         (0, -140, -35),
-        "Screw the finished array (its own guide) under the foot. Leads leave along x in a loose loop to "
-        "the post.",
+        "Screw the finished array (its own guide, leads on their sockets by guide wiring) under the foot. "
+        "Leads leave along x, sockets unplugged.",
         elements=True,
         bench=True,
     )
