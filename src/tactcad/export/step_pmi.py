@@ -141,7 +141,7 @@ def _faces(part: Part, name: str, some: Iterable[Piece], faces: FaceFinder) -> S
     """The faces on these pieces of surface, each of which must have left one."""
     found = [faces.on(piece) for piece in some]
     if not found or not all(found):
-        raise CheckFailure(f"{part.part_no}: {name} stands on a face that the solid does not have")
+        raise CheckFailure(f"{part.part_no}: {name} refers to a face that the solid does not have")
     return tuple(face for one in found for face in one)
 
 
