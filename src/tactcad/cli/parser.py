@@ -132,8 +132,8 @@ def add_allowance(parser: argparse.ArgumentParser, of: str, chosen: str) -> None
     parser.add_argument(
         "--within",
         metavar="P",
-        help=f"largest {of} that you accept, as 1%% or 0.01; picks the quickest {chosen} that keeps it, or "
-        "refuses, and prints what a step more or less would cost (docs/accuracy.md)",
+        help=f"largest {of} that you accept, as 1%% or 0.01; picks the quickest {chosen} within it, or "
+        f"refuses, and prints the cost of a step more or less (docs/accuracy.md)",
     )
     parser.add_argument(
         "--in",
