@@ -330,7 +330,7 @@ def _origins(table: dict[str, Any], values: dict[str, Any]) -> dict[str, str]:
     for path, text in table.items():
         if path not in known:
             raise unknown_field(f"origin.{path}", [f"origin.{p}" for p in known], "tactcad schema target")
-        shown_text(text, f"origin.{path}", "where the value is from")
+        shown_text(text, f"origin.{path}", "the value's source")
     return dict(table)
 
 
