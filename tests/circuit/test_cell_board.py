@@ -18,7 +18,7 @@ from tactcad.families.planar.checks import check_board
 from tactcad.parts.designs import load
 from tactcad.scenes import make_scene
 
-DESIGNS = Path(__file__).parents[1] / "families" / "planar" / "designs"
+DESIGNS = Path(__file__).parents[2] / "hardware"
 
 
 def design(name: str = "planar", hall: dict | None = None, housing: dict | None = None, **planar):
