@@ -57,9 +57,9 @@ def _in_our_words(ask: Callable[Asked, Given]) -> Callable[Asked, Given]:
 
 @dataclass(frozen=True, repr=False)
 class Reply(Sequence[Any]):
-    """What a question gave: a sequence of records, which shows itself as a table.
+    """A result: a sequence of records, displayed as a table.
 
-    title    what it is
+    title    its heading
     records  the lines of the table
     whole    everything, as the command's --json has it
     """
@@ -138,8 +138,8 @@ class Quiet:
 class LoadedDesign:
     """A design with its questions. It never changes, but for the parts that `scene(...).add` puts in.
 
-    table    the design file as TOML gives it
-    source   the file or name that it is from
+    table    the design file as parsed TOML
+    source   its file or name
     added    parts that were added, in order
     text     the file's own text; None if `with_` changed it
     """
@@ -178,15 +178,15 @@ class LoadedDesign:
         Parameters
         ----------
         changes
-            Values by path, as messages have it. None takes a value out: it is then the default. A stated
-            value that can be derived, as array.spacer, is derived where it no longer fits.
+            Values by path, as in messages. None removes a value, which then has its default. A stated value
+            that can be derived, as array.spacer, is derived if it no longer fits.
         **named
-            Values by a bare name, where one table has it. A field of [tolerance] needs its path.
+            Values by a bare name, if only one table has it. A field of [tolerance] needs its path.
 
         Raises
         ------
         InputError
-            Where a name is unknown or of several tables, a value is not legal, or a rule is broken.
+            If a name is unknown or of several tables, a value is not legal, or a rule is broken.
         """
         made = copy.deepcopy(self.table)
         given = {self._path(name): value for name, value in {**(changes or {}), **named}.items()}
@@ -259,7 +259,7 @@ class LoadedDesign:
 
     @_in_our_words
     def check(self, *scenes: str) -> Reply:
-        """The findings of every check on these scenes, or on all; `passed` in `to_dict` says whether none
+        """The findings of every check on these scenes, or on all; `passed` in `to_dict` is true if none
         failed."""
         from tactcad.checks.check_report import as_record
         from tactcad.checks.run import run_checks
@@ -293,7 +293,7 @@ class LoadedDesign:
 
     @_in_our_words
     def scene(self, name: str) -> OpenScene:
-        """One scene: what is placed where, its bill, and the place to add parts of one's own."""
+        """One scene: its placements, its bill, and `add` for your own parts."""
         (name,) = self._scenes((name,))
         return OpenScene(self, name)
 
@@ -367,13 +367,13 @@ class OpenScene:
         part
             A `tc.Part`, or a build123d solid (mm).
         at
-            Where its origin stands in the scene, mm.
+            Place of its origin in the scene, mm.
         step
-            Title of the assembly step that puts it there: one of the scene's, or a new last one.
+            Title of its assembly step: one of the scene's, or a new last one.
         touches
             Designators of the parts that it is meant to touch; without it a contact is a finding.
         name, material
-            Of a solid: as the bill calls it (default its label), and its alloy, which gives its mass.
+            Of a solid: its name in the bill (default its label), and its alloy, which gives its mass.
 
         Returns
         -------
@@ -383,7 +383,7 @@ class OpenScene:
         Raises
         ------
         InputError
-            Where `part` is no part, a designator is unknown, or the part's number is another part's.
+            If `part` is no part, a designator is unknown, or the part's number is another part's.
         """
         from tactcad.parts.language.description import Part, vector
         from tactcad.scenes.scene import AddedPart, Placement, with_added
@@ -447,7 +447,7 @@ def _fields(kind: type) -> set[str]:
 
 
 def _put(table: dict[str, Any], path: list[str], value: Any) -> None:
-    """Set a value of nested tables, or take it out (None)."""
+    """Set a value in nested tables, or remove it (None)."""
     *above, name = path
     for key in above:
         inner = table.setdefault(key, {})
@@ -470,7 +470,7 @@ def _as_toml(value: Any) -> Any:
 def load(source: str | Path = DEFAULT_DESIGN) -> LoadedDesign:
     """A design by its path, or by its name in hardware/, read field by field.
 
-    Rules between fields are tried by the first question asked of it.
+    Rules between fields are tried on its first use.
     """
     path = find(source)
     text = read_text(path, MOST_BYTES, "a design file (TOML)")
@@ -495,7 +495,7 @@ def design(target: str | Path, **options: Any) -> Reply:
     """From a target file to the design that feels it; options are those of `tactcad design`, as
     `within="1%"`.
 
-    The answer's records are the designs found: one, or none.
+    The result's records are the designs found: one, or none.
     """
     with tempfile.TemporaryDirectory() as folder:
         out = Path(folder) / "found"
@@ -529,7 +529,7 @@ def stiffness(file: str | Path, calibration: str | Path | Reply, **options: Any)
 
 
 def _estimates(record: Mapping[str, Any]) -> dict[str, Any]:
-    """A record whose estimates stand side by side: value, low, high."""
+    """A record with its estimates as columns: value, low, high."""
     flat: dict[str, Any] = {}
     for key, value in record.items():
         if isinstance(value, Mapping):
@@ -540,7 +540,7 @@ def _estimates(record: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _command(command: str, *subject: object, **options: Any) -> dict[str, Any]:
-    """What a command prints as JSON. Raises InputError for an option that it does not take."""
+    """A command's JSON. Raises InputError for an option that it does not take."""
     from importlib import import_module
 
     from tactcad.cli.main import parser_of

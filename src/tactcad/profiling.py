@@ -1,4 +1,4 @@
-"""What a run made, how long that took and what it loaded, for TACTCAD_PROFILE; and how far its work has come.
+"""A run's products, their times and the modules loaded, for TACTCAD_PROFILE; and the progress of its work.
 
 Code that makes something expensive (solids, meshes, finite-element solutions, scenes) reports it through
 `making`; without a profile that costs one comparison.
@@ -80,7 +80,7 @@ def profiled() -> Iterator[Profile]:
 
 @contextmanager
 def making(kind: str, name: str) -> Iterator[None]:
-    """Enter the making of one thing in the open profile, if any; not where it fails.
+    """Record the making of one product in the open profile, if any, unless it fails.
 
     Parameters
     ----------

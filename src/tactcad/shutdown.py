@@ -1,10 +1,9 @@
 """Ending the program on a signal: at once, in one place, and leaving nothing half made behind.
 
-An exception raised wherever the program happens to be would pass through libraries that swallow it or turn it
-into another error, native imports above all. So the handler itself stops the processes that we started,
-removes what is unfinished, prints one line and exits. It waits only for the native call that is running. This
-module imports only what Python has loaded anyway, because `tactcad.__main__` imports it before everything
-else.
+An exception raised at any point of the program would pass through libraries that swallow it or turn it into
+another error, native imports above all. So the handler itself stops our processes, removes unfinished files,
+prints one line and exits. It waits only for the current native call. This module imports only what Python has
+loaded anyway, because `tactcad.__main__` imports it before everything else.
 """
 
 from __future__ import annotations
@@ -25,7 +24,7 @@ SAID = {
     signal.SIGHUP: "the terminal hung up (SIGHUP)",
 }
 
-_unfinished: list[Callable[[], object]] = []  # functions that remove what is unfinished
+_unfinished: list[Callable[[], object]] = []  # functions that remove unfinished files
 _groups: list[int] = []  # process groups that end with the program, as `os.kill` has them: below 0
 _owner = 0  # the process that they belong to: a forked helper has only a copy of the lists
 
@@ -61,8 +60,8 @@ class unfinished:
     """A block that makes something: `with unfinished(put_away)` has `put_away` called when a signal ends the
     program.
 
-    `put_away` may be called between any two steps of the block, and must decide by what is on the disk what
-    to remove.
+    `put_away` may be called between any two steps of the block, and must decide by the files on disk what to
+    remove.
     """
 
     def __init__(self, put_away: Callable[[], object]) -> None:
@@ -117,7 +116,7 @@ def _end(number: int, _frame: object) -> None:
     try:
         os.write(2, (("\r\x1b[K" if os.isatty(2) else "") + line).encode())
     except OSError:
-        pass  # the exit status says it too
+        pass  # the exit status also shows it
     leave()
 
 

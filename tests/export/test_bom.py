@@ -131,11 +131,7 @@ def test_the_files_by_other_readers():
         (ROWS[1:], {"the designators are not those of the scene", "2 solids instead of 4"}),
         (
             ROWS + ROWS[:1],
-            {
-                "the designators are not those of the scene",
-                "6 solids instead of 4",
-                "X-a4 stands on two lines",
-            },
+            {"the designators are not those of the scene", "6 solids instead of 4", "X-a4 is on two lines"},
         ),
         (
             (replace(ROWS[0], qty=3), *ROWS[1:]),

@@ -295,11 +295,11 @@ def test_any_set_of_limits(stated):
     [
         (
             ("left edge", "right edge"),
-            "width of 9 mm stands on left edge and right edge, which has no such size",
+            "width of 9 mm refers to left edge and right edge, which has no such size",
         ),
         (("left edge", "upper edge"), "no such size"),
-        (("left edge",), "stands on left edge, which has no such size"),
-        ((), "stands on no feature"),
+        (("left edge",), "refers to left edge, which has no such size"),
+        ((), "refers to no feature"),
     ],
 )
 def test_a_dimension_that_its_features_do_not_have_is_refused(between, said):
@@ -310,7 +310,7 @@ def test_a_dimension_that_its_features_do_not_have_is_refused(between, said):
 def test_a_feature_that_is_cut_away_is_refused():
     width = plate(characteristics=(within("length", 10, 0.1, between=("left edge", "right edge")),))
     away = Pocket("step", (0, 0, 5), (0, 0, -1), (1, 0, 0), rectangle(0, -8, 1, 0), 5.0)
-    with pytest.raises(CheckFailure, match="P-1: length stands on a face that the solid does not have"):
+    with pytest.raises(CheckFailure, match="P-1: length refers to a face that the solid does not have"):
         model(replace(width, features=(*width.features, away)))
 
 

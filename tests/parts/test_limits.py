@@ -76,7 +76,7 @@ def part(**limits):
     [
         ({"characteristics": (Characteristic("width", 4, 3.9, 4.1),)}, "lower <= upper"),
         ({"characteristics": (within("width", 4, 0.1, between=("nose", "")),)}, "no feature 'nose'"),
-        ({"characteristics": (within("width", 4, 0.1),)}, "width: stands on no feature; legal: .*face z=0"),
+        ({"characteristics": (within("width", 4, 0.1),)}, "width: refers to no feature; legal: .*face z=0"),
         ({"datums": (DatumFeature("A", "nose"),)}, "no feature 'nose'"),
         ({"geometric": (Geometric("place", "position", 0.1, ("face z=0",)),)}, "without datum"),
         ({"geometric": (Geometric("flat", "flatness", 0.0, ("face z=0",)),)}, "more than 0"),

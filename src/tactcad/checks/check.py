@@ -1,4 +1,4 @@
-"""A check: declared once, in the module that does it, and run by what it is on.
+"""A check: declared once, in its module, and run by its kind of subject.
 
 Every module in `described`, which loads no CAD kernel, in `on_solids`, and in the folder that a family of
 sensors names, declares its `CHECKS`; nothing lists them. A module without, a declaration that lacks
@@ -40,7 +40,7 @@ class Job:
 
     design       keeps its rules
     names        of the scenes that are checked
-    scenes       these scenes, where they are made
+    scenes       these scenes, if they are made
     shop         limits of the workshop
     meshing      of the parts
     deflections  lines of the stiffness table, filled in by the check of them
@@ -62,7 +62,7 @@ class Job:
 
 @dataclass(frozen=True)
 class Check:
-    """What a check is called, what it looks at, and what does it.
+    """A check's name, its kind of subject, and its function.
 
     name     as reports and times call it
     on       `design`, every `part`, every `scene` in its rest pose, or every further `pose` of a scene
@@ -128,7 +128,7 @@ def of_rigs(design: CommonTables, scenes: Sequence[Scene]) -> list[Check]:
 def run_each(
     report: Report, checks: Iterable[Check], on: Subject, subject: CommonTables | Part | Scene, job: Job
 ) -> None:
-    """Run those of the checks that are on such a subject, and for it."""
+    """Run the checks of this kind of subject on it."""
     for check in checks:
         if check.on == on and check.applies(subject):
             report.run(check.name, check.run, subject, job)

@@ -27,7 +27,7 @@ class Case:
 
 @dataclass
 class Report:
-    """Every check that ran on a design, in order; what is taken as rigid, and by how much it bends."""
+    """Every check that ran on a design, in order; and the deflections of the parts taken as rigid."""
 
     design: str = ""
     revision: str = ""
@@ -62,7 +62,7 @@ class Report:
     def run(self, name: str, check: Callable[..., Iterable[Finding]], *args: Any) -> None:
         """Run one check on its first argument (something with a part number or a name) and keep its findings.
 
-        Where the estimator does not reach a design, what depends on it is flagged as not checked.
+        If a design is out of the estimator's range, checks that depend on it are flagged as not done.
         """
         subject = getattr(args[0], "part_no", None) or args[0].name
         start = time.perf_counter()
@@ -97,7 +97,7 @@ def json_bytes(reports: Sequence[Report]) -> bytes:
 def junit_bytes(reports: Sequence[Report]) -> bytes:
     """All designs' reports as JUnit XML: a suite a design, a case for every check on every part or scene.
 
-    A failing finding is a failure; what is only flagged stands in the case's output.
+    A failing finding is a failure; flags are in the case's output.
     """
     root = ElementTree.Element("testsuites", name="tactcad check")
     for report in reports:

@@ -1,4 +1,4 @@
-"""All checks of a design: every part of its scenes, then how the parts stand to each other."""
+"""All checks of a design: every part of its scenes, then the parts' relations."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ def run_checks(
     Raises
     ------
     InputError
-        Where the shop file cannot be used.
+        If the shop file cannot be used.
     """
     scenes = [make_scene(design, name) for name in scene_names]
     report = Report(design.name, design.design.revision, size=overall_size(design))

@@ -21,12 +21,12 @@ DEFAULT = Path(__file__).parent / "data" / "shop.toml"
 class Limits:
     """Limits of wire cutting in mm, all positive.
 
-    wire_diameter            of the wire that is used
+    wire_diameter            of the wire
     spark_gap                between wire and cut face, per side
     advised_slot             narrower slots are flagged
     wall, wall_aluminium     thinnest free-standing wall, and in aluminium
-    thinnest_published_web   thinner hinges are flagged as not known to have been cut
-    start_hole               smallest hole through which the wire is threaded
+    thinnest_published_web   thinner hinges are flagged: no published cut is known
+    start_hole               smallest hole for threading the wire
     """
 
     wire_diameter: float
@@ -50,7 +50,7 @@ class Limits:
 
 @dataclass(frozen=True)
 class Machining:
-    """Limits of mills, drills, taps and a lathe; mm if nothing else is said, all positive.
+    """Limits of mills, drills, taps and a lathe; mm unless stated otherwise, all positive.
 
     cutter_radius      smallest radius that a cutter leaves
     cutter_reach       depth that it reaches, in diameters
@@ -107,9 +107,8 @@ class Shop:
 
 
 def load_shop(path: str | Path = DEFAULT) -> Shop:
-    """Read a shop file: name, [limits] and [source] of its wire cutting, and, where it says them,
-    [feed], [feed_source], [machining] and [machining_source]: all of them, or those in which it differs from
-    what comes with tactcad.
+    """Read a shop file: name, [limits] and [source] of its wire cutting, and optionally [feed],
+    [feed_source], [machining] and [machining_source]: all values, or those that differ from tactcad's own.
 
     Raises InputError if it cannot be read or a field is missing, unknown or not legal.
     """

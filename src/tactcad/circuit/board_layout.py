@@ -11,7 +11,7 @@
 A fan: pins of a circuit's left side, from the top, take columns from its left edge outwards, so that their
 L-shaped tracks lie in each other and never cross. Columns lie on the upper layer, PITCH or more apart, rows
 on the lower layer, ROW apart; intervals share a row where they are apart (left-edge rule). So vias' openings
-in the planes never meet. Nothing but GND and EXC is on a plane.
+in the planes never meet. Only GND and EXC are on a plane.
 """
 
 from __future__ import annotations
@@ -61,7 +61,7 @@ class BusColumn:
 
 @dataclass
 class Routing:
-    """What is laid out so far, and the columns that wait for their bus."""
+    """The layout so far, and the columns that wait for their bus."""
 
     placed: list[Placed] = field(default_factory=list)
     tracks: list[Track] = field(default_factory=list)
@@ -78,7 +78,7 @@ class Routing:
         self.vias.append(Via(net, rounded(points[-1])))
 
     def place(self, component: Component, at: Point, turn: int = 0) -> dict[str, Point]:
-        """Where its pads are, by number."""
+        """Places of its pads, by number."""
         placed = Placed(component, rounded(at), turn)
         self.placed.append(placed)
         return {pad.number: placed.pad_at(pad) for pad in placed.footprint.pads}
@@ -144,7 +144,7 @@ def _cell(sheet: Routing, board: dict[str, Component], c: int, x0: float, pins: 
 
 
 def _switch(sheet: Routing, part: Component, c: int, corner: Point, leg: Point) -> float:
-    """A channel's switch, from the leg's track to ground; where the other output goes round it."""
+    """A channel's switch, from the leg's track to ground; and the other output's way round it."""
     x0, y = corner
     q = sheet.place(part, (x0 + GATE + 0.95, y + 20.2), 90)
     switch = {p.role: q[p.number] for p in part.pins}
@@ -188,7 +188,7 @@ class Strip:
             self.x = self.column(net, self.x, self.y, 0.05) + PITCH
 
     def _try(self, make: Callable[[Strip, float], None], reach: float) -> None:
-        """Where it fits first from here to the right; `reach` from its middle to the left at least."""
+        """The first place to the right that fits; at least `reach` from its middle to the left."""
         middle = self.x + reach
         for _ in range(400):
             trial = Strip(self.board, list(self.closed), self.x, self.y)
@@ -220,7 +220,7 @@ class Strip:
         return [*ends, *(v.at[0] + side * VIA for v in self.sheet.vias)]
 
     def fan(self, name: str, caps: Sequence[str] = ()) -> None:
-        """A circuit; `caps` are capacitors, each beside the first pin on its net that takes a column."""
+        """A circuit; `caps` are capacitors, each next to the first pin on its net that takes a column."""
         self._try(lambda trial, x: trial._fan(name, x, list(caps)), 3.0)
 
     def _fan(self, name: str, x: float, caps: list[str]) -> None:
@@ -263,7 +263,7 @@ class Strip:
     def _around(self, name: str, x: float, caps: list[str]) -> None:
         """Pins of the upper side rise to columns above it, the outermost turn first; those of a side take
         columns from the circuit outwards, and beyond them those of the lower side's half. Ground goes to the
-        slug, what is on the other plane to a via below."""
+        slug, the other plane's net to a via below."""
         part = self.board[name]
         at = self.sheet.place(part, (x, self.y))
         net = {p.number: p.net for p in part.pins}
@@ -332,7 +332,7 @@ class Strip:
         return edge
 
     def _cap(self, name: str, x: float, y: float, side: int) -> float:
-        """A capacitor beside a column, its other end on its plane; where the next column may stand."""
+        """A capacitor next to a column, its other end on its plane; returns the next column's least place."""
         reach = self.footprint_reach(name)
         up = y - 1.5
         at = self.sheet.place(self.board[name], (x + side * reach, up), 0 if side > 0 else 180)

@@ -1,4 +1,4 @@
-"""Every different board of an array, laid out: bare they are all alike, and differ in what is fitted."""
+"""Every different board of an array, laid out: bare boards are equal, the fitted components differ."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The array's circuit: its boards (read_board.py), and what hangs on them: gauges, terminals and leads.
+"""The array's circuit: its boards (read_board.py), with gauges, terminals and leads.
 
     B  .--+--W.1------- RED         Three wires: W.1 lies in one arm and W.3 in the next, so that their
   gauge   '--W.2------- PLUS        resistance cancels; W.2 carries no current. Two wires: W.1 and W.2 both
@@ -61,7 +61,7 @@ def _of_board(board: ReadBoard, c: Component) -> Component:
 
 
 def _channel(c: Component) -> int:
-    """The channel that a component belongs to; 0 for none."""
+    """A component's channel; 0 for none."""
     number = int(c.designator[1:])
     if c.kind == "switch":
         return number

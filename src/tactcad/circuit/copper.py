@@ -1,5 +1,5 @@
-"""A board as it is made: where its components stand, tracks, vias, planes, holes; mm, x to the right and y
-down from the upper left corner, seen on the component side, as in KiCad.
+"""A board's geometry: places of components, tracks, vias, planes, holes; mm, x to the right and y down from
+the upper left corner, seen on the component side, as in KiCad.
 """
 
 from __future__ import annotations
@@ -85,12 +85,12 @@ class BoardCopper:
 
     @cached_property
     def pads(self) -> tuple[tuple[Placed, Pad, Point, str], ...]:
-        """Every pad, where it is, and its net."""
+        """Every pad, its place, and its net."""
         return tuple((p, pad, p.pad_at(pad), p.net(pad)) for p in self.placed for pad in p.footprint.pads)
 
     @cached_property
     def outlines(self) -> dict[str, tuple[Point, ...]]:
-        """Of each plane: one closed line around its copper, with slits of no width to the openings in it."""
+        """Of each plane: one closed line around its copper, with slits of no width to its openings."""
         return {layer: self._outline(net) for layer, net in PLANES.items()}
 
     def corners(self, inside: bool = False) -> tuple[Point, ...]:

@@ -10,10 +10,10 @@
       |                      GND ----- REFIN1-
       '--[U5]-- V33 --- AVDD, IOVDD
 
-Bare boards are all alike. A channel that reads no element has links for Rc1 and Rc2, and neither Rc3 nor Cc1.
-D1 holds EXC below V33, which the converter's inputs may not exceed, whatever rises first; D3 is for a VPOS
-that is the wrong way round. ON high switches U4 on: by the controller, or by a jumper to VPOS beside it.
-R5 to R8 limit what the controller drives into an unpowered converter, R91 to R94 hold its lines low while the
+Bare boards are equal. A channel that reads no element has links for Rc1 and Rc2, and neither Rc3 nor Cc1. D1
+keeps EXC below V33, which the converter's inputs may not exceed, in any order of power-up; D3 protects
+against a reversed VPOS. ON high switches U4 on: by the controller, or by a jumper to VPOS next to it. R5 to
+R8 limit the current from the controller into an unpowered converter, R91 to R94 keep its lines low while the
 cable is off.
 """
 

@@ -107,7 +107,7 @@ def digital_readout(layout: Layout, name: str) -> DigitalReadout:
 
 @dataclass(frozen=True)
 class Register:
-    """A register's address, bytes and value, and from where each of its bits is known."""
+    """A register's address, bytes and value, and the source of each of its bits."""
 
     name: str
     address: int
@@ -122,7 +122,7 @@ HEADER = "the maker's ad7124.h"
 
 
 def registers(found: DigitalReadout, chip: int) -> list[Register]:
-    """What one AD7124-8 is set to; of each value where its bits were read, or `unread`."""
+    """Settings of one AD7124-8; for each value the source of its bits, or `unread`."""
     clock, places = found.converter.clock, found.chips[chip]
     fs = ceil(clock / (32 * found.rate))
     pga = found.converter.gains.index(found.gain)

@@ -1,4 +1,4 @@
-"""What every element's channel gives: volts at its loads, and the smallest force that it tells from none."""
+"""Every element's channel: volts at its loads, and the smallest force that it resolves."""
 
 from __future__ import annotations
 
@@ -39,9 +39,9 @@ class ElementSignal:
 
 
 def smallest_output(layout: Layout) -> float:
-    """What the amplifier's output tells from none, or the bridge's that a converter reads, V: two standard
-    deviations of a reading, of which the warm-up between its samples' instants is a part, and drift, by the
-    root of their squares."""
+    """Smallest change resolved at the amplifier's output, or at the bridge's for a converter, V: two standard
+    deviations of a reading, warm-up between its samples' instants included, and drift, by the root of their
+    squares."""
     if converter := converter_of(layout.design):
         found = digital_readout(layout, converter.name)
         return float(np.hypot(2 * found.noise, found.drift))
@@ -51,7 +51,7 @@ def smallest_output(layout: Layout) -> float:
 def reading_noise(layout: Layout, alike: bool = False) -> float:
     """Standard deviation of one reading, V, without drift.
 
-    alike: of readings that the mains and the instant of the samples move alike, as those of one run.
+    alike: for readings that the mains and the instant of the samples shift equally, as in one run.
     """
     if converter := converter_of(layout.design):
         return digital_readout(layout, converter.name).noise
@@ -70,7 +70,7 @@ def element_signals(layout: Layout) -> list[ElementSignal]:
     lead, arm = longest_lead_resistance(layout), completion_tolerance(design)
 
     def extremes(x: float) -> tuple[float, float]:
-        """Of either sign: which one a load gives depends on the arm of the bridge."""
+        """Of either sign: a load's sign depends on the arm of the bridge."""
         least = max(-x, -1.0)  # no resistance is negative
         return amplified(design, lead, least, -1.0, arm), amplified(design, lead, x, 1.0, arm)
 

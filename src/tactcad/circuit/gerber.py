@@ -115,7 +115,7 @@ def _drills(
 
 
 def places_csv(board: BoardCopper) -> bytes:
-    """Of what a machine fits: designator, value, package, middle, turn. What is left off is not in it."""
+    """For machine-fitted components: designator, value, package, middle, turn. Unfitted ones are left out."""
     text = io.StringIO(newline="")
     writer = csv.writer(text)
     writer.writerow(("designator", "value", "part_no", "package", "x_mm", "y_mm", "rotation", "side"))

@@ -16,7 +16,7 @@ from .netlist import GROUND, Component, Netlist
 from .netlist_files import Lead
 
 HEAD = ("from", "to", "signal", "wire", "length_mm", "current_mA")
-# mA that a board's circuits take beside its warm bridge, at most; chosen: twice what amplifier (1.3) and
+# mA, largest current of a board's circuits without its warm bridge; chosen: twice what amplifier (1.3) and
 # LT3042 (2) take, and a decoder that drives nothing.
 OWN = {"VPOS": 7.0, "VNEG": 3.0, "V5": 1.0}
 CABLE = 500.0  # mm, the bill's
@@ -41,7 +41,7 @@ def harness_csv(circuit: Netlist, leads: Sequence[Lead]) -> bytes:
 
 
 def _rows(circuit: Netlist, leads: Sequence[Lead]) -> Iterator[Row]:
-    # a bridge is two halves of twice the resistance beside each other; the gauge's half carries half of it
+    # a bridge is two parallel halves of twice the resistance; the gauge's half carries half of the current
     bridge = 1e3 * circuit.excitation / next(circuit.of_kind("gauge")).figure("ohm")
     digital = any(circuit.of_kind("converter"))  # all bridges are warm, not one of a board
     read = Counter(g.board for g in circuit.of_kind("gauge"))

@@ -1,5 +1,5 @@
-"""A board as KiCad 6 reads it (S-expressions, version 20211014), its planes filled: it can be checked and
-plotted as it is. Opened and checked with KiCad 6.0.11; other versions are untried.
+"""A board as KiCad 6 reads it (S-expressions, version 20211014), its planes filled, ready to check and plot.
+Opened and checked with KiCad 6.0.11; other versions are untried.
 """
 
 from __future__ import annotations
@@ -132,7 +132,7 @@ class _Writer:
             yield f'(pad "" np_thru_hole circle (at 0 0) (size {d} {d}) (drill {d}) (layers *.Cu *.Mask)))'
 
     def drawn(self, name: str) -> Iterator[str]:
-        """The edge, and what is printed."""
+        """The edge, and the print."""
         corners = self.board.corners()
         for layer, width, lines in (
             ("Edge.Cuts", EDGE_LINE, zip(corners, corners[1:] + corners[:1])),

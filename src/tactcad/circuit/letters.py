@@ -1,4 +1,4 @@
-"""Letters of strokes for what is printed on a board: no font is asked of who opens it.
+"""Stroke letters for a board's print: the reader needs no font.
 
 Each letter is lines of points on a grid 4 wide and 6 high, y up: "06 00 30" is (0, 6) to (0, 0) to (3, 0).
 """

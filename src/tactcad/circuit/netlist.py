@@ -1,4 +1,4 @@
-"""A netlist: components with designators, values and part numbers, and what is connected by their pins.
+"""A netlist: components with designators, values and part numbers, and their pins' nets.
 
 Designators by IEC 81346-2: B gauges, C capacitors, D diodes, J connectors, Q transistors, R resistors, U
 integrated circuits, W leads, X terminals; A boards. Those of element n: Bn, Xn, W(10 n + 1) and on; those of
@@ -33,7 +33,7 @@ GROUND = "GND"
 
 @dataclass(frozen=True)
 class Pin:
-    """A pin by its number or letter, what it is for, and the net that it is on; "" if it stays open."""
+    """A pin by its number or letter, its role, and its net; "" if it stays open."""
 
     number: str
     role: str
@@ -44,8 +44,8 @@ class Pin:
 class Component:
     """One component. `part_no` is its line of the bill. `figures` in V, ohm, F, Hz by name, for the deck.
 
-    `element` and `board` are the numbers of those that it belongs to; 0 for none. `footprint` by its name
-    (footprints.py), of what stands on a board; where not `fitted`, its place stays empty.
+    `element` and `board`: numbers of its element and board; 0 for none. `footprint`: its name
+    (footprints.py), for components on a board; if not `fitted`, its place stays empty.
     """
 
     designator: str
@@ -87,7 +87,7 @@ class Netlist:
 
     @cached_property
     def nets(self) -> dict[str, tuple[tuple[Component, Pin], ...]]:
-        """What is on every net, by its name, in the order of the components."""
+        """The pins on every net, by its name, in the order of the components."""
         nets: dict[str, list[tuple[Component, Pin]]] = {}
         for component in self.components:
             for pin in component.pins:

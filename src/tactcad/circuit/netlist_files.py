@@ -4,7 +4,7 @@ them), as a SPICE deck, as a list of leads, and as a table of pins.
 The deck is for ngspice: every element is read in turn, and the deck prints its bridge's and its amplifier's
 output. Switches are resistors, open at OPEN; an amplifier is its gain behind a resistor without current whose
 Johnson noise is the amplifier's own, and one pole at its bandwidth. Logic is left out: the deck's commands
-close the switches as the decoder would. Where a converter reads the bridges, all are on: the deck prints each
+close the switches as the decoder would. If a converter reads the bridges, all are on: the deck prints each
 one's output, and its share of the bridges' supply, which the converter takes for its reference; its pins are
 open.
 
@@ -31,7 +31,7 @@ Expression = str | tuple
 
 def kicad_bytes(netlist: Netlist, title: str, company: str | None, date: str, revision: str) -> bytes:
     """The file (UTF-8); `date` of issue, so that equal designs give equal bytes."""
-    # with all that eeschema writes there: readers ask for it
+    # with all that eeschema writes there: readers require it
     comments = (("comment", ("number", str(i)), ("value", "")) for i in range(1, 10))
     texts = (
         ("title", title),
@@ -90,14 +90,14 @@ def _component(netlist: Netlist, c: Component) -> Expression:
 
 def _part(c: Component) -> Expression:
     kind = "passive" if c.kind in PASSIVE else "unspecified"
-    # a connector's pins by number: what is on them differs from board to board
+    # a connector's pins by number: their nets differ from board to board
     names = (p.number if c.kind == "connector" else p.role for p in c.pins)
     pins = tuple(("pin", ("num", p.number), ("name", name), ("type", kind)) for p, name in zip(c.pins, names))
     return ("libpart", ("lib", "tactcad"), ("part", c.part_no), ("description", c.kind), ("pins", *pins))
 
 
 def _text(expression: Expression, depth: int) -> str:
-    """Lists that hold no list of lists stand on one line; words after the first are quoted."""
+    """Lists without lists of lists are on one line; words after the first are quoted."""
     if isinstance(expression, str):
         return '"' + expression.replace("\\", "\\\\").replace('"', '\\"') + '"'
     head, *rest = expression
@@ -187,7 +187,7 @@ def _node(net: str) -> str:
 
 
 def _name(c: Component) -> str:
-    """The component's in the deck, whose names take no dash."""
+    """The component's name in the deck, without dashes."""
     return c.designator.replace("-", "_")
 
 
@@ -275,7 +275,7 @@ def _terminal(circuit: Netlist, net: str) -> str:
 
 
 def _connector_pin(layout: Layout, circuit: Netlist, c: Component) -> str:
-    """The connector's pin where a lead ends, by what is printed there: its channel and end."""
+    """The connector's pin of a lead, by the print: its channel and end."""
     places = next(board.places for board in boards(layout) if board.number == c.board)
     channel = next(i for i, place in enumerate(places, start=1) if place.number == c.element)
     said = f" CH{channel}_{c.net('2').partition('_')[2] or 'FOOT'}"

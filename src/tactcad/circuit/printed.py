@@ -1,6 +1,4 @@
-"""What is printed on a board: designators beside their components, what the connectors' pins are for, its
-name.
-"""
+"""A board's print: designators next to their components, roles of the connectors' pins, its name."""
 
 from __future__ import annotations
 
@@ -45,7 +43,7 @@ def printed(board: BoardCopper, name: str) -> Iterator[tuple[Point, Point]]:
 
 
 def _mark(placed: Placed) -> tuple[Point, Point]:
-    """Beside a circuit's first pin, along it; beyond a diode's cathode, across it."""
+    """Next to a circuit's first pin, along it; beyond a diode's cathode, across it."""
     pad = placed.footprint.pads[0]
     if placed.component.kind == "diode":
         x = pad.x - pad.w / 2 - 0.3

@@ -10,13 +10,14 @@
                              Qc
                              GND
 
-Bare boards are all alike. A channel that reads no element has its switch and Rc3 left off, and links for Rc1
-and Rc2: its two outputs lie at EXC, and no input floats. Rc4 joins RED and PLUS in such a channel, and for
-leads of two wires; of three wires it is left off.
+Bare boards are equal. A channel that reads no element has its switch and Rc3 left off, and links for Rc1 and
+Rc2: its two outputs lie at EXC, and no input floats. Rc4 joins RED and PLUS in such a channel, and for leads
+of two wires; of three wires it is left off.
 
-The bridges' supply is made from VPOS, and D1 holds it below VPOS as that falls: supplies may come in any
-order. D2 and D3 hold VNEG below and VPOS above ground while one of them is missing. R5 to R8 limit what flows
-into U2 and U3 while they have no supply, R91 to R94 hold their inputs low while the card's cable is off.
+The bridges' supply is made from VPOS, and D1 keeps it below VPOS as that falls: supplies may come in any
+order. D2 and D3 keep VNEG below and VPOS above ground while one of them is missing. R5 to R8 limit the
+current into U2 and U3 while they have no supply, R91 to R94 keep their inputs low while the card's cable is
+off.
 """
 
 from __future__ import annotations
@@ -53,7 +54,7 @@ from .netlist import GROUND, Component, Kind, Netlist, Pin
 EXCITATION, POSITIVE, NEGATIVE, LOGIC = "EXC", "VPOS", "VNEG", "V5"
 # Of the 74HCT238, as of the 74HC238: address, outputs in order, enables.
 DECODER_ADDRESS, DECODER_OUTPUTS = ("1", "2", "3"), ("15", "14", "13", "12", "11", "10", "9", "7")
-# Of the LT3042 in MSOP: role, pin, net; PGFB on VPOS as its sheet says where power-good is not used.
+# Of the LT3042 in MSOP: role, pin, net; PGFB on VPOS, as its sheet states for unused power-good.
 REFERENCE_PINS = (
     ("in", "1", POSITIVE),
     ("in2", "2", POSITIVE),

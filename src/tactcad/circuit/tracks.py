@@ -1,7 +1,7 @@
 """The tracks' resistance in a circuit: every track and via of a board as a resistor of its own.
 
-A net of a board falls apart into nodes, NET__1 and on: one for every place where a track ends, a pad or a via
-lies. Planes are without resistance. A net keeps its name on its plane and at its connector.
+A net of a board falls apart into nodes, NET__1 and on: one for every track end, pad or via. Planes are
+without resistance. A net keeps its name on its plane and at its connector.
 """
 
 from __future__ import annotations
@@ -104,6 +104,6 @@ def _nodes(board: BoardCopper) -> tuple[dict[tuple[str, str], str], list[Between
             continue
         here = node(net, TOP, at)
         if placed.component.kind == "connector" or (pad.drill and net in on_plane):
-            tracks.append((here, net, VIA_OHM))  # where a wire comes in, or the pin lies in its plane
+            tracks.append((here, net, VIA_OHM))  # at a wire's entry, or for a pin in its plane
         pins[placed.component.designator, pad.number] = here
     return pins, tracks

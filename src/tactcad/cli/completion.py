@@ -42,7 +42,7 @@ def run(args: argparse.Namespace) -> int:
 
 
 def candidates(words: list[str]) -> list[str]:
-    """What the last of these words, of a command that is being typed, may become; none for a file's name."""
+    """Completions of the last of these words of a command; none for a file's name."""
     from tactcad.design.load import names
 
     from .main import COMMANDS, parser_of

@@ -15,7 +15,7 @@ from .parser import add_allowance, add_json, allowance
 if TYPE_CHECKING:
     from tactcad.synthesis.synthesise import Synthesis
 
-LATE = 1.1  # of the seconds asked for, from which on an overrun is said
+LATE = 1.1  # of the seconds asked for, above which an overrun is reported
 OVERRUN = "one search, the yield and the report take at least so long here"
 EXAMPLES = """\
   tactcad design hardware/targets/better-array.toml --out better
@@ -64,7 +64,7 @@ def run(args: argparse.Namespace) -> int:
         return got.met or (args.best and got.found.accepted)
 
     def answered(got: Synthesis) -> None:
-        """The answer as soon as it is there; the rest of the report follows."""
+        """Print the answer as soon as it is known; the rest of the report follows."""
         nonlocal writing
         before = time.perf_counter()
         if is_written(got):

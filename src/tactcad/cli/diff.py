@@ -30,7 +30,7 @@ EXAMPLES = """\
                                                                for a pull request
 
 A and B are each a design (a path or a name in hardware/), an export's folder, or a golden file (.json); with
-DESIGN they are git revisions (a commit, branch or tag, as HEAD~3), or '.' for the files as they stand. The
+DESIGN they are git revisions (a commit, branch or tag, as HEAD~3), or '.' for the present files. The
 present code reads the designs of both revisions, and nothing of the repository runs. --their-code runs each
 revision's own code as you: use it on code that you trust.
 First stands what each change of the design means by itself, by the present code, largest consequence first:

@@ -192,7 +192,7 @@ def _batch(args: argparse.Namespace, asked: Allowance) -> int:
 
         grades = row_grades(section, asked.within) or row_grades(section)
         if not grades:
-            return asked.within or 1.0  # errors were measured for none of the designs: each row says so
+            return asked.within or 1.0  # no design has measured errors: each row notes it
         said.append(pick(grades, asked, "K"))
         return asked.within or said[0].grade.error
 
@@ -343,8 +343,7 @@ def _spread(tolerance: Tolerance, shares: dict) -> list[str]:
 
 
 def _shares(layout: Layout, model: str) -> dict | None:
-    """Relative half-widths of every element's K, by field of [tolerance]; None by a rung that knows no
-    fillets."""
+    """Relative half-widths of every element's K, by field of [tolerance]; None for a rung without fillets."""
     if model not in FITTED:
         return None
     from tactcad.mechanics.as_built import half_widths

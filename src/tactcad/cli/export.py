@@ -106,7 +106,7 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _exported(source: str, args: argparse.Namespace, say: Progress) -> tuple[dict[str, Any], list[str]]:
-    """Export one design: what is reported, and what of it was left out."""
+    """Export one design; returns its report and the scenes left out."""
     from tactcad.design.files import refuse_overwriting
     from tactcad.design.load import find, read
     from tactcad.export.formats import ExportOptions

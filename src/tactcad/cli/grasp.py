@@ -1,4 +1,5 @@
-"""`tactcad grasp`: an array pressed on a soft body: who feels what, and what equation (3) makes of it."""
+"""`tactcad grasp`: an array pressed on a soft body: each element's force and deflection, and K_obj by
+equation (3)."""
 
 from __future__ import annotations
 
@@ -188,7 +189,7 @@ def picture(done: PressedArray, design: str) -> str:
     outlines = list(np.moveaxis(np.array(corners), (0, 1), (-2, -1)).reshape(-1, 4, 2))
     pressure = 1e3 * (force / (a * b)).ravel()
     with panels(size=(6.0, 7.0)) as (figure, axes):
-        # a rigid pad's edges press without bound: the scale ends where a tenth of the pads' area lies above
+        # the pressure at a rigid pad's edges is singular: the scale ends with a tenth of the pads' area above
         order = np.argsort(pressure)
         area = np.cumsum((a * b).ravel()[order])
         top = float(pressure[order][np.searchsorted(area, 0.9 * area[-1])]) or float(pressure.max())

@@ -1,5 +1,5 @@
-"""Command-line arguments and the options that commands share; refused like all other bad input: one line that
-says what is legal."""
+"""Command-line arguments and the options that commands share; refused like all other bad input, in one line
+with the legal values."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class Parser(argparse.ArgumentParser):
         self._negative_number_matcher = re.compile(r"-\.?\d")  # argparse's takes -1% and -1e-3 for options
 
     def parse(self, args: Sequence[str]) -> argparse.Namespace:
-        """The parsed arguments; ends the program with exit status 2 where they are wrong."""
+        """The parsed arguments; ends the program with exit status 2 if they are wrong."""
         if args and args[-1] == "--":
             self._refuse("--", "nothing follows it", legal="leave it out, or name what it is for")
         parsed, unknown = super().parse_known_args(args)
@@ -36,7 +36,7 @@ class Parser(argparse.ArgumentParser):
             self._refuse(unknown[0], "unknown argument", legal=hint or f"see `{self.prog} --help`")
         for action in self._actions:
             self._refuse_empty(action, getattr(parsed, action.dest, None))
-            if action.dest.endswith(BY_NAME):  # argparse drops what a left-out positional shares
+            if action.dest.endswith(BY_NAME):  # argparse drops the shared attributes of an omitted positional
                 given = vars(parsed).pop(action.dest, None)
                 if given is not None:
                     setattr(parsed, action.dest.removesuffix(BY_NAME), given)
@@ -114,7 +114,7 @@ def add_others(
     )
 
 
-BY_NAME = "_by_name"  # ending of an option's dest that stands for a positional
+BY_NAME = "_by_name"  # suffix of the dest of an option that replaces a positional
 UNLISTED = argparse.SUPPRESS  # help of an option that works and that --help does not name
 
 
@@ -127,7 +127,7 @@ def _named(action: argparse.Action) -> str:
 
 
 def add_allowance(parser: argparse.ArgumentParser, of: str, chosen: str) -> None:
-    """The two budgets; `of` says whose error P is, `chosen` what --within chooses."""
+    """The two budgets; `of`: the quantity with error P; `chosen`: the object of the choice by --within."""
     of = of.replace("%", "%%")  # argparse formats help
     parser.add_argument(
         "--within",
@@ -150,7 +150,7 @@ def add_needless_allowance(parser: argparse.ArgumentParser) -> None:
 
 
 def allowance(args: argparse.Namespace) -> Allowance:
-    """What was asked; false if neither was. Raises InputError."""
+    """The allowance asked for; false if there is none. Raises InputError."""
     return Allowance(
         None if args.within is None else read_within(args.within, "--within"),
         None if args.seconds is None else read_seconds(args.seconds, "--in"),

@@ -77,7 +77,7 @@ def run(args: argparse.Namespace) -> int:
 
 
 def from_log(file: str, by: str) -> Taken:
-    """What a log holds by its map; elements left out are named on standard error."""
+    """A log's readings by its map; elements left out are named on standard error."""
     from tactcad.lab.log_files import read_log
     from tactcad.lab.log_map import read_map
     from tactcad.lab.log_readings import take

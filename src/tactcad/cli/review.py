@@ -72,7 +72,7 @@ def run(args: argparse.Namespace) -> int:
     names = chosen_scenes(seen.design, args.scene or (list(seen.scenes) if seen.scenes else None))
     if args.freecad:
         refuse_no_document(args.freecad)
-    library = viewer_library() if out else None  # a missing one is said before any work
+    library = viewer_library() if out else None  # report a missing one before any work
     shapes, sheets = shapes_of(seen.design, say.line), dict(seen.sheets)
     made: dict[str, bytes] = {}
     if args.freecad:

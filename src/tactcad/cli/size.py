@@ -106,7 +106,7 @@ def run(args: argparse.Namespace) -> int:
         answer = _answer(args, design, parameter, args.model or DEFAULT_RUNG)
     else:
         answer = _answer_within(args, design, parameter, asked.within)
-    own = args.youngs_modulus is None and args.alloy is None  # else nobody asked for the design's material
+    own = args.youngs_modulus is None and args.alloy is None  # else the design's material is not needed
     if args.json:
         print(json.dumps(answer | (material_record(design) if own else {}), indent=2))
     else:
@@ -130,7 +130,7 @@ def _take(args: argparse.Namespace) -> None:
 
 
 def _answer_within(args: argparse.Namespace, design: Design, parameter: str, within: float) -> dict:
-    """By the rung of least work whose error of K, at the hinge that it finds, is within that."""
+    """By the cheapest rung whose error of K, for the hinge found, is within that."""
     from tactcad.design.allowance import percent
 
     best, least = _answer(args, design, parameter, DEFAULT_RUNG), math.inf

@@ -14,7 +14,7 @@ from typing import Any, TextIO
 
 
 class Lossy(io.FileIO):
-    """A stream's file that drops what cannot be written; `error` says why."""
+    """A stream's file that drops output that cannot be written; `error` has the reason."""
 
     error: OSError | None = None
 
@@ -107,7 +107,7 @@ class Log:
 
 
 class Silence:
-    """No progress (--quiet); what is a warning is said."""
+    """No progress (--quiet); warnings are printed."""
 
     def __init__(self, stream: TextIO) -> None:
         self.stream = stream
@@ -129,7 +129,7 @@ def set_loudness(option: str | None) -> None:
 
 
 def progress(stream: TextIO) -> Terminal | Log | Silence:
-    """The kind of progress that suits the stream, and what was asked for."""
+    """The kind of progress for the stream and the options."""
     if _loudness[0] == "--quiet":
         return Silence(stream)
     return Terminal(stream) if stream.isatty() else Log(stream, _loudness[0] == "--verbose")
@@ -146,8 +146,7 @@ def coloured(text: str, severity: str, stream: TextIO) -> str:
 
 @contextmanager
 def slow_work(stream: TextIO) -> Iterator[Callable[[int, int, str], None]]:
-    """Gives a function to tell each step's (done, total, text); what is told is shown every SILENT seconds
-    only."""
+    """Gives a function that takes each step's (done, total, text) and shows one every SILENT seconds only."""
     shown, told, ended = progress(stream), [(0, 1, "")], threading.Event()
 
     def show() -> None:

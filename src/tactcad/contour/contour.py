@@ -11,7 +11,7 @@ from .segment import Arc, Line, Point, Segment
 
 @dataclass(frozen=True)
 class Contour:
-    """Closed, simple chain of segments in mm: each starts exactly where the one before ends.
+    """Closed, simple chain of segments in mm: each starts exactly at the previous one's end.
 
     Raises ValueError if the chain is open, a segment has no length, or there is none.
     """
@@ -47,7 +47,7 @@ class Contour:
 
     @property
     def signed_area(self) -> float:
-        """Area in mm2, positive where the chain runs counter-clockwise."""
+        """Area in mm2, positive if the chain runs counter-clockwise."""
         x0, y0 = self.segments[0].start
         return sum(_area_and_moments(s, x0, y0)[0] for s in self.segments)
 
@@ -85,7 +85,7 @@ class Contour:
         return Contour(tuple(s.reversed() for s in reversed(self.segments)))
 
     def as_circle(self) -> tuple[Point, float] | None:
-        """Centre and radius (mm) where the whole contour is one circle, else None."""
+        """Centre and radius (mm) if the whole contour is one circle, else None."""
         first = self.segments[0]
         if not isinstance(first, Arc):
             return None
@@ -176,7 +176,7 @@ def _product_moment(s: Segment) -> float:
 
 
 def _w_minus_sin(w: float) -> float:
-    """w - sin(w), by its series where the difference would lose digits."""
+    """w - sin(w), by its series if the difference would lose digits."""
     if abs(w) > 0.5:
         return w - sin(w)
     term = total = w**3 / 6

@@ -49,7 +49,7 @@ def place_for_circle(contour: Contour, diameter: float, within: float = 1e-3) ->
     Returns
     -------
     Point or None
-        The centroid where the circle fits there; None if no place was found.
+        The centroid if the circle fits there; None if no place was found.
     """
     needed = diameter / 2 - ROUNDING_MM
     if clearance(contour, contour.centroid) >= needed:
@@ -68,8 +68,7 @@ def place_for_circle(contour: Contour, diameter: float, within: float = 1e-3) ->
 
 
 def _turn(s: Segment, p: Point) -> float:
-    """Angle by which the direction from p to a point turns as it moves along the segment, radians, positive
-    ccw.
+    """Turn of the direction from p to a point moving along the segment, radians, positive ccw.
 
     For an arc it is that of its chord, and a full turn more where p lies between arc and chord.
     """

@@ -1,4 +1,4 @@
-"""Whether many segments of a plane, thousands of them, keep clear of each other."""
+"""Whether many (thousands of) segments in a plane keep clear of each other."""
 
 from __future__ import annotations
 

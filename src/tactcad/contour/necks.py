@@ -1,4 +1,4 @@
-"""Where a part, or the space around it, is narrow: webs, walls and slots, in closed form.
+"""Narrow places of a part, or of the space around it: webs, walls and slots, in closed form.
 
 A neck is a straight connection of two boundary points that is normal to the boundary at both (at a sharp
 corner: lies between the normals of its two edges) and that nothing else crosses. The smallest wall and the
@@ -129,8 +129,8 @@ def direction(s: Segment, p: Point) -> Point:
 
 
 def _side(piece: _Piece, p: Point, q: Point) -> Literal["material", "void"] | None:
-    """On which side of the piece the connection from p to q leaves it; None if it does not leave along
-    a normal.
+    """Side of the piece on which the connection from p to q leaves it; None if it does not leave along a
+    normal.
     """
     s = piece.segment
     here = direction(s, p)

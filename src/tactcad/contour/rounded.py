@@ -44,7 +44,7 @@ def rounded_polygon(corners: list[Corner]) -> Contour:
     Raises
     ------
     ValueError
-        Where fillets do not fit an edge, two corners coincide, or the edges at a rounded corner are parallel.
+        If fillets do not fit an edge, two corners coincide, or the edges at a rounded corner are parallel.
     """
     count = len(corners)
     arcs = [_fillet(corners[i - 1].at, corners[i], corners[(i + 1) % count].at) for i in range(count)]
@@ -108,7 +108,7 @@ def _merged(pieces: list[Segment]) -> list[Segment]:
 
 
 def _joined(a: Segment, b: Segment) -> Arc | None:
-    """The one arc that two neighbouring arcs of one circle make, else None."""
+    """Two neighbouring arcs joined to one if they are of one circle, else None."""
     if not (isinstance(a, Arc) and isinstance(b, Arc)):
         return None
     near = hypot(a.centre[0] - b.centre[0], a.centre[1] - b.centre[1]) < ROUNDING_MM

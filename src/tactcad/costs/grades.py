@@ -1,4 +1,4 @@
-"""Ways of answering as grades: the error that each promises, and what it costs on this machine.
+"""Methods as grades: each one's promised error, and its cost on this machine.
 
 Checks and exports by meshing: the error of a part's volume. Builds and syntheses by the number of arrays: the
 half-width of the yield's interval. Rungs of the ladder: the error of K; closed forms answer at once, so only
@@ -50,7 +50,7 @@ ANGULAR = (1.0, 0.5, 0.35, 0.2, 0.1, 0.05, 0.02)  # rad, largest turn between fa
 COUNTS = tuple(first * 10**power for power in range(2, 6) for first in (1, 2, 5)) + (1_000_000,)  # arrays
 YIELD = "half of the yield's 95 % interval"
 VOLUME = "each meshed volume"
-SIZED = 64  # designs whose meshes are counted, evenly taken of many; a count takes a millisecond
+SIZED = 64  # designs whose meshes are counted, evenly taken from all; a count takes a millisecond
 DATA = Path(__file__).parent / "data" / "costs.json"
 TABLE, ALONE = 10_000, 100  # designs in one call, which numpy spends on arrays, and one a call, on Python
 REPEATS = 5  # the shortest counts: disturbances only add time; in all half a second
@@ -70,7 +70,7 @@ def check_grades(checked: Sequence[tuple[CommonTables, Sequence[str]]]) -> list[
 def export_grades(
     design: CommonTables, scenes: Sequence[str], drawings: bool = False, guides: bool = False
 ) -> list[Grade]:
-    """An export with nothing in the cache, the parts made written as STL, too, meshed by ANGULAR."""
+    """An export with an empty cache, including STL of the parts made, meshed by ANGULAR."""
     count, parts = counts(design, scenes)
     made = [part for part in parts if not part.bought]
     base = linear(published()["export"], count)
@@ -79,7 +79,7 @@ def export_grades(
 
 
 def meshing_of(grade: Grade) -> Meshing:
-    """The meshing that a grade stands for."""
+    """The meshing of a grade."""
     return next(Meshing(a, grade.error) for a in ANGULAR if _triangles(a) == grade.name)
 
 
@@ -128,7 +128,7 @@ def yield_grades() -> list[Grade]:
 
 
 def arrays_of(grade: Grade) -> int:
-    """How many arrays a grade stands for."""
+    """The number of arrays of a grade."""
     return next(count for count in COUNTS if _arrays(count) == grade.name)
 
 
@@ -169,9 +169,9 @@ def row_grades(s: HingeSection, within: float | None = None) -> list[Grade]:
     Parameters
     ----------
     s
-        Many designs in a row; those where errors were not measured are left out.
+        Many designs in a row; those without measured errors are left out.
     within
-        The error asked for; designs that no candidate answers to it are left out, too.
+        The error asked for; designs without a candidate within it are also left out.
 
     Returns
     -------
@@ -201,7 +201,8 @@ def row_grades(s: HingeSection, within: float | None = None) -> list[Grade]:
 
 
 def _by_elements(seconds: float) -> float | None:
-    """What a command by elements takes here; None without any, as closed forms are answered at once."""
+    """Seconds of a command by elements on this machine; None without any, since closed forms answer at
+    once."""
     start = published()["start"]
     return here(start["numpy"] + start["elements"] + seconds) if seconds else None
 
@@ -271,10 +272,10 @@ def calibration() -> float:
 
 
 def calibrated() -> float:
-    """`calibration`, from the cache where it was measured here within a day."""
+    """`calibration`, from the cache if it was measured here within a day."""
     cache = Cache(default_root())
     key = f"calibration {digest([processor(), np.__version__, TABLE, ALONE])}"
-    with suppress(TypeError, ValueError):  # none there, or another's
+    with suppress(TypeError, ValueError):  # absent, or another machine's
         seconds, at = json.loads(cache.get(key) or b"")
         if 0.0 <= time.time() - at <= KEPT and seconds > 0.0:
             return float(seconds)

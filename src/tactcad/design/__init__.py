@@ -1,8 +1,8 @@
-"""What is asked for: the parameter tree with unit, range and meaning of every field, alloys, messages of
+"""The design file: the parameter tree with unit, range and meaning of every field, alloys, messages of
 refusal.
 
-In: TOML text, CSV tables. Out: a frozen `Design`, or one line that says what is wrong, where, and what is
-legal.
+In: TOML text, CSV tables. Out: a frozen `Design`, or one line with the fault, its place, and the legal
+values.
 
 Called like a function, as `tactcad.design(target)`, it is `tactcad.face.design`: Python has one place for the
 name of a room and of a function.

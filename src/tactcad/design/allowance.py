@@ -1,7 +1,7 @@
 """How much error and how much time an answer may take, and which way of answering that allows.
 
-A command lists its ways of answering as grades, in the order of their work; `pick` takes one. Nothing is
-computed for that but costs, so what cannot be had is refused before anything is begun.
+A command lists its methods as grades, in the order of their work; `pick` takes one. Only costs are computed
+for that, so an impossible request is refused before any work.
 """
 
 from __future__ import annotations
@@ -17,8 +17,8 @@ LONGEST = 1e9  # s, thirty years
 
 @dataclass(frozen=True)
 class Grade:
-    """A way of answering: its name, the largest relative error it promises, and the seconds it is to take,
-    None if it answers at once."""
+    """A method: its name, the largest relative error it promises, and its expected seconds, None if it
+    answers at once."""
 
     name: str
     error: float
@@ -27,7 +27,7 @@ class Grade:
 
 @dataclass(frozen=True)
 class Allowance:
-    """What an answer may err by (relative, of 1) and take (s); None if that is not limited."""
+    """Largest error of an answer (relative, of 1) and its largest time (s); None if that is not limited."""
 
     within: float | None = None
     seconds: float | None = None
@@ -47,7 +47,7 @@ class Picked:
     finer: Grade | None
 
     def text(self) -> str:
-        """What was taken, what it promises, and what a step more or less would cost, in one line."""
+        """The grade taken, its promise, and the cost of the next grades, in one line."""
         sides = (("a step less", self.coarser), ("a step more", self.finer))
         steps = "; ".join(f"{side}: {_whole(grade) if grade else 'none'}" for side, grade in sides)
         return f"budget: {self.grade.name}: {self.what} within {_promise(self.grade)}; {steps}"
@@ -98,12 +98,12 @@ def pick(grades: Sequence[Grade], asked: Allowance, what: str) -> Picked:
     asked
         Error, time or both.
     what
-        Whose error it is, as "K".
+        The quantity with that error, as "K".
 
     Raises
     ------
     CheckFailure
-        Where no grade keeps what is asked; says what would be possible.
+        If no grade keeps the request; the message names the best possible.
     """
     steps: list[Grade] = []
     for grade in grades:
@@ -136,7 +136,7 @@ def seconds_text(seconds: float) -> str:
 
 
 def _too_short(asked: Allowance, what: str, needed: Grade, in_time: Sequence[Grade]) -> str:
-    """Why the time does not do, the time that would, and what can be had in it."""
+    """The message of a too short time: the time needed, and the best within the given one."""
     of = "" if asked.within is None else f" for {what} within {percent(asked.within)}"
     best = f"; in {asked.seconds:g} s at best {_whole(in_time[-1])}" if in_time else ""
     return (

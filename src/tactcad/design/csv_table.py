@@ -1,7 +1,7 @@
 """Tables read from CSV: every refusal names file, line and column.
 
 A line that starts with # is a comment. The first other line is the header, with one row at least below it;
-columns may stand in any order and unknown ones are ignored. Changes that spreadsheets make to a CSV file are
+columns may be in any order and unknown ones are ignored. Changes that spreadsheets make to a CSV file are
 undone where they are unambiguous: a byte order mark, a first line "sep=;", semicolons or tabs between the
 columns, empty rows, empty cells at the end, and decimal commas.
 """
@@ -26,7 +26,7 @@ from .text_values import as_number
 
 LARGEST_FILE = 100_000_000  # bytes; a million lines of readings are 35 MB
 COMMENT = re.compile(r"\s*#(?!N/A|DIV/0!|VALUE!|REF!|NAME\?|NUM!|NULL!)")  # no spreadsheet's error value
-# a comma before three digits may divide thousands, unless a nought stands before it
+# a comma before three digits may divide thousands, unless a nought precedes it
 MAY_BE_THOUSANDS = re.compile(r"[+-]?[1-9][0-9]{0,2}(,[0-9]{3})+")
 
 
@@ -147,9 +147,9 @@ def read(path: str | Path, fields: tuple[Field, ...], optional: tuple[Field, ...
     path
         The file, as the user named it.
     fields
-        Columns that must be there.
+        Columns that must be present.
     optional
-        Columns that are read where they are there.
+        Columns that are read if present.
 
     Raises
     ------
@@ -201,7 +201,7 @@ def _at_once(table: Table, chosen: tuple[Field, ...]) -> Rows | None:
         return None
     try:
         places = [table.header.index(f.name) for f in chosen]
-        # loadtxt accepts fewer texts for a number than `number` does: where it refuses, `numeric` decides
+        # loadtxt accepts fewer texts for a number than `number` does: if it refuses, `numeric` decides
         values = np.loadtxt(
             table.lines, delimiter=table.delimiter, usecols=places, comments=None, ndmin=2, unpack=True
         )
@@ -222,7 +222,7 @@ def read_table(path: str | Path, kind: str, most_bytes: int = LARGEST_FILE, comm
     kind
         What was expected, for messages: "readings (CSV)".
     most_bytes
-        What is larger is refused unread.
+        A larger file is refused unread.
     comments
         Whether lines that start with # are left out.
 
@@ -320,7 +320,7 @@ def decimal_commas(texts: Iterable[str]) -> bool:
 
 
 def number(text: str) -> float:
-    """The number that ASCII digits stand for; NaN for any other text."""
+    """The number in ASCII digits; NaN for any other text."""
     try:
         return as_number(text)
     except ValueError:

@@ -96,7 +96,7 @@ def started(source: str, name: str, today: date) -> str:
     Raises
     ------
     InputError
-        Where the source is no design, or its [design] is not written a value a line.
+        If the source is no design, or its [design] is not written with one value a line.
     """
     text = read_text(find(source), MOST_BYTES, "a design file (TOML)").replace("\r\n", "\n")
     old, revision = parse_toml(text, source), parse(text, source).design.revision
@@ -117,7 +117,7 @@ def started(source: str, name: str, today: date) -> str:
 
 
 def _without(text: str, table: str, name: str) -> str:
-    """TOML text without a key that stands on a line of its own below [table]."""
+    """TOML text without a key on a line of its own below [table]."""
     here, lines = "", []
     for line in text.split("\n"):
         if header := re.match(r"\s*\[\s*([^\[\]]+?)\s*\]", line):
@@ -129,7 +129,7 @@ def _without(text: str, table: str, name: str) -> str:
 
 
 def _with_values(text: str, table: str, values: dict[str, str]) -> str:
-    """TOML text with other values of keys that stand a line each below [table]."""
+    """TOML text with other values of keys, one a line, below [table]."""
     here, lines = "", []
     for line in text.split("\n"):
         if header := re.match(r"\s*\[\s*([^\[\]]+?)\s*\]", line):

@@ -1,4 +1,4 @@
-"""What the base install leaves out: the extras of pyproject.toml, and the refusal where one is needed."""
+"""The extras of pyproject.toml, which the base install leaves out, and the refusal if one is needed."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def install(*extras: str) -> str:
 
 
 def refusal(error: ImportError) -> InputError | None:
-    """What to say of a package of an extra that cannot be imported; None if the package is of none."""
+    """The message for a package of an extra that cannot be imported; None if it belongs to none."""
     name = error.name or ""
     extra = next((extra for extra, packages in EXTRAS.items() if name.split(".")[0] in packages), None)
     if extra is None:

@@ -1,4 +1,4 @@
-"""What a field of the design file is: unit, legal range, default, meaning; and reading one value."""
+"""A field of the design file: unit, legal range, default, meaning; and reading one value."""
 
 from __future__ import annotations
 
@@ -226,7 +226,7 @@ class NumberRows:
 
 @dataclass(frozen=True)
 class Values:
-    """A list of values of a field that is named elsewhere, whose own spec reads each of them."""
+    """A list of values of a field named elsewhere, whose spec reads each."""
 
     meaning: str
     unit: str = ""
@@ -248,7 +248,7 @@ Spec = Number | Whole | OneOf | TextLine | Day | Numbers | SomeOf | NumberRows |
 
 
 def given(spec: Spec, default: Any = REQUIRED, derived: str = "") -> Any:
-    """A dataclass field read by `spec`. `derived` says how a default of None is filled in."""
+    """A dataclass field read by `spec`. `derived` describes how a default of None is filled in."""
     metadata = {"spec": spec, "derived": derived}
     if default is REQUIRED:
         return dataclasses.field(metadata=metadata)

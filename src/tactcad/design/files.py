@@ -1,7 +1,7 @@
 """The one way in which files named by users are read, and single files written.
 
 Reading: regular files of bounded size only, so that a pipe, a device or a huge file named by mistake neither
-hangs the command nor fills the memory. Writing: the whole file under its name, or none.
+hangs the command nor fills the memory. Writing: the whole file or nothing.
 """
 
 from __future__ import annotations
@@ -106,7 +106,7 @@ def read_text(path: str | Path, most_bytes: int, kind: str) -> str:
     try:
         text = data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
-        # error.object is what stands behind the mark
+        # error.object is the text after the mark
         before = error.object[: error.start]
         line, column = before.count(b"\n") + 1, len(before) - before.rfind(b"\n")
         bad = error.object[error.start : error.end]
@@ -130,8 +130,8 @@ def read_json(path: str | Path, most_bytes: int, kind: str) -> Any:
     Raises
     ------
     InputError
-        As `read_text`; with line and column if it is not JSON, which has neither NaN nor infinities, where
-        it is nested too deeply, or where a text holds characters that nobody sees.
+        As `read_text`; with line and column if it is not JSON, which has neither NaN nor infinities, if it is
+        nested too deeply, or if a text holds invisible characters.
     """
     text = read_text(path, most_bytes, f"{kind} (JSON)")
     try:
@@ -182,13 +182,12 @@ def write_whole(path: str | Path, data: bytes) -> None:
 
 @contextmanager
 def whole_file(path: str | Path) -> Iterator[Path]:
-    """A file to write beside the path: flushed and renamed over it when the block ends well, otherwise
-    removed.
+    """A temporary file in the path's folder: flushed and renamed over the path when the block ends well,
+    otherwise removed.
 
-    The folder must exist; links are followed to it, and refused in the file's place. What killed runs left
-    there is removed first. A file that is replaced keeps its permissions; one that is write-protected is
-    kept. Raises InputError if the place cannot be written to, CheckFailure if there is no room; what
-    was there before is then unchanged.
+    The folder must exist; links are followed to it, and refused in the file's place. Leftovers of killed runs
+    are removed first. A replaced file keeps its permissions; a write-protected one is kept. Raises InputError
+    if the place cannot be written to, CheckFailure if there is no room; the earlier file is then unchanged.
     """
     with in_one_line(path):
         place = Path(os.path.realpath(path))
@@ -250,7 +249,7 @@ def scratch_folder(purpose: str) -> Iterator[Path]:
 
 
 def refuse_overwriting(out: str | Path, *inputs: str | Path | None, option: str = "--out") -> None:
-    """Refuse, before any work, an output that would take away what is read, and a file that is a link.
+    """Refuse, before any work, an output that would overwrite an input, and a file that is a link.
 
     Parameters
     ----------
@@ -264,8 +263,8 @@ def refuse_overwriting(out: str | Path, *inputs: str | Path | None, option: str 
     Raises
     ------
     InputError
-        Where `out` is one of the inputs, under whatever name or link, lies in a folder that is one, or is a
-        folder with one in it; or where it is a link, but not to a folder.
+        If `out` is one of the inputs, under whatever name or link, lies in a folder that is one, or is a
+        folder with one in it; or if it is a link, but not to a folder.
     """
     absolute(out)  # a folder to start from is there
     place, around = _identity(out), _folders(out)
@@ -334,7 +333,7 @@ def refusal(where: str, error: OSError) -> InputError | CheckFailure:
     """Our message for an operating system's refusal to write: CheckFailure if there is no room, else
     InputError.
 
-    Raises `error` again where it is anything else.
+    Raises any other `error` again.
     """
     if error.errno not in REFUSED_BY_MACHINE:
         raise error

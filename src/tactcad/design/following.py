@@ -1,4 +1,4 @@
-"""What follows the array where the design leaves it out: title, tolerances of the sheet, rigs' sizes.
+"""Values derived from the array if the design omits them: title, tolerances of the sheet, rigs' sizes.
 
 Each size is the published set-up's as long as the array is no longer than the published one.
 """
@@ -14,7 +14,7 @@ from .tree import Array, Element, Sheet, SheetMaterial
 
 # The published set-up, mm and N; the cart is chosen around its sample.
 SIDE, LENGTH, WIDTH, WHEEL_BASE, VACUUM, RINGS = 32.0, 70.0, 50.0, 50.0, 26.0, 3
-BESIDE_THREADS = 54.0  # mm, width of a cart whose wheels roll beside the stages' threads
+BESIDE_THREADS = 54.0  # mm, width of a cart whose wheels clear the stages' threads
 MOVING, STACK = 3.235, 21.0  # paper: what moves with the array, N; its stack of sheets and spacers
 PER_STACK = 0.05  # N for a mm of stack more; chosen: twice what aluminium weighs, trimmed by the ballast
 # mm2 of sheet in both rows' bodies and spacers, as published; kg/m3, 7075; m/s2
@@ -28,7 +28,7 @@ LARGEST_VACUUM = 64.0
 
 
 def followed(values: dict[str, Any]) -> dict[str, Any]:
-    """The tables of a design with what it left out filled in."""
+    """The tables of a design with omitted values filled in."""
     array, sheet, element = values["array"], values["sheet"], values["element"]
     sample, grasping = values.get("sample"), values.get("grasping")
     done = dict(values)
@@ -68,7 +68,7 @@ def _as_bought(material: SheetMaterial, sheet: Sheet) -> dict[str, float]:
 
 
 def _title(array: Array) -> str:
-    """Rows by elements a row, such as 2 x 5, or 5 + 4 where they differ."""
+    """Rows by elements a row, such as 2 x 5, or 5 + 4 if they differ."""
     counts = [len(row) for row in array.row_arms]
     size = f"{len(counts)} x {counts[0]}" if len({*counts}) == 1 else " + ".join(map(str, counts))
     return f"Tactile array {size}"

@@ -55,13 +55,12 @@ def find(source: str | Path) -> Path:
 
 
 def names() -> list[str]:
-    """Names of the designs in hardware/ where the command runs and of those that came with tactcad,
-    sorted."""
+    """Names of the designs in ./hardware and of the installed ones, sorted."""
     return sorted({p.stem for folder in _hardware_folders() for p in folder.glob("*.toml")})
 
 
 def _hardware_folders() -> list[Path]:
-    """hardware/ where the command runs, then the designs that came with tactcad.
+    """./hardware, then the installed designs.
 
     Those are the checkout's hardware/: `named` is a link to it there, and a folder of its files in a wheel.
     """
@@ -215,8 +214,8 @@ def _shipped() -> tuple[CommonTables, ...]:
 
 
 def stale_origins(design: CommonTables) -> list[str]:
-    """Origins that a shipped design has of another value, word for word: of a value that was changed since
-    the design was started from it. What a search or its target says of its values is no value's own."""
+    """Origins that a shipped design gives, word for word, to another value: the value was changed since the
+    design was started from that one. Origins written by a search or its target are exempt."""
     values, told = paths(design), []
     for path, text in design.origin.items():
         if text.startswith(OF_A_SEARCH):
@@ -234,7 +233,7 @@ def unknown_field(path: str, known: list[str], schema: str = SCHEMA) -> InputErr
     """The refusal of a name that is no field of the file; `known` are those of its table, and `schema` prints
     all."""
     table, _, name = path.rpartition(".")
-    own = {k.removeprefix(f"{table}."): k for k in known}  # a common table's name makes no two names alike
+    own = {k.removeprefix(f"{table}."): k for k in known}  # compare names without the common table's
     begins = next((k for word, k in own.items() if word.startswith(f"{name}_")), "")
     if schema == SCHEMA and not begins and ".override." not in path:
         begins = _elsewhere(name)
@@ -243,7 +242,7 @@ def unknown_field(path: str, known: list[str], schema: str = SCHEMA) -> InputErr
 
 
 def _elsewhere(name: str) -> str:
-    """The first field of another table that is called so, or begins so; "" if none does."""
+    """The first field of another table with this name or beginning; "" if there is none."""
     kinds = {table: kind for family in all_families().values() for table, kind in family.tables.items()}
     every = ((table, f.name) for table, kind in kinds.items() for f in dataclasses.fields(kind))
     return next((f"{t}.{n}" for t, n in every if f"{n}_".startswith(f"{name}_")), "")

@@ -1,5 +1,5 @@
-"""Materials of the sensing element: the table of those known by name, how a design's own values differ from
-it, and what a sheet's thickness may differ by where the design does not say.
+"""Materials of the sensing element: the table of those known by name, a design's differences from it, and a
+sheet's default thickness tolerance.
 """
 
 from __future__ import annotations
@@ -18,8 +18,8 @@ from .text_values import data_rows
 
 # A value that differs by more than this from the named material's belongs to another material.
 MOST_DIFFERENCE = 0.10
-# Young's modulus of a lot about its material's, relative, where a label of its own has no row: chosen, as
-# the widest of the wrought alloys but the cold-rolled.
+# Relative deviation of a lot's Young's modulus for a label without a row: chosen, the widest of the wrought
+# alloys but the cold-rolled.
 LOT_SPREAD = 0.02
 # mm, plus and minus, of sheet that EN 485-4 does not hold for; chosen: measure it.
 OTHER_SHEET = 0.1
@@ -44,9 +44,9 @@ class Alloy:
     """A sheet material.
 
     youngs_modulus, yield_strength, fatigue_strength (fully reversed) and tensile_strength in MPa, density in
-    kg/m3, conductivity in W/(m K). modulus_per_kelvin: share of E by which it falls per kelvin, 1/K; None for
-    a label of its own. `tensile_strength` is None if it is not known; the Goodman line then
-    ends at the yield strength, which is Soderberg's. spread: relative, by property.
+    kg/m3, conductivity in W/(m K). modulus_per_kelvin: relative fall of E per kelvin, 1/K; None for a label
+    without a row. `tensile_strength` is None if it is not known; the Goodman line then ends at the yield
+    strength, which is Soderberg's. spread: relative, by property.
     """
 
     name: str
@@ -126,7 +126,7 @@ ELECTROLYSIS = {"aluminium": "pits", "titanium": "discolours", "steel": "rusts",
 
 
 def family(density: float) -> str:
-    """Which metal a density (kg/m3) belongs to: aluminium, titanium, steel or copper; "" for none of them."""
+    """Metal with that density (kg/m3): aluminium, titanium, steel or copper; "" for none."""
     return next((name for name, (low, high) in FAMILIES.items() if low <= density <= high), "")
 
 
@@ -147,12 +147,13 @@ WORDS = {
 
 
 def described() -> str:
-    """The names of the table, each with what it is."""
+    """The names of the table, each with its description."""
     return ", ".join(f"{name} ({WORDS[name]})" if name in WORDS else name for name in ALLOYS)
 
 
 def meant(word: str) -> str:
-    """ "did you mean A or B?" for alloys whose name begins so or that are described so, else the nearest."""
+    """ "did you mean A or B?" for alloys whose name begins so or whose description matches, else the
+    nearest."""
     wanted = word.casefold()
     found = [n for n in ALLOYS if n.casefold().startswith(wanted) or wanted in WORDS.get(n, "").casefold()]
     return f"did you mean {' or '.join(found)}?" if found and wanted else near(word, ALLOYS)
@@ -204,7 +205,8 @@ def _spelled(name: str) -> str:
 
 
 def differences(name: str, given: Mapping[str, Any], origin: Mapping[str, str]) -> tuple[Difference, ...]:
-    """Differences between a design's material and the table's row of its name; none for a label of its own.
+    """Differences between a design's material and the table's row of its name; none for a label without a
+    row.
 
     Raises InputError if a value differs from the row by more than its spread without a source in `origin`,
     or by more than MOST_DIFFERENCE.
@@ -246,7 +248,7 @@ def differences(name: str, given: Mapping[str, Any], origin: Mapping[str, str]) 
 
 
 def sheet_tolerance(thickness: float, density: float) -> float:
-    """Plus and minus mm of a rolled sheet (mm) of that density (kg/m3): EN 485-4 where that is aluminium."""
+    """Plus and minus mm of a rolled sheet (mm) of that density (kg/m3): EN 485-4 for aluminium."""
     if family(density) != "aluminium":
         return OTHER_SHEET
     return next(tolerance for to, tolerance in _rows() if thickness <= to)

@@ -1,4 +1,4 @@
-"""Refusal of bad input: where, which value, what is legal."""
+"""Refusal of bad input: its place, value, and the legal range."""
 
 from __future__ import annotations
 
@@ -9,10 +9,9 @@ class InputError(ValueError):
     """Input that cannot be used. Commands print it as one line and exit with status 2.
 
     where   the field's path, or file with line and column ("element.hinge_thickness", "loads.csv:3:2")
-    what    what is wrong, one clause without a full stop; both are shown on one line and shortened, whatever
-            a file calls its fields
+    what    the fault, one clause without a full stop; both are shown on one line and shortened
     value   the value found, shown with repr and shortened; leave it out if there is none
-    legal   what would be accepted
+    legal   the legal values
     """
 
     def __init__(self, where: str, what: str, *, value: object = ..., legal: str = "") -> None:
@@ -72,8 +71,7 @@ def shortened(value: object, most: int = 60) -> str:
 
 
 def hidden(text: str) -> str:
-    """Description of invisible characters in a text that change how the rest is shown; "" if there are
-    none.
+    """Description of invisible characters in a text that change its display; "" if there are none.
 
     By the categories of Unicode: controls other than line ends, separators of lines and paragraphs, surrogate
     halves, and formats, among them all that turn the direction of text. The two joiners that scripts and

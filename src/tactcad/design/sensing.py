@@ -1,8 +1,8 @@
 """Gauges, read-out and wiring: electronic parts known by name, and the tables of the design file that choose
 them.
 
-Parts are rows of data/*.csv, which say where each figure is from; SI units but where a column's head says
-otherwise, and lengths in mm.
+Parts are rows of data/*.csv, with each figure's source; SI units unless a column's head states another, and
+lengths in mm.
 """
 
 from __future__ import annotations
@@ -14,12 +14,12 @@ from typing import Any
 from .fields import Number, OneOf, Whole, given
 from .text_values import data_rows
 
-# By what sets the instant of a sample: s by which it may differ from reading to reading, plus and minus.
-# Chosen: a line of the card that is clocked with its samples is some ns to a us late; USB hands a command on
-# within a frame of 1 ms (USB 2.0, full speed).
+# Jitter of a sample's instant by its trigger, s, plus and minus. Chosen: a line of the card that is clocked
+# with its samples is some ns to a us late; USB hands a command on within a frame of 1 ms (USB 2.0, full
+# speed).
 JITTER = {"hardware": 1e-6, "software": 1e-3}
 # V rms of one sample for each volt of the range: NI 6259, 140 uV at +-5 V, from memory of its table
-# (unread). The paper's USB-6258 stands in no list of the maker's that was found; 6255 and 6259 do.
+# (unread). The paper's USB-6258 is in no list of the maker's that was found; 6255 and 6259 are.
 ADC_NOISE = 28e-6
 POWERS = ("continuous", "duty")  # of bridges that a converter reads
 
@@ -99,7 +99,7 @@ class Switch(Bought):
 
 @dataclass(frozen=True)
 class Multiplexer(Bought):
-    """A differential multiplexer and the decoder beside it; ohm of one switch, F at an output, s, V."""
+    """A differential multiplexer and its decoder; ohm of one switch, F at an output, s, V."""
 
     channels: int
     on_ohm: float

@@ -1,8 +1,8 @@
 """Files and folders that are being written, under names of our form; the next run removes those of killed
 runs.
 
-Whoever writes one holds a lock (flock) on it, which ends with the process, however that ends. A file or
-folder is a killed run's if its name has our form, nobody holds its lock and, for folders, our mark is in it.
+The writer holds a lock (flock) on it until its process ends in any way. A file or folder is left from a
+killed run if its name has our form, nobody holds its lock and, for folders, our mark is in it.
 """
 
 from __future__ import annotations
@@ -36,9 +36,9 @@ def staged_folder(parent: Path, stem: str, settle: Settle = lambda _: None) -> I
     Parameters
     ----------
     parent, stem
-        Where it stands, and how its name begins.
+        Its folder, and the beginning of its name.
     settle
-        Called with each of these folders before its removal, to save what is not ours to remove.
+        Called with each of these folders before its removal, to save the user's files.
     """
 
     def removed(folder: Path) -> None:
@@ -61,7 +61,7 @@ def staged_folder(parent: Path, stem: str, settle: Settle = lambda _: None) -> I
             with suppress(OSError):  # killed before it could be marked: empty, or somebody else's
                 left.rmdir()
     with ExitStack() as known:
-        with no_signals():  # until it is known what to remove
+        with no_signals():  # until the leftovers are known
             folder, lock = _new_folder(parent, stem)
             known.enter_context(unfinished(lambda: removed(folder)))
         try:
@@ -89,7 +89,8 @@ def _new_folder(parent: Path, stem: str) -> tuple[Path, int]:
 
 @contextmanager
 def staged_file(place: Path) -> Iterator[Path]:
-    """A file beside `place` for this process to write, gone when the block ends unless it was renamed.
+    """A file in `place`'s folder for this process to write, removed when the block ends unless it was
+    renamed.
 
     What killed runs left there of the same `place` goes first.
     """
@@ -97,7 +98,7 @@ def staged_file(place: Path) -> Iterator[Path]:
     for left in _of_our_form(place.parent, stem, ".part"):
         remove_left(left)
     with ExitStack() as known:
-        with no_signals():  # until it is known what to remove
+        with no_signals():  # until the leftovers are known
             while True:
                 lock, name = tempfile.mkstemp(prefix=stem + OWN, suffix=".part", dir=place.parent)
                 part = Path(name)

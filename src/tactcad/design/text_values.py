@@ -22,19 +22,17 @@ _NUMBER = re.compile(r"[+-]?(([0-9]+\.?[0-9]*|\.[0-9]+)(e[+-]?[0-9]+)?|nan|inf(i
 
 
 def as_number(text: str) -> float:
-    """The number that a text stands for, with or without blanks around it. Raises ValueError if it is
-    none.
-    """
+    """The number in a text, with or without blanks around it. Raises ValueError if it is none."""
     plain = text.strip(" \t")
     if not _NUMBER.fullmatch(plain):
         raise ValueError(f"not a number: {text!r}")
-    if isinf(value := float(plain)) and "n" not in plain.lower():  # 1e400: nobody asked for infinity
+    if isinf(value := float(plain)) and "n" not in plain.lower():  # 1e400: infinity is not meant
         raise ValueError(f"beyond all numbers: {text!r}")
     return value
 
 
 def as_whole(text: str) -> int:
-    """The whole number that a text stands for; as `as_number`."""
+    """The whole number in a text; as `as_number`."""
     plain = text.strip(" \t")
     if not _WHOLE.fullmatch(plain):
         raise ValueError(f"not a whole number: {text!r}")

@@ -2,7 +2,7 @@
 
 Lengths in mm, forces in N, stresses in MPa, density in kg/m3. Frame: x from the middle line between the rows
 along the arms, y along the row, z = 0 on the elements' flat (gauge) face, + away from the object. A default
-of None is derived from other fields (parts/array/layout.py says how).
+of None is derived from other fields (parts/array/layout.py).
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from .sensing import Readout, StrainGauge, Wiring
 # cannot hold.
 _LINE = r"(?!\s*$)[^\x00-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069\ufeff\ufff9-\uffff]{1,80}"
 
-IN_EXPORTS = ("golden", "releases", "check", "bench")  # folders beside those of the designs
+IN_EXPORTS = ("golden", "releases", "check", "bench")  # folders next to those of the designs
 
 
 def _line(meaning: str) -> TextLine:
@@ -94,7 +94,7 @@ class Sheet:
 
 @dataclass(frozen=True)
 class Array:
-    """[array]: which elements stand where."""
+    """[array]: the elements and their places."""
 
     row_arms: tuple[tuple[float, ...], ...] = given(
         NumberRows(
@@ -109,7 +109,7 @@ class Array:
 
 @dataclass(frozen=True)
 class Hinge:
-    """[element.override.N]: values in which one element differs; None keeps [element]'s value."""
+    """[element.override.N]: one element's own values; None keeps [element]'s value."""
 
     hinge_thickness: float | None = given(Number("mm", 0.005, 5, "hinge thickness t"), None)
     hinge_length: float | None = given(Number("mm", 0.01, 50, "slot length l"), None)
@@ -317,8 +317,8 @@ class CommonTables:
 
     @property
     def stiffness_factor(self) -> float | None:
-        """Stiffness with the table's Young's modulus over that with the design's: the ratio of the moduli,
-        since the elements are linear; None if the design has the table's."""
+        """Ratio of stiffness with the table's Young's modulus to that with the design's: the ratio of the
+        moduli, since the elements are linear; None if the design has the table's."""
         return next((d.table / d.value for d in self.differences if d.name == "youngs_modulus"), None)
 
     @property

@@ -1,5 +1,5 @@
 """Assembly guide of a scene: an exploded view, the steps with their parts and torques, all read off the
-scene; and the map of the sensing face: which element stands where, which end plate is which, the axes.
+scene; and the map of the sensing face: elements, end plates, axes.
 
 The sensing face is seen from below, as the object sees it: x runs to the right, y down. It is drawn from
 descriptions, without a kernel.
@@ -41,14 +41,14 @@ from .engine.ink import (
 )
 from .engine.sheet_files import svg_bytes
 
-MAP = "sensing-face"  # label of the picture that shows which element stands where
+MAP = "sensing-face"  # label of the map of the elements
 FACE_EYE: Vector = (0.0, 0.0, -1.0)
 FACE_UP: Vector = (0.0, -1.0, 0.0)
 FAR = 80.0  # mm that a step's parts are shown before their place, at most
 MAP_SIZE = (130.0, 110.0)  # of the map's outlines, mm of paper
-NUMBERS = (2.5, 1.8)  # of numbers, ISO 3098: the larger where all find room
+NUMBERS = (2.5, 1.8)  # of numbers, ISO 3098: the larger if all find room
 BELOW_EACH_OTHER = 0.8  # between numbers below each other, mm of paper
-BESIDE = 1.5  # from what is drawn to a number, mm of paper
+BESIDE = 1.5  # from lines to a number, mm of paper
 _STACKED = re.compile(r"(E|BL)\d+")
 
 
@@ -67,8 +67,8 @@ def exploded(scene: Scene) -> tuple[Placement, ...]:
 
 
 def at_step(scene: Scene, number: int) -> tuple[tuple[Placement, ...], tuple[Placement, ...]]:
-    """What stands already before step `number` (from 1), on the bench what lies there; and what the step
-    brings in, where its first move starts, or FAR before its end."""
+    """Parts in place before step `number` (from 1), or on the bench for a bench step; and the step's own
+    parts at the start of its first move, or FAR before its end."""
     placed = {p.designator: p for p in scene.placements}
     there: dict[str, Vector] = {}
     coming: dict[str, Vector] = {}
@@ -95,6 +95,11 @@ def at_step(scene: Scene, number: int) -> tuple[tuple[Placement, ...], tuple[Pla
         there = {name: at for name, at in there.items() if name not in benched}
     standing = tuple(moved_by(placed[d], at) for d, at in there.items() if d not in coming)
     return standing, tuple(moved_by(placed[d], at) for d, at in coming.items())
+
+
+def pictured(step: Step) -> bool:
+    """Whether a step brings or moves something."""
+    return bool(step.designators or step.order)
 
 
 def _coming(scene: Scene, step: Step) -> tuple[Placement, ...]:
@@ -135,7 +140,7 @@ def tools(design: CommonTables, scene: Scene) -> list[str]:
 
 
 def sensing_face_map(scene: Scene) -> bytes | None:
-    """The map of the array's elements as SVG, where a step of the scene handles them."""
+    """The map of the array's elements as SVG, if a step of the scene handles them."""
     array = array_of(scene)
     if array is None or not any(step.elements for step in scene.steps):
         return None
@@ -143,7 +148,7 @@ def sensing_face_map(scene: Scene) -> bytes | None:
 
 
 def page(design: CommonTables, scene: Scene) -> bytes:
-    """The guide as one HTML page; its pictures lie beside it."""
+    """The guide as one HTML page; its pictures are in the same folder."""
     style = Path(__file__).with_suffix(".css").read_text("utf-8")
     d = design.design
     title = f"{d.title}: {scene.name}"
@@ -179,10 +184,10 @@ def _section(design: CommonTables, scene: Scene, number: int, step: Step) -> str
         if what:
             lines.append(f'<p class="note">{said}: {escape("; ".join(what))}.</p>')
     if step.designators:
-        lines += [
-            _table(design, scene, step),
-            f'<img src="{_name(scene, f"{number:02d}")}" alt="step {number}; blue: the parts of this step">',
-        ]
+        lines.append(_table(design, scene, step))
+    if pictured(step):
+        picture = _name(scene, f"{number:02d}")
+        lines.append(f'<img src="{picture}" alt="step {number}; blue: the parts of this step">')
     if step.elements:
         lines.append(
             f'<figure><img src="{_name(scene, MAP)}" alt="where each element stands">'
@@ -217,7 +222,7 @@ def _name(scene: Scene, label: str) -> str:
 
 
 def array_of(scene: Scene) -> Scene | None:
-    """The array that stands in a scene, in its own axes; None if none does."""
+    """The array in a scene, in its own axes; None if there is none."""
     return next((s for s in (scene, *scene.ready) if s.name == "array"), None)
 
 
@@ -234,12 +239,12 @@ def seen_box(p: Placement) -> Box:
 
 
 def middle(p: Placement) -> float:
-    """Where the middle of its sheet stands in the view, mm upwards."""
+    """Middle of its sheet in the view, mm upwards."""
     return -(p.origin[1] + p.rotation[1][2] * p.part.extrusion.thickness / 2)
 
 
 def pad(p: Placement) -> Box | None:
-    """The element's contact pad in the view, mm; None of a blank."""
+    """The element's contact pad in the view, mm; None for a blank."""
     if p.part.kind != "element":
         return None
     body = p.part.extrusion
@@ -249,9 +254,9 @@ def pad(p: Placement) -> Box | None:
 
 
 def numbers(scene: Scene, f: float, half: float, arms: bool = False) -> list[Text]:
-    """Designators beside the two rows, `half` mm of paper from the middle line, at the scale f.
+    """Designators of the two rows, `half` mm of paper from the middle line, at the scale f.
 
-    Where they would stand too close some are left out, never the first and the last of a row.
+    If they would be too close, some are left out, but never the first and last of a row.
     """
     rows = [[p for p in in_stack(scene) if p.rotation[0][0] * sign > 0] for sign in (1.0, -1.0)]
     fitting = [h for h in NUMBERS if all(_spaced(row, (h + BELOW_EACH_OTHER) / f) == row for row in rows)]
@@ -272,7 +277,7 @@ def numbers(scene: Scene, f: float, half: float, arms: bool = False) -> list[Tex
 
 
 def _spaced(row: Sequence[Placement], least: float) -> list[Placement]:
-    """First, last, and between them those that stand at least so far from the one kept before, mm."""
+    """First, last, and between them those at least so far from the previous one kept, mm."""
     kept = list(row[:1])
     for p in row[1:]:
         if abs(middle(p) - middle(kept[-1])) >= least - 1e-9:

@@ -1,5 +1,5 @@
-"""A board's files: KiCad's board and netlist, the bill of what stands on it, places, solid, outline,
-Gerber files and drills; read back and compared with the board before they leave."""
+"""A board's files: KiCad's board and netlist, its bill, places, solid, outline, Gerber files and drills; read
+back and compared with the board before they are published."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ BARE = (*(f"gerber/{layer}.gbr" for layer in FUNCTIONS), "gerber/PTH.drl", "gerb
 def files_of(
     board: BoardCopper, design: CommonTables, supplies: Iterable[Supply], shapes: Shapes, header: Header
 ) -> tuple[bytes, ...]:
-    """The files of a board as it is fitted, in the order of ENDS; `header` of its STEP file."""
+    """The files of a fitted board, in the order of ENDS; `header` of its STEP file."""
     d = design.design
     kicad = board_bytes(board, printed_name(design), d.title, d.date, d.revision)
     check_nets("KiCad's board", nets_in_board(kicad), board.netlist)
@@ -82,7 +82,7 @@ BILL = (
 
 
 def bill_csv(board: BoardCopper, supplies: Iterable[Supply]) -> bytes:
-    """What stands on one board: a line a part and value, and one for what is left off."""
+    """The bill of one board: a line a part and value, and one for unfitted places."""
     lines: dict[tuple[bool, str, str, str], list[Component]] = {}
     for c in board.netlist.components:
         lines.setdefault((not c.fitted, c.part_no, c.value, c.footprint), []).append(c)

@@ -1,6 +1,6 @@
 """A board as a solid for the assembly: the bare board with the holes of its screws and ties, and a block for
 everything that is fitted. mm, x and y as in the outline's DXF, z = 0 on the underside. Soldered pins, which
-stand out 1.4 mm below it, are left out.
+protrude 1.4 mm below it, are left out.
 """
 
 from __future__ import annotations

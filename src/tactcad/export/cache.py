@@ -4,9 +4,9 @@ The key contains everything that the bytes depend on (see inputs.py), so an entr
 absent. An entry is one file named by the key's digest: a line with the digest of key and bytes, then the
 bytes. Entries that were truncated, altered or put under another key are reported, removed and built again.
 
-The folder is one that tactcad made or found empty, and marked; any other is refused, and in its own only
-files with the names of entries are removed. The cache is optional: where it cannot be written the work is
-done without it. At the end of an export the least recently used entries beyond a bound are removed.
+The folder is one that tactcad made, or found empty, and marked; any other is refused, and only files named
+like entries are removed. The cache is optional: if it cannot be written, the work is done without it. At the
+end of an export the least recently used entries beyond a bound are removed.
 """
 
 from __future__ import annotations
@@ -108,8 +108,8 @@ class Cache:
         """Remove the least recently used entries until `most_bytes` are left, and what killed runs left half
         written.
 
-        Returns how many entries were removed. Another process may read or write meanwhile: it builds again
-        what it misses.
+        Returns how many entries were removed. Another process may read or write meanwhile: it builds missing
+        entries again.
         """
         entries = []
         for path in self._files():

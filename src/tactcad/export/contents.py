@@ -34,7 +34,7 @@ class Contents:
     """A folder's entries by path: all with their states, and somebody's with what each is (see the words
     above).
 
-    `record` is the manifest, None if there is none or it was edited; `missing` are listed but not there.
+    `record` is the manifest, None if there is none or it was edited; `missing` are listed but absent.
     """
 
     states: Mapping[str, State]
@@ -123,9 +123,9 @@ def _fault(entry: Path, state: State, sha256: str | None) -> str:
 
 
 def _entries(folder: Path) -> Iterator[str]:
-    """The folder (".") and all below it by path, a folder before what it holds; links are not followed.
+    """The folder (".") and all below it by path, a folder before its contents; links are not followed.
 
-    Raises OSError if a folder cannot be read: nobody knows what it holds.
+    Raises OSError if a folder cannot be read: its contents are unknown.
     """
 
     def unreadable(error: OSError) -> NoReturn:
@@ -157,7 +157,7 @@ def _sealed_record(folder: Path, schema: str) -> dict[str, Any] | None:
 def remove(folder: Path, seen: Contents) -> bool:
     """Remove the folder with the entries that were seen in it; False if it holds new or changed ones.
 
-    The manifest goes last, so that what is left by an interrupted removal is still recognised as ours.
+    The manifest goes last, so that the rest of an interrupted removal is still recognised as ours.
     """
     folders = [path for path, state in seen.states.items() if stat.S_ISDIR(state[0])]
     files = [path for path in seen.states if path not in set(folders) | {NAME}]

@@ -25,7 +25,8 @@ BY_SHARE = ("_mm2", "_mm3", "_g", "_n_per_mm", "_n")
 class Change:
     """One difference. `path` leads to the value; `old` and `new` are None if there is none.
 
-    `moved` is how far (mm) a contour strays from the other one and `at` where most; None for other values.
+    `moved` is the largest distance (mm) of a contour from the other one, at point `at`; None for other
+    values.
     """
 
     kind: Literal["added", "removed", "changed"]

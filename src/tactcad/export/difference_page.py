@@ -14,7 +14,7 @@ from .difference import Change, shown
 from .geometry import contour_of
 from .sides import Side, not_compared
 
-# Okabe and Ito: told apart by colour-blind readers; the old one is dashed as well
+# Okabe and Ito: distinct for colour-blind readers; the old one is dashed as well
 OLD, NEW = "#D55E00", "#0072B2"
 SECTIONS = {
     "design": "Design",
@@ -29,7 +29,7 @@ BEYOND = 6.0  # the enlarged view shows this many times the distance on each sid
 
 
 def page(old: Side, new: Side, changes: Sequence[Change], first: Iterable[str] = ()) -> bytes:
-    """The page's bytes; it loads nothing from anywhere. `first` is HTML that stands above the changes."""
+    """The page's bytes; it loads nothing from anywhere. `first` is HTML above the changes."""
     style = Path(__file__).with_suffix(".css").read_text("utf-8")
     body = [
         f"<h1>{escape(new.design)}: what changed</h1>",
@@ -180,5 +180,5 @@ def _pictures(old: Side, new: Side) -> Iterable[str]:
 
 
 def _drawn(picture: bytes | None) -> bytes | None:
-    """What a picture shows, without its caption, which holds the revision."""
+    """A picture's content without its caption, which has the revision."""
     return picture and re.sub(rb"<(title|desc)>.*?</\1>", b"", picture)

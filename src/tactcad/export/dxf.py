@@ -33,7 +33,7 @@ MILLIMETRES, METRIC = 4, 1
 
 @dataclass(frozen=True)
 class CutFile:
-    """What a cut file holds: closed contours in mm, as read, and what surrounds them.
+    """Contents of a cut file: closed contours in mm, as read, and their surroundings.
 
     `gap` is the largest distance (mm) between the end of one entity and the start of the next.
     """
@@ -78,7 +78,7 @@ def dxf_bytes(part: Part) -> bytes:
     Raises
     ------
     ValueError
-        Where the part has none.
+        If the part has none.
     """
     cut = _section(part)
     return layered_dxf({LAYER: (*cut.openings, cut.outer)}, cut.outer.box)
@@ -143,8 +143,8 @@ def _clean(point: Point) -> Point:
 def read_dxf(file: str | Path | bytes) -> CutFile:
     """Read a cut file, by its path or as its bytes, whose entities follow its contours head to tail.
 
-    Raises ValueError if the file is no DXF, if there is anything but LINE, ARC and CIRCLE, where a
-    chain is open, or where entities do not follow each other.
+    Raises ValueError if the file is no DXF, if there is anything but LINE, ARC and CIRCLE, if a chain is
+    open, or if entities do not follow each other.
     """
     import ezdxf
 
@@ -246,7 +246,7 @@ def _snapped(chain: list[Segment]) -> Contour:
 
 
 def check_dxf(written: str | Path | bytes, part: Part) -> list[str]:
-    """What is wrong with a written cut file against its part.
+    """Faults of a written cut file compared with its part.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""What a design means, in numbers: parts, placements, bills of materials and stiffness, without a CAD kernel.
+"""A design's geometry record: parts, placements, bills of materials and stiffness, without a CAD kernel.
 
 The record is plain data (dicts, lists, numbers, text) for golden files and for comparing designs. Lengths in
 mm, rounded to a picometre so that equal designs give equal text on every machine.
@@ -29,7 +29,7 @@ NOT_COMPARED = ("item", "part_no", "rev", "file", "sha256")
 
 
 def geometry(design: CommonTables, scenes: Sequence[Scene] | None = None) -> Record:
-    """What a design that keeps its rules means; `scenes` are all of its scenes, where they are made already.
+    """The record of a design that keeps its rules; `scenes`: all of its scenes, if already made.
 
     {parts: {part_no: ...}, scenes: {name: {placed, bom}}, elements: {E1: ...}}
     """
@@ -103,7 +103,7 @@ def contour_record(contour: Contour) -> list[list[float]]:
 
 
 def contour_of(rows: list[list[float]]) -> Contour:
-    """The contour of such rows. Raises ValueError or TypeError if they are none."""
+    """The contour from such rows. Raises ValueError or TypeError if they are none."""
 
     def segment(row: list[float]) -> Segment:
         x0, y0, x1, y1, *arc = row

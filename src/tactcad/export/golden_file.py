@@ -1,8 +1,7 @@
 """Golden geometry: what each design in hardware/ means, committed, and compared at every check.
 
-The golden file of hardware/NAME.toml is exports/golden/<design>.json beside that hardware/; a design that
-stands elsewhere has none. A file that is read is first checked for its form: sections, kinds of values,
-contours that close.
+The golden file of hardware/NAME.toml is exports/golden/<design>.json beside that hardware/; a design
+elsewhere has none. A file's form is checked first on reading: sections, kinds of values, contours that close.
 """
 
 from __future__ import annotations
@@ -27,8 +26,8 @@ MOST_BYTES = 50_000_000  # the largest array, 2 x 500, takes under one
 
 
 def golden_path(design_file: Path, design: CommonTables) -> Path | None:
-    """Where the golden file of a design file belongs; None if the design stands in no hardware/, neither
-    by the name given nor by where links lead."""
+    """Place of a design file's golden file; None if the design is in no hardware/, neither by the given name
+    nor by its links' target."""
     for folder in (absolute(design_file).parent, design_file.resolve().parent):
         if folder.name == "hardware":
             return folder.parent / "exports" / "golden" / f"{design.name}.json"
@@ -131,7 +130,7 @@ def _finding(severity: Severity, design: CommonTables, message: str) -> Finding:
 
 
 def changes_against(path: Path, design: CommonTables) -> list[Change] | None:
-    """What writing the golden file would change, the revision included; None if there is no file yet.
+    """Changes by writing the golden file, the revision included; None if there is no file yet.
 
     Raises CheckFailure if the file there cannot be read.
     """
@@ -150,16 +149,16 @@ def accept(design: CommonTables, path: Path, failures: Sequence[Finding]) -> Non
     Parameters
     ----------
     design, path
-        The design, and where its golden file is or will be.
+        The design, and the path of its golden file.
     failures
-        What the checks of the design have found to fail.
+        Failures found by the design's checks.
 
     Raises
     ------
     CheckFailure
-        With nothing written, where a check failed, or the golden file's own revision has other geometry.
+        If a check failed, or the golden file's own revision has other geometry; nothing is then written.
     InputError
-        Where the file cannot be written.
+        If the file cannot be written.
     """
     left = f"{path.name} is left as it was"
     if failures:
@@ -176,7 +175,7 @@ def accept(design: CommonTables, path: Path, failures: Sequence[Finding]) -> Non
         write_whole(path, golden_bytes(golden_record(design)))
 
 
-# What stands in a part's record besides plain values.
+# Entries of a part's record that are no plain values.
 TABLES = ("holes", "pockets", "limits")
 
 

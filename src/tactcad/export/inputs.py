@@ -77,7 +77,7 @@ def source_digest(room: str) -> str:
     return hashlib.sha256(_framed(part for pair in named for part in pair)).hexdigest()
 
 
-NAMED_DESIGNS = PACKAGE / "design" / "named"  # what a wheel ships of hardware/: values, not code
+NAMED_DESIGNS = PACKAGE / "design" / "named"  # the part of hardware/ in a wheel: values, not code
 
 
 def _is_source(path: Path) -> bool:
@@ -87,7 +87,7 @@ def _is_source(path: Path) -> bool:
 
 
 def first_installed(*names: str) -> str:
-    """The first installed one of libraries that replace each other; the first of all if none is."""
+    """The first installed one of alternative libraries; the first of all if none is."""
     return next((name for name in names if _version(name) != ABSENT), names[0])
 
 
@@ -122,7 +122,7 @@ def flattened(value: object, path: str = "") -> dict[str, Any]:
 
 
 def nested(values: Mapping[str, Any]) -> dict[str, Any]:
-    """The tables that TOML would give for `flattened` values of a design; what is None is left out."""
+    """The tables that TOML would give for `flattened` values of a design, without values of None."""
     tables: dict[str, Any] = {}
     for path, value in values.items():
         if value is None:
@@ -182,7 +182,7 @@ def reasons(before: Inputs | None, now: Inputs) -> list[str]:
     """Why an output made from `before` has to be made again from `now`, one line each; empty if nothing
     changed.
 
-    Raises nothing: a record that cannot be read (None) is a reason too.
+    Raises nothing: an unreadable record (None) is also a reason.
     """
     if before is None:
         return ["there is no record of an earlier export"]
@@ -202,7 +202,7 @@ def reasons(before: Inputs | None, now: Inputs) -> list[str]:
 
 
 def _changed(before: Mapping[str, Any], now: Mapping[str, Any]) -> list[str]:
-    """Keys whose values differ, in the order of `now`, then those that are gone."""
+    """Keys whose values differ, in the order of `now`, then the missing ones."""
     keys = [*now, *(key for key in before if key not in now)]
     return [key for key in keys if _shown(before, key) != _shown(now, key)]
 

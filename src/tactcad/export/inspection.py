@@ -2,9 +2,9 @@
 other parts every limit on which a requirement of the assembled sensor depends, the largest share of a
 requirement's variance first.
 
-The first line names the columns and every row says which design and revision it belongs to, so that a
-spreadsheet can sort, filter and print it. `measured` and `uncertainty_k2` are left blank;
-tactcad.lab.inspection_sheet reads it back.
+The first line names the columns and every row has its design and revision, so that a spreadsheet can sort,
+filter and print it. `measured` and `uncertainty_k2` are left blank; tactcad.lab.inspection_sheet reads it
+back.
 """
 
 from __future__ import annotations
@@ -91,7 +91,7 @@ def ranked(
 
 
 def _limits(part: Part, name: str) -> tuple[float, float, float, str, str]:
-    """Nominal, lower and upper limit, mm; where it is measured, and with what."""
+    """Nominal, lower and upper limit, mm; place of measurement, and instrument."""
     for c in part.characteristics:
         if c.name == name:
             nominal, lower, upper = (round(v, 6) for v in (c.nominal, c.lower, c.upper))
@@ -102,7 +102,7 @@ def _limits(part: Part, name: str) -> tuple[float, float, float, str, str]:
 
 
 def _size(part: Part, c: Characteristic) -> tuple[str, str]:
-    """Where a size is measured, and with what."""
+    """A size's place of measurement, and instrument."""
     width = round(c.upper - c.lower, 6)
     if {*c.between} == {*FACES}:
         return "between the two faces, in the middle and at the corners", f"micrometer, {_reads(width)}"
@@ -122,7 +122,7 @@ def _size(part: Part, c: Characteristic) -> tuple[str, str]:
 
 
 def _zone(part: Part, g: Geometric) -> tuple[str, str]:
-    """Where a geometric tolerance is measured, and with what."""
+    """A geometric tolerance's place of measurement, and instrument."""
     named = f"datum{'s' * (len(g.datums) > 1)} {', '.join(g.datums)}"
     faces = {*g.features} & {*FACES}
     if faces:

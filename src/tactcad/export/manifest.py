@@ -31,8 +31,7 @@ KINDS = {f.kind for f in part_formats()} | {
 
 @dataclass(frozen=True)
 class FileRecord:
-    """One file: path below the export's folder with "/", what it is, the part it shows ("" for a whole
-    scene)."""
+    """One file: path below the export's folder with "/", kind, its part ("" for a whole scene)."""
 
     path: str
     kind: str
@@ -46,8 +45,8 @@ class PartRecord:
     """One part in its own frame. `area_mm2` is the solid's surface; `cut_length_mm` and `section_area_mm2`
     are the cut file's; None if there is none.
 
-    `box_mm` is ((x, y, z) least, (x, y, z) largest). `qty` is the most that one of the scenes places: an
-    array moves from rig to rig; each scene's own count stands in its bill of materials.
+    `box_mm` is ((x, y, z) least, (x, y, z) largest). `qty` is the largest count in one scene, as an array
+    moves from rig to rig; each scene's own count is in its bill of materials.
     """
 
     part_no: str
@@ -65,7 +64,7 @@ class PartRecord:
 
 @dataclass(frozen=True)
 class Manifest:
-    """What an export holds. `inputs` is what it was made from (inputs.Inputs.as_json)."""
+    """Contents of an export. `inputs`: its inputs (inputs.Inputs.as_json)."""
 
     design: str
     revision: str
@@ -133,9 +132,9 @@ def _part(row: dict[str, Any]) -> PartRecord:
 
 
 def check_manifest(folder: Path) -> list[str]:
-    """What is wrong with an export's folder against its manifest; empty if nothing is.
+    """Faults of an export's folder compared with its manifest.
 
-    Every file named is there with its digest, nothing else is, and every part number is known.
+    Every named file is present with its digest, there is no other file, and every part number is known.
     """
     try:
         manifest = read_manifest(folder)

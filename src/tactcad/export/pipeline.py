@@ -44,12 +44,12 @@ ROOMS = (
     "export",
     "families",
 )
-# The kernel's binding comes with VTK or, as the extra `cad` of PyPI has it, without; in a checkout the second
-# is an empty stand-in for the first.
+# The kernel's binding comes with VTK or, in the extra `cad` of PyPI, without; in a checkout the second is an
+# empty replacement of the first.
 KERNEL = first_installed("cadquery-ocp", "cadquery-ocp-novtk")
 LIBRARIES = ("build123d", KERNEL, "ezdxf", "numpy", "scipy")
-DRAWN_WITH = ("matplotlib", "reportlab")  # where drawings are asked for: font and PDF
-FOR_ROBOTS = ("contact", "lab", "robot")  # rooms besides, where robots' files are asked for
+DRAWN_WITH = ("matplotlib", "reportlab")  # for drawings: font and PDF
+FOR_ROBOTS = ("contact", "lab", "robot")  # further rooms for robots' files
 
 
 class Progress(Protocol):
@@ -80,34 +80,34 @@ def export(
 ) -> Exported:
     """Write a design's scenes to a folder, all or nothing.
 
-    Nothing is written where the folder already holds just this; the rules between fields, which the earlier
-    export kept, are tried only where something has to be made.
+    Nothing is written if the folder already holds exactly this export; the rules between fields, which the
+    earlier export kept, are tried only if something has to be made.
 
     Parameters
     ----------
     design
         Read field by field.
     options
-        Which scenes, in which pose and detail, with what besides.
+        Scenes, pose, detail, and additional products.
     out
         The folder.
     progress
-        Receives what is done, and why.
+        Receives each task and its reason.
     others
         What to do with files in the folder that tactcad did not write (publication.py).
 
     Returns
     -------
     Exported
-        What was made, and why; nothing where nothing had changed.
+        The files made, and why; none if nothing had changed.
 
     Raises
     ------
     InputError
-        Where the design breaks a rule, or `out` is not ours to replace or cannot be written.
+        If the design breaks a rule, or `out` may not be replaced or cannot be written.
     CheckFailure
-        Where a file does not read back as it should, or where something in `out` had changed meanwhile and
-        was kept.
+        If a file does not read back as it should, or if something in `out` had changed meanwhile and was
+        kept.
     """
     inputs = inputs_of(
         {"design": design, "options": options},
@@ -117,7 +117,7 @@ def export(
     earlier = looked_at(out, manifests.SCHEMA, others)
     why = _reasons(earlier, inputs)
     if why:
-        from tactcad.parts.rules import refuse_broken  # loads numpy: not needed where nothing changed
+        from tactcad.parts.rules import refuse_broken  # loads numpy: not needed if nothing changed
 
         refuse_broken(design)  # before anything is written to the disk
     elif not left_unfinished(out):
@@ -210,9 +210,9 @@ def made_files(
     plan
         That the jobs are of.
     jobs
-        Made side by side (workers.py), the solids that they need before them.
+        Made in parallel (workers.py), after the solids that they need.
     step, say
-        Receive done, total and what is under way; and lines to keep.
+        Receive done, total and current task; and lines to keep.
     """
     cache, shapes = plan.shapes.cache, plan.shapes
     total, done, missing = sum(len(job.files) for job in jobs), 0, []

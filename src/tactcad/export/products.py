@@ -1,7 +1,7 @@
 """The files of an export, kind by kind: what each is made from, and how it is made and checked.
 
-Every kind is a function from a `Plan` to jobs, marked with @product and what asks for it. Nothing runs until
-a file is needed: what makes it is imported then.
+Every kind is a function from a `Plan` to jobs, marked with @product and its option. Nothing runs until a file
+is needed: its modules are imported then.
 """
 
 from __future__ import annotations
@@ -29,14 +29,14 @@ from .step_text import Header
 if TYPE_CHECKING:
     from tactcad.drawing.engine.sheet_files import Written
 
-# What comes after what: parts' files need solids, and sheets need parts' files, whose digests they state.
+# The order: parts' files need solids, and sheets need parts' files, whose digests they state.
 SOLIDS, FILES, SHEETS = range(3)
 
 
 @dataclass(frozen=True)
 class Output:
-    """One file of an export: path below its folder, kind and part number for the manifest, and what it
-    depends on."""
+    """One file of an export: path below its folder, kind and part number for the manifest, and its
+    dependencies."""
 
     path: str
     kind: str
@@ -46,8 +46,8 @@ class Output:
 
 @dataclass(frozen=True)
 class Batch:
-    """Files that are made in one go, and the function that makes their bytes and has checked them. `size`:
-    how long it takes beside others of its turn, roughly; what is long starts first."""
+    """Files made together, and the function that makes and checks their bytes. `size`: rough duration
+    relative to others of its turn; long ones start first."""
 
     files: tuple[Output, ...]
     make: Callable[[], Sequence[bytes]]
@@ -57,7 +57,7 @@ class Batch:
 
 @dataclass(frozen=True)
 class Plan:
-    """What an export is of: a design, what is asked for, its scenes at their detail, the parts' shapes."""
+    """An export's plan: design, options, scenes at their detail, the parts' shapes."""
 
     design: CommonTables
     options: ExportOptions
@@ -79,13 +79,13 @@ class Plan:
         return Header(name, description, d.revision, d.date, d.author or "", d.organisation or "")
 
     def jobs(self) -> list[Batch]:
-        """All that is asked for."""
+        """All jobs of the options."""
         return [job for each in PRODUCTS if each.asked(self) for job in each.jobs(self)]
 
 
 @dataclass(frozen=True)
 class Product:
-    """A kind of files: what asks for it, and the jobs that make it."""
+    """A kind of files: its option, and the jobs that make it."""
 
     asked: Callable[[Plan], bool]
     jobs: Callable[[Plan], Iterator[Batch]]
@@ -112,8 +112,8 @@ def _one(file: Output, make: Callable[[], bytes], size: int = 0) -> Batch:
 
 @product()
 def part_files(plan: Plan) -> Iterator[Batch]:
-    """A file of every format that a part has one in, part by part (formats.py); what was asked for besides
-    stands after what every export has."""
+    """A file for each of a part's formats, part by part (formats.py); optional ones come after those of every
+    export."""
     forms = [(form, form.asked(plan.options)) for form in part_formats()]
     asked = [(form, settings) for form, settings in forms if settings is not None]
     for part in plan.parts:
@@ -225,7 +225,7 @@ def circuit_files(plan: Plan) -> Iterator[Batch]:
 
 @product(_read)
 def board_files(plan: Plan) -> Iterator[Batch]:
-    """The boards that read the array: each as it is fitted, and bare for who makes it."""
+    """The boards that read the array: fitted, and bare for the board maker."""
     from . import board_files as files
 
     design, family = plan.design, family_of(plan.design)
@@ -269,7 +269,7 @@ def guide_files(plan: Plan) -> Iterator[Batch]:
         title = f"{plan.design.design.title}: {scene.name}, exploded"
         yield picture(scene, "exploded", title, guide.exploded(scene), ())
         for n, step in enumerate(scene.steps, start=1):
-            if step.designators:
+            if guide.pictured(step):
                 standing, coming = guide.at_step(scene, n)
                 title = f"{scene.name}, step {n}: {step.title}"
                 yield picture(scene, f"{n:02d}", title, (*standing, *coming), coming)

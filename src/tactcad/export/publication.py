@@ -8,10 +8,10 @@ DIR is an ordinary folder, which may be renamed, copied and archived. While it i
         making/                                      being written; named finished/ when it is
 
 Then `finished` and DIR exchange names in one step (Linux's renameat2), and the earlier folder is examined
-once more: unless it is exactly what tactcad wrote, it is kept beside as DIR-kept-1 and not removed unasked.
-The next run does the same with the folder of a killed one. Where the system or the file system cannot
-exchange, DIR is moved to `earlier` first; a kill between these two renames leaves no DIR until the next run
-puts it back. Of two runs that write DIR at once the later one stays, whole.
+once more: unless it is exactly as tactcad wrote it, it is kept as DIR-kept-1 and not removed unasked. The
+next run does the same with the folder of a killed one. If the system or the file system cannot exchange, DIR
+is moved to `earlier` first; a kill between these two renames leaves no DIR until the next run puts it back.
+Of two runs that write DIR at once the later one stays, whole.
 """
 
 from __future__ import annotations
@@ -138,7 +138,8 @@ class Work:
         self.publish()
 
     def publish(self) -> None:
-        """Make `folder`, with its manifest, the new DIR; the earlier one is removed, or kept beside.
+        """Make `folder`, with its manifest, the new DIR; the earlier one is removed, or kept under another
+        name.
 
         Raises CheckFailure if something appeared in the earlier one meanwhile: it is kept.
         """
@@ -151,7 +152,8 @@ class Work:
             self.settle(earlier)
 
     def settle(self, folder: Path) -> None:
-        """Remove an earlier DIR; or keep it beside, as asked, or for what nobody saw when the work began."""
+        """Remove an earlier DIR; or keep it under another name, if asked, or if it has contents that appeared
+        after the work began."""
         seen = contents(folder, self.schema)
         if self.others != KEEP or not self.earlier.foreign:
             if not seen.changed_since(self.earlier) and remove(folder, seen):
@@ -192,10 +194,10 @@ def replacing(directory: str | Path, schema: str, others: str = REFUSE, say: Say
     Raises
     ------
     InputError
-        Where DIR is not ours to replace (see `looked_at`), or the place cannot be written to.
+        If DIR may not be replaced (see `looked_at`), or the place cannot be written to.
     CheckFailure
-        Where the disk is full, or, after the new DIR stands, where something in the earlier one appeared
-        meanwhile and was kept.
+        If the disk is full, or if, after publication of the new DIR, something had appeared in the earlier
+        one and was kept.
     """
     out = absolute(directory)
 
@@ -222,7 +224,7 @@ def replacing(directory: str | Path, schema: str, others: str = REFUSE, say: Say
 
 
 def _put_in_place(finished: Path, out: Path, aside: Path) -> Path | None:
-    """Make `finished` the new DIR; returns where the earlier DIR is now, None if there was none."""
+    """Make `finished` the new DIR; returns the earlier DIR's new place, None if there was none."""
     while True:
         try:
             if not os.path.lexists(out):

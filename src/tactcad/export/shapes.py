@@ -1,4 +1,4 @@
-"""The kernel's shapes of parts, and pictures of them. The kernel is loaded when a shape is asked for."""
+"""The kernel's shapes of parts, and pictures of them. The kernel is loaded on the first shape."""
 
 from __future__ import annotations
 

@@ -24,7 +24,7 @@ from .golden_file import MOST_BYTES, read_golden
 from .inputs import flattened, inputs_from_json, nested
 from .manifest import Manifest, read_export
 
-# What an export's files say of a part; holes, placements and stiffness are in none of them.
+# A part's data in an export's files; holes, placements and stiffness are in none of them.
 IN_EXPORTS = (
     "name",
     "process",
@@ -42,7 +42,7 @@ FROM_SHAPE = ("area_mm2", "centre_mm", "box_mm")
 
 @dataclass(frozen=True)
 class Side:
-    """One side: what was named and what it is, and its record.
+    """One side: its name, kind and record.
 
     values    the design's fields by path, None if the side does not tell them (a golden file)
     pictures  an export's pictures by path, None if the side is no export
@@ -111,7 +111,7 @@ def design_side(
 def _export(source: str, folder: Path) -> Side:
     manifest = read_export(source, folder)
     inputs = inputs_from_json(manifest.inputs)
-    # an export records its design as "design", beside the scenes it was asked for
+    # an export records its design as "design", with the scenes it was asked for
     values = (
         {k.removeprefix("design."): v for k, v in inputs.values.items() if k.startswith("design.")}
         if inputs
@@ -145,7 +145,7 @@ def _export(source: str, folder: Path) -> Side:
 
 
 def design_values(fields: dict[str, Any]) -> dict[str, Any]:
-    """A design's fields without what stands at the head of every side."""
+    """A design's fields without those in the head of every side."""
     return {path: v for path, v in fields.items() if path not in ("design.name", "design.revision")}
 
 
@@ -184,7 +184,7 @@ def comparable(old: Side, new: Side) -> tuple[Record, Record]:
     if old.own_code or new.own_code:  # another code may record more, or less
         for tables in zip(_rows(before), _rows(after)):
             _drop_uncommon(*tables)
-    # A part whose shape comes from a file is measured by the kernel only: not known without an export.
+    # A part whose shape comes from a file is measured by the kernel only: unknown without an export.
     for number in set(before["parts"]) & set(after["parts"]):
         parts = [before["parts"][number], after["parts"][number]]
         for name in FROM_SHAPE:
@@ -195,7 +195,8 @@ def comparable(old: Side, new: Side) -> tuple[Record, Record]:
 
 
 def not_compared(old: Side, new: Side) -> list[str]:
-    """What could not be compared, because one of the sides does not record it, or is not asked for it."""
+    """Data that could not be compared, because one of the sides does not record it, or is not asked for
+    it."""
     missing = []
     if "golden" in (old.kind, new.kind):
         missing.append("a golden file holds no design values")
@@ -209,7 +210,7 @@ def not_compared(old: Side, new: Side) -> list[str]:
 
 
 def _as_exported(record: Record) -> Record:
-    """Only what an export's files hold; contours stand in them for wire-cut parts."""
+    """Only the data in an export's files, which have contours for wire-cut parts."""
     parts = {}
     for number, part in record["parts"].items():
         known = IN_EXPORTS if part["process"] in ("wire-cut", "etched") else IN_EXPORTS[:-1]
@@ -221,7 +222,7 @@ def _as_exported(record: Record) -> Record:
 
 
 def _rows(record: Record) -> Iterator[dict[Any, Record]]:
-    """Tables whose rows have the same fields: parts, elements, what every scene lists, a part's features."""
+    """Tables whose rows have the same fields: parts, elements, every scene's lists, a part's features."""
     parts, scenes = record["parts"].values(), record["scenes"].values()
     yield record["parts"]
     yield record.get("elements", {})
@@ -232,7 +233,7 @@ def _rows(record: Record) -> Iterator[dict[Any, Record]]:
 
 
 def _drop_uncommon(old: dict[Any, Record], new: dict[Any, Record]) -> None:
-    """Take out fields that no row of the other table has; a table without rows tells nothing of them."""
+    """Take out fields that no row of the other table has; a table without rows has no information on them."""
     known = [{name for row in table.values() for name in row} for table in (old, new)]
     if not all(known):
         return

@@ -34,7 +34,7 @@ from tactcad.solids.step import set_up_writer, silence
 
 from .step_text import AP214, AP242, Header, canonical
 
-# What was written and what is read agree within these: a share of the volume, and mm of a place.
+# Agreement of the written and the read file: a share of the volume, and mm of a place.
 VOLUME_AGREES = 1e-6
 PLACE_AGREES = 1e-7
 
@@ -59,7 +59,7 @@ def part_step(part: Part, shape: TopoDS_Shape, header: Header) -> bytes:
     Raises
     ------
     CheckFailure
-        Where it reads back otherwise: product, validity, or the volume by more than a share of 1e-6.
+        If it differs when read back: product, validity, or the volume by more than a share of 1e-6.
     """
     document, shape_tool = new_document()
     add_prototype(document, shape_tool, part, shape)
@@ -234,7 +234,7 @@ def _solids(shape: TopoDS_Shape) -> list[TopoDS_Shape]:
 
 
 def check_part(data: bytes, read: Assembly, part: Part) -> None:
-    """Raise CheckFailure if a part's file, or what was read of it, is not that one part."""
+    """Raise CheckFailure if a part's file, or its content, is not that one part."""
     text = data.decode("latin-1")
     for entity, count in (
         ("PRODUCT(", 1),

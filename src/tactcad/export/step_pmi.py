@@ -52,7 +52,7 @@ ROUND = xcaf.XCAFDimTolObjects_GeomToleranceTypeValue_Diameter
 NOT_ROUND = xcaf.XCAFDimTolObjects_GeomToleranceTypeValue_None
 DATUM = re.compile(r"=DATUM\('','',#\d+,\.F\.,'([A-Z]+)'\)")
 DIGITS = 9  # of a limit in mm: 0.25 + 0.005 is a binary fraction
-AGREES = 1e-6  # mm or mm2, by which a face read back may lie or be otherwise
+AGREES = 1e-6  # mm or mm2, tolerance of a face's place or size when read back
 
 Shapes = tuple[TopoDS_Shape, ...]
 
@@ -93,7 +93,7 @@ def part_step_pmi(part: Part, shape: bytes, header: Header) -> bytes:
     Raises
     ------
     CheckFailure
-        Where a limit stands on no face, or the file does not read back to the same part, values, datums and
+        If a limit refers to no face, or the file does not read back to the same part, values, datums and
         faces.
     """
     solid = _without_locations(from_bytes(shape))
@@ -141,7 +141,7 @@ def _faces(part: Part, name: str, some: Iterable[Piece], faces: FaceFinder) -> S
     """The faces on these pieces of surface, each of which must have left one."""
     found = [faces.on(piece) for piece in some]
     if not found or not all(found):
-        raise CheckFailure(f"{part.part_no}: {name} stands on a face that the solid does not have")
+        raise CheckFailure(f"{part.part_no}: {name} refers to a face that the solid does not have")
     return tuple(face for one in found for face in one)
 
 
@@ -227,7 +227,7 @@ def _text(text: str) -> TCollection_HAsciiString:
 def _check_limits(
     part: Part, meant: dict[str, Annotation], read: Sequence[Annotation], letters: Sequence[str]
 ) -> None:
-    """Raise CheckFailure if a limit is missing or otherwise, or one is there that the part does not have.
+    """Raise CheckFailure if a limit is missing, different, or not one of the part's.
 
     The kernel does not read a datum that no tolerance refers to: `letters` are from the text.
     """
@@ -275,7 +275,7 @@ def _read_tolerance(label: TDF_Label) -> Annotation:
 
 
 def _referred(label: TDF_Label) -> tuple[Shapes, ...]:
-    """The faces that a dimension, tolerance or datum stands on; of a dimension from one side to another."""
+    """The faces of a dimension, tolerance or datum; of a dimension from one side to another."""
     sides = TDF_LabelSequence(), TDF_LabelSequence()
     XCAFDoc_DimTolTool.GetRefShapeLabel_s(label, *sides)
     return tuple(tuple(map(XCAFDoc_ShapeTool.GetShape_s, _each(some))) for some in sides if some.Length())

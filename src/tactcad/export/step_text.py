@@ -18,9 +18,9 @@ _REFERENCE = re.compile(r"'(?:[^']|'')*'|#(\d+)")
 # Text that the kernel gives every instance, without information: 37 bytes of each.
 _PLACEMENT = re.compile(r"^PRODUCT_DEFINITION_SHAPE\('Placement','Placement of an item',")
 _INSTANCE = re.compile(r"^NEXT_ASSEMBLY_USAGE_OCCURRENCE\('[^']*','((?:[^']|'')*)'")
-# A tolerance's value, to which the kernel does not write what it measures.
+# A tolerance's value, whose measure the kernel does not write.
 _MEASURE = re.compile(r"^MEASURE_WITH_UNIT\(([-+.\dE]+),")
-# With every round tolerance zone the kernel writes the angle of a runout's zone, of which there is none.
+# With every round tolerance zone the kernel writes the angle of a runout zone, which does not exist.
 _RUNOUT, _ANGLE = re.compile("RUNOUT_ZONE_(DEFINITION|ORIENTATION)\\("), "PLANE_ANGLE_MEASURE_WITH_UNIT("
 _STYLES = "MECHANICAL_DESIGN_GEOMETRIC_PRESENTATION_REPRESENTATION"
 
@@ -135,7 +135,7 @@ def _header(h: Header, schema: str) -> str:
 
 
 def _text(value: str) -> str:
-    """A STEP string: quotes doubled, what is not ASCII as \\X2\\ or \\X4\\ code units."""
+    """A STEP string: quotes doubled, other than ASCII as \\X2\\ or \\X4\\ code units."""
     out = []
     for ch in value:
         if ch in "'\\":

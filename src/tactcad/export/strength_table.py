@@ -1,5 +1,5 @@
-"""What golden files keep of every element, and the strength summary: a CSV file with what it is rated
-for, and what it bears under the overload force."""
+"""The golden files' figures of every element, and the strength summary: a CSV file with its ratings, and its
+load under the overload force."""
 
 from __future__ import annotations
 
@@ -45,8 +45,8 @@ def strength_bytes(layout: Layout) -> bytes:
     """The summary (RFC 4180, UTF-8), rows by element number, by the rung `solid`; four significant digits.
 
     The second stiffness is with the Young's modulus of the alloy in the table of materials. Yield factors are
-    yield strength over the fillet's stress. Where the estimator does not reach an element
-    its figures are blank and the last column says why.
+    yield strength over the fillet's stress. If an element is out of the estimator's range, its figures are
+    blank and the last column gives the reason.
     """
     design, places = layout.design, layout.elements
     section, alloy = hinge_section(layout, places), design_alloy(design)

@@ -1,8 +1,8 @@
 """Work side by side, on every core that this process may use: in processes that end with the export, however
 it ends.
 
-They are forked: the kernel is loaded once, and what a task needs is there. None starts threads; one that the
-kernel takes with it leaves the name of what it was making.
+They are forked: the kernel is loaded once, and a task's data is present. None starts threads; a worker that
+crashes in the kernel leaves its task's name.
 """
 
 from __future__ import annotations
@@ -31,8 +31,8 @@ _to_parent: Connection | None = None  # in a worker
 
 @dataclass(frozen=True)
 class Task:
-    """What is to be made: its name, the function that makes it, and its turn: those of a later turn need what
-    earlier ones made."""
+    """A task: its name, its function, and its turn: those of a later turn need the results of earlier
+    ones."""
 
     name: str
     make: Callable[[], Any]
@@ -40,7 +40,7 @@ class Task:
 
 
 def relayed(say: Callable[[str], None]) -> Callable[[str], None]:
-    """`say` in this process; in a worker, what hands the line on to it."""
+    """`say` in this process; in a worker, a relay to it."""
     return lambda text: _to_parent.send(("said", text)) if _to_parent else say(text)
 
 
@@ -57,16 +57,16 @@ def side_by_side(
     Parameters
     ----------
     tasks
-        A single one has a process of its own, too: the kernel would block this one, or crash it.
+        Even a single one has its own process: the kernel would block this one, or crash it.
     hear
-        Receives what is under way, at least every `every` seconds; what it raises ends the work.
+        Receives the tasks under way, at least every `every` seconds; an exception from it ends the work.
     say
-        Receives lines that `relayed` hands on, each once.
+        Receives lines from `relayed`, each once.
 
     Raises
     ------
     CheckFailure
-        Naming it, where a process was killed or crashed; else what a task raises. The others are ended.
+        If a process was killed or crashed, with its task; else a task's own exception. The others are ended.
     """
     cores = min(len(os.sched_getaffinity(0)), len(tasks))
     waiting = sorted(range(len(tasks)), key=lambda n: tasks[n].turn)

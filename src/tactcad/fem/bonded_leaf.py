@@ -1,13 +1,13 @@
-"""The leaf with what is bonded on it, by plane elements: adhesive, backing and foil as layers of their own;
-and what a clamp's pressure on the gauge does to the leaf under it.
+"""The leaf with its bonded gauge, by plane elements: adhesive, backing and foil as separate layers; and the
+leaf under a clamp's pressure on the gauge.
 
-Each layer carries in shear what the next one takes along, as far as it reaches: what the closed form of
-`mechanics.gauge_signal.composite`, where plane sections stay plane over the whole hinge, cannot know.
+Each layer transfers load to the next by shear, over its length only. The closed form of
+`mechanics.gauge_signal.composite`, with plane sections over the whole hinge, neglects that.
 
-The clamp: plane stress on the element's own section. The pressure acts on the face that the gauge is bonded
-to, over the clamp's rubber. `backed`, the leaf's other face lies on a tongue in the slot, and the rear body
-on its rest: two supports, so that nothing is bent by how high they are made. Otherwise the body is held and
-arm and leaf hang from it.
+The clamp: plane stress on the element's own section. The pressure acts on the gauge's face, over the clamp's
+rubber. If `backed`, the leaf's other face lies on a tongue in the slot, and the rear body on its rest: two
+supports, so that errors of their heights do not bend the leaf. Otherwise the body is fixed and arm and leaf
+hang from it.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ class Layer:
 
 
 def stiffness(s: HingeSection, layers: Sequence[Layer]) -> float:
-    """Tip stiffness of one element (scalars) with layers on it, N/mm, in plane stress.
+    """Tip stiffness of one element (scalars) with its layers, N/mm, in plane stress.
 
     An element in which a layer ends carries by the share of it that the layer covers.
     """
@@ -129,10 +129,9 @@ def clamped(
     Parameters
     ----------
     s
-        One element (scalars); its body ends at the rest where the leaf is backed, else where it is held.
+        One element (scalars); its body ends at the rest if the leaf is backed, else at its fixed end.
     rubber
-        How far the pressed stretch reaches from the hinge's middle towards the pad, and towards the clamp,
-        mm.
+        Reach of the pressed stretch from the hinge's middle towards the pad, and towards the clamp, mm.
     width
         Of the rubber across the element, mm.
     grid_length
@@ -143,7 +142,7 @@ def clamped(
     Raises
     ------
     CheckFailure
-        Where the leaf is too long and thin for these elements, or the mesh does not reach the design.
+        If the leaf is too long and thin for these elements, or the mesh does not reach the design.
     """
     mesh = plane_mesh(reference_shape(s), DENSITY, whole=True, order=ORDER)
     space = PlaneSpace.of(mesh)
@@ -196,7 +195,8 @@ def _lain(space: PlaneSpace, mesh: PlaneMesh, tongue: float) -> Array:
 
 
 def _tip(space: PlaneSpace, mesh: PlaneMesh, tongue: float) -> NDArray[np.int64]:
-    """Nodes of the slot's floor on the tongue's tip; the middle one where the tip is narrower than these."""
+    """Nodes of the slot's floor on the tongue's tip; the middle one if the tip is narrower than their
+    spacing."""
     x, z = space.nodes
     near = 1e-9 * np.ptp(x)
     walls = mesh.shape.arm.slot_corner(upper=True), mesh.shape.body.slot_corner(upper=True)

@@ -48,7 +48,7 @@ def stiffness_matrix(basis: Basis, lam: float, mu: float) -> csc_matrix:
 
 
 def solve(A: csc_matrix, f: Array, fixed: Array) -> Array:
-    """Displacements with some unknowns held at zero; A symmetric and positive definite, by SuperLU.
+    """Displacements with some unknowns fixed at zero; A symmetric and positive definite, by SuperLU.
 
     Parameters
     ----------
@@ -57,12 +57,12 @@ def solve(A: csc_matrix, f: Array, fixed: Array) -> Array:
     f : ndarray, shape (n,)
         Load, N.
     fixed
-        Indices of the unknowns that are held.
+        Indices of the fixed unknowns.
 
     Raises
     ------
     CheckFailure
-        Where one step of iterative refinement changes the compliance by more than MOST_ROUNDING: for a leaf
+        If one step of iterative refinement changes the compliance by more than MOST_ROUNDING: for a leaf
         hundreds of times longer than thick double precision is not enough.
     """
     free = np.setdiff1d(np.arange(len(f)), fixed)

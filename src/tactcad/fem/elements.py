@@ -103,7 +103,7 @@ def parabola(z: Array, mesh: PlaneMesh) -> Array:
 
 
 def fixed_unknowns(nodes: Array, mesh: PlaneMesh, dim: int) -> Array:
-    """Unknowns held at zero: all at the body's end; on y = 0, by symmetry, those across.
+    """Unknowns fixed at zero: all at the body's end; on y = 0, by symmetry, those across.
 
     On the mid-line of a half mesh all but those along z: bending is odd in z there.
     """

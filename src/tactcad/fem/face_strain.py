@@ -1,5 +1,4 @@
-"""Strain and stress along the faces of the hinge at mid-width, from the displacements of the nodes on
-them."""
+"""Strain and stress along the faces of the hinge at mid-width, from the displacements of their nodes."""
 
 from __future__ import annotations
 

@@ -17,11 +17,11 @@ from .shape import ElementShape, reference_shape
 
 ORDER = 4  # of the elements that fem-plane is solved with
 PLANE_DENSITIES = (1, 2)
-# Rate of the energy on these meshes, observed: 3.3 to 4.4, held back by the clamp's corners and the fillets'
-# ends where the faces' curvature jumps (tests/fem).
+# Rate of the energy on these meshes, observed: 3.3 to 4.4, limited by the clamp's corners and by the fillets'
+# ends, where the faces' curvature jumps (tests/fem).
 RATE = 4.0
 SOLID_MESH = 2  # of fem-solid, if none is asked for
-ACROSS = 2  # order of the elements over the width beside the finest in the plane
+ACROSS = 2  # order of the elements over the width, with the finest in the plane
 # Factor by which doubling the elements' order reduces the error of the solid's share between plane stress and
 # plane strain: observed 37 or more over the range's corners (tests/fem).
 GAIN = 16.0
@@ -76,7 +76,7 @@ def stiffness(s: HingeSection, rung: str, mesh: int = SOLID_MESH) -> float:
     Raises
     ------
     CheckFailure
-        Where the design is impossible or the mesh cannot follow it.
+        If the design is impossible or the mesh cannot follow it.
     """
     return converged(s, rung, mesh=mesh).stiffness * float(friction.factor(s))
 
@@ -117,7 +117,7 @@ def solve(
     Raises
     ------
     CheckFailure
-        Where the design is impossible or the mesh cannot follow it.
+        If the design is impossible or the mesh cannot follow it.
     """
     solution = converged(s, rung, shape, mesh)
     flat = readings(solution.plane, grid_length)
@@ -179,7 +179,7 @@ def converged_solid(
     chi = (C_stress - C_solid)/(C_stress - C_strain). It converges faster than the compliances, since the
     three problems have nearly the same relative error at the fillets. Three steps: chi by the finest elements
     in the plane; its change by elements of a higher order across the width, found with quadratic elements in
-    the plane, where that is cheap; and the limits of plane stress and plane strain, between which chi
+    the plane, which is cheap; and the limits of plane stress and plane strain, between which chi
     interpolates.
 
     Parameters

@@ -1,5 +1,5 @@
-"""Six-node triangles in any contour with holes: for the uncut part, which the mapped mesh cannot follow, and
-its compliance, held between its spacers with pad, stop land and holes.
+"""Six-node triangles in any contour with holes: for the uncut part with pad, stop land and holes, which the
+mapped mesh cannot follow, and its compliance between its spacers.
 
 Points on the boundary at a graded spacing, points inside from lattices of halving size, thinned and
 smoothed, joined by Delaunay's triangulation; mid-side nodes of the boundary lie on its arcs.
@@ -57,7 +57,7 @@ def triangle_mesh(
     Raises
     ------
     CheckFailure
-        Where the triangles do not follow the boundary.
+        If the triangles do not follow the boundary.
     """
     contours = (outer, *holes)
     size = _Size(_seeds(contours, fine), largest)
@@ -213,9 +213,9 @@ def uncut_compliance(
     outer, holes
         Contours of the part, mm.
     shape
-        Its hinge, where elements are t/per_thickness mm.
+        Its hinge, meshed with elements of t/per_thickness mm.
     spacer
-        x beyond which (away from the arm) the sheet is held between spacers, and from which z to which, mm.
+        x beyond which (away from the arm) the sheet is clamped between spacers, and the range of z, mm.
     pad
         x from, x to and z of the pad's face, mm.
     E, nu

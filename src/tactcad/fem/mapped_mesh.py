@@ -35,12 +35,12 @@ SIDE_LAYER = 0.5  # outermost layer of the solid mesh, in hinge thicknesses, on 
 # mesh.
 NEAR = 1.0
 MOUTH = 2  # fewest elements under a fillet, on the coarsest mesh
-# Longest element beside a fillet, and half of that along it, in hinge thicknesses, on the coarsest mesh.
+# Longest element next to a fillet, and half of that along it, in hinge thicknesses, on the coarsest mesh.
 COLUMN = 0.6
 LONGEST = 10.0  # columns: width of an element between the fillets
 # fillet radius over the strip's height above which the ring's bulge, felt far inside, would fold the mouth
 STEEP = 4.0
-TWO_BLOCKS = 1.4  # a rectangle longer than this times its height gets columns beside the square
+TWO_BLOCKS = 1.4  # a rectangle longer than this times its height gets columns next to the square
 
 
 @dataclass(frozen=True)
@@ -85,7 +85,7 @@ def plane_mesh(shape: ElementShape, density: int = 1, whole: bool = False, order
     Raises
     ------
     CheckFailure
-        Where slots from both faces differ in length or radius.
+        If slots from both faces differ in length or radius.
     """
     shape = _without_slivers(shape)
     if not shape.two_sided:
@@ -126,12 +126,12 @@ def layers(half_width: float, thickness: float, density: int) -> Array:
 def merged(corners: Array) -> tuple[Array, NDArray[np.int64]]:
     """Unique points of (elements, corners, dim), and each element's indices into them.
 
-    Two points are equal where they share a cell of either of two shifted grids, so that no grid line can
+    Two points are equal if they share a cell of either of two shifted grids, so that no grid line can
     separate points that differ by rounding only. The grid's step is not a round number: with a round one,
     points of a design in decimals would lie on grid lines, one coordinate on those of the first grid, the
     other on those of the second.
     """
-    from scipy.sparse import coo_matrix  # a mesh's size is told without it
+    from scipy.sparse import coo_matrix  # a mesh's size does not need it
     from scipy.sparse.csgraph import connected_components
 
     flat = corners.reshape(-1, corners.shape[-1])

@@ -1,7 +1,7 @@
 """The hinge that a contour encloses, read from the contour's own segments and verified by drawing it again.
 
-A contour in the side plane (x along the arm, z across it), cut at clamp edge and load line, is a
-hinge between two rectangles. `read` finds it, and refuses a contour that this does not describe exactly.
+A contour in the side plane (x along the arm, z across it), cut at clamp edge and load line, is a hinge
+between two rectangles. `read` finds it, and refuses any contour of another shape.
 """
 
 from __future__ import annotations
@@ -155,7 +155,7 @@ def cut_element(contour: Contour, clamp_x: float, load_x: float) -> ElementShape
     Raises
     ------
     CheckFailure
-        Where the hinge model does not describe the part; says what does not fit.
+        If the hinge model does not describe the part; with the reason.
     """
     try:
         piece = between(contour, min(clamp_x, load_x), max(clamp_x, load_x), ("end", "end"))
@@ -234,7 +234,7 @@ def _slot_corners(outer: Contour, arc: Arc, index: int) -> list[_SlotCorner]:
     if abs(turn - pi) < ANGLE and abs(arc.start[1] - cz) < ANGLE * r:
         ends = [(arc.start, -1), (arc.end, 1)]
     elif abs(turn - pi / 2) < ANGLE:
-        # a quarter turn has one end beside its centre (at the wall) and one above or below (at the floor)
+        # a quarter turn has one end level with its centre (at the wall) and one above or below (at the floor)
         ends = [(arc.start, -1)] if abs(arc.start[1] - cz) < ANGLE * r else [(arc.end, 1)]
         if abs(ends[0][0][1] - cz) > ANGLE * r:
             return []
@@ -300,7 +300,7 @@ def _without_pad(
     """
     beyond = cut(contour, "y", face, "below" if keep == "above" else "above")
     if any(min(abs(c.box[0] - end_x), abs(c.box[2] - end_x)) > ON_LINE_MM for c in beyond):
-        raise CheckFailure(f"something stands out of the {name} between slot and cut")
+        raise CheckFailure(f"something protrudes from the {name} between slot and cut")
     parts = cut(contour, "y", face, keep)
     if len(parts) != 1:
         raise CheckFailure(f"the {name} is not one piece")

@@ -71,7 +71,7 @@ def reissued(design: Design, path: str | Path) -> Reissued:
     Raises
     ------
     InputError
-        Where the sheet is not this design's, cannot be read, or holds no sheet thickness.
+        If the sheet is not this design's, cannot be read, or holds no sheet thickness.
     """
     layout = Layout(design)
     readings = read_sheet(path, layout)

@@ -25,13 +25,13 @@ from . import validity
 from .register import rungs
 from .section import Array, HingeSection
 
-MEASURED_FOR = "solid"  # the rung whose range is the envelope: its sample is where errors were measured
+MEASURED_FOR = "solid"  # the rung whose range is the envelope: errors were measured on its sample
 
 
 @dataclass(frozen=True)
 class Candidate:
-    """A rung as it can be chosen; `mesh` is half the order of fem-solid's elements in the plane, None for
-    rungs without that choice."""
+    """A choice of rung; `mesh` is half the order of fem-solid's elements in the plane, None for rungs without
+    that choice."""
 
     rung: str
     mesh: int | None = None
@@ -85,7 +85,7 @@ def choose(s: HingeSection, accuracy: float, names: Sequence[str] = ()) -> Choic
     Raises
     ------
     CheckFailure
-        Where a design lies outside the envelope in which errors were measured, or no candidate keeps the
+        If a design lies outside the envelope in which errors were measured, or no candidate keeps the
         accuracy.
     """
     require_measured(s, names)
@@ -106,7 +106,7 @@ def require_measured(s: HingeSection, names: Sequence[str] = ()) -> None:
 
 
 def choose_each(s: HingeSection, accuracy: float) -> list[Choice | str]:
-    """For every design its own choice, or the reason why there is none.
+    """For every design its own choice, or the reason for having none.
 
     Parameters
     ----------
@@ -204,7 +204,7 @@ def _least_work(zone: np.ndarray, accuracy: float) -> Choice | None:
 
 
 def _best(zone: np.ndarray) -> tuple[Candidate, Array]:
-    """The candidate whose worst promise over the designs is least, and its promise at each."""
+    """The candidate with the least worst promise over the designs, and its promise for each."""
     return min(((c, _promised(zone, c)) for c in CANDIDATES), key=lambda pair: pair[1].max())
 
 

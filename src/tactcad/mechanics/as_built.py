@@ -38,11 +38,11 @@ CUT_FACES = {
     "body_height": -2.0,
     "body_length": -1.0,
 }
-COMMON = ("sheet_thickness", "youngs_modulus", "recast_layer")  # one sheet, one cut: alike in all elements
+COMMON = ("sheet_thickness", "youngs_modulus", "recast_layer")  # one sheet, one cut: equal in all elements
 
 
 def without_layer(s: HingeSection, layer: Array | float) -> HingeSection:
-    """The section that still carries load where a layer (mm) on every wire-cut face carries none."""
+    """The section that carries load if a layer (mm) on every wire-cut face carries none."""
     return s.with_(**{name: getattr(s, name) + by * layer for name, by in CUT_FACES.items()})
 
 
@@ -82,7 +82,7 @@ def half_widths(s: HingeSection, tolerance: Tolerance, rung: str = ladder.DEFAUL
     Raises
     ------
     CheckFailure
-        Where a design is out of the rung's range.
+        If a design is out of the rung's range.
     """
     names = dict.fromkeys((*DIMENSIONS.values(), *CUT_FACES))
     per_mm = {name: elasticity(s, name, rung) / getattr(s, name) for name in names}

@@ -30,8 +30,8 @@ def by_sides(
 ) -> dict[str, Array | float]:
     """Constants of a group ("root", "width", ...) for each design's notch form.
 
-    From `data` (as data/ladder.json), by default the shipped ones. Plain floats where all designs have one
-    form, so that the common case costs no array.
+    From `data` (as data/ladder.json), by default the shipped ones. Plain floats if all designs have one form,
+    so that the common case needs no array.
     """
     table = (data or ladder_data())[group]
     if np.all(two_sided):

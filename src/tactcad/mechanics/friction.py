@@ -1,4 +1,4 @@
-"""How friction at a pad that stands out changes the stiffness felt at its contact."""
+"""Effect of friction at a protruding pad on the stiffness at its contact."""
 
 from __future__ import annotations
 

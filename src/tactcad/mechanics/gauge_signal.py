@@ -32,8 +32,8 @@ class Gauge:
     """A foil gauge centred on the hinge; lengths mm, moduli MPa.
 
     grid_height: from the leaf's face to the foil, backing and glue. foil_coverage: share of the grid's
-    width that is metal. carrier_width may not exceed the sheet's thickness; what is wider does not lie on
-    the leaf.
+    width that is metal. carrier_width may not exceed the sheet's thickness: a wider one does not fit on the
+    leaf.
     """
 
     factor: float
@@ -105,20 +105,20 @@ def foil_strain_per_deflection(s: HingeSection, gauge: Gauge, rung: str = ladder
     s
         One design or many.
     gauge
-        Its grid, foil and carrier, for every design alike.
+        Its grid, foil and carrier, the same for every design.
     rung
         A closed-form rung.
 
     Raises
     ------
     CheckFailure
-        Where a design is out of the rung's range, or a two-sided hinge's flat part is too short for the grid.
+        If a design is out of the rung's range, or a two-sided hinge's flat part is too short for the grid.
     """
     return foil_strain_per_force(s, gauge, rung) * stiffness(s, gauge, rung)
 
 
 GAUSS = 16  # points: the profile's integral is smooth, and kinked at most once
-HALVINGS = 40  # of the stretch in which the allowed place is sought: 1e-12 of it
+HALVINGS = 40  # bisections of the stretch in which the allowed place is sought: to 1e-12
 
 
 def reading(s: HingeSection, grid_length: Array | float, shift: Array | float) -> Array:
@@ -127,7 +127,7 @@ def reading(s: HingeSection, grid_length: Array | float, shift: Array | float) -
     The face's strain is (1 - x/L) p(|x|), x towards the pad: the load's moment times the profile that
     `strain.grid_factor` was fitted for. By parts, with P the integral of p from 0,
     mean = [(1 - x1/L) P(x1) - (1 - x0/L) P(x0) + int P dx/L]/grid. Within 0.7 % of plane elements 0.1 mm off
-    the middle, and 0.4 % where the slot has a flat part (tests/mechanics/test_gauge_place.py).
+    the middle, and 0.4 % if the slot has a flat part (tests/mechanics/test_gauge_place.py).
 
     Parameters
     ----------
@@ -139,7 +139,7 @@ def reading(s: HingeSection, grid_length: Array | float, shift: Array | float) -
     Raises
     ------
     CheckFailure
-        Where a two-sided hinge's flat part is too short for the grid at that place.
+        If a two-sided hinge's flat part is too short for the grid at that place.
     """
     grid, middle = np.asarray(grid_length, dtype=float), np.asarray(shift, dtype=float)
     L = s.load_arm
@@ -147,7 +147,7 @@ def reading(s: HingeSection, grid_length: Array | float, shift: Array | float) -
     along = np.concatenate([[-1.0, 1.0], points])  # the grid's ends, and what its integral takes
     flat = (1,) * max(len(s.shape), grid.ndim, middle.ndim)
     x = middle + grid / 2 * along.reshape(-1, *flat)
-    # P(x), mm: what a centred grid of length 2|x| takes on one side, with the sign of x.
+    # P(x), mm: the share of a centred grid of length 2|x| on one side, with the sign of x.
     P = x * strain.grid_factor(s, 2 * np.abs(x))
     low, high = (1 - x[:2] / L) * P[:2]
     mean = (high - low) / grid + np.tensordot(weights, P[2:], axes=1) / (2 * L)
@@ -164,8 +164,8 @@ def error(s: HingeSection, grid_length: Array | float, shift: Array | float) -> 
 def allowed(s: HingeSection, grid_length: float, share: float) -> Array:
     """How far off the hinge's middle a grid may lie for its reading to err by `share` at most, mm.
 
-    The error grows with the distance. Beyond a grid's length nothing is asked; on a two-sided hinge it may
-    not climb its fillets. Raises CheckFailure if it does even in the middle.
+    The error grows with the distance. Distances beyond a grid's length are not searched; on a two-sided hinge
+    it may not climb its fillets. Raises CheckFailure if it does even in the middle.
     """
     flat = s.straight_length + s.fillet_radius
     room = np.where(s.two_sided, np.maximum(flat - grid_length, 0.0) / 2, grid_length)
@@ -239,7 +239,7 @@ def switched(excitation: float, gauge: Gauge, power: Power) -> Heating:
     Raises
     ------
     InputError
-        Where on_time is longer than the period.
+        If on_time is longer than the period.
     """
     if power.on_time > power.period:
         raise InputError(

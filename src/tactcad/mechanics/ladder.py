@@ -82,7 +82,7 @@ def stiffness(s: HingeSection, rung: str = DEFAULT_RUNG) -> Array:
     Raises
     ------
     CheckFailure
-        Where any design is out of the rung's range; names the rule and the design.
+        If any design is out of the rung's range; names the rule and the design.
     """
     require_range(s, rung)
     return _stiffness(s, rung)
@@ -143,7 +143,7 @@ def elasticity(s: HingeSection, parameter: str, rung: str = DEFAULT_RUNG) -> Arr
     Raises
     ------
     CheckFailure
-        Where a design is out of the rung's range; the steps beside it may lie just outside.
+        If a design is out of the rung's range; its neighbouring steps may lie just outside.
     """
     require_range(s, rung)
     value = getattr(s, parameter)
@@ -152,10 +152,7 @@ def elasticity(s: HingeSection, parameter: str, rung: str = DEFAULT_RUNG) -> Arr
     return np.log(up / down) / (2.0 * STEP)
 
 
-SEARCHED = {
-    "hinge_thickness": (0.005, 5.0),
-    "hinge_length": (0.01, 50.0),
-}  # mm, as a design file may have them
+SEARCHED = {"hinge_thickness": (0.005, 5.0), "hinge_length": (0.01, 50.0)}  # mm, legal in a design file
 GRID = 4001  # points, by logarithm, on which the rung's range is looked for
 
 
@@ -178,7 +175,7 @@ def size(s: HingeSection, wanted: float, parameter: str, rung: str = DEFAULT_RUN
     Raises
     ------
     CheckFailure
-        Where the rung's range holds no such design; says which stiffnesses can be reached.
+        If the rung's range holds no such design; with the stiffnesses that can be reached.
     """
     low, high = SEARCHED[parameter]
     values = np.geomspace(low, high, GRID)

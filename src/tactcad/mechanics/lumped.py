@@ -18,7 +18,7 @@ from .section import Array
 
 
 def _share(x: Array | float, K: Array | float) -> Array:
-    """x/(x + K) for x from 0 to infinity, where it is 1."""
+    """x/(x + K) for x from 0 to infinity (then 1)."""
     x = np.asarray(x, dtype=float)
     finite = np.where(np.isinf(x), 1.0, x)
     return np.where(np.isinf(x), 1.0, finite / (finite + K))
@@ -140,7 +140,7 @@ def ratio_interval(
         estimate = N / D
     lower, upper = np.minimum(first, second), np.maximum(first, second)
     bounded, open_ended = real & (a > 0.0), real & (a < 0.0)
-    # a bounded set holds the estimate; rounding may put an end of a very narrow one beside it
+    # a bounded set contains the estimate; by rounding, a very narrow one may miss it
     lower = np.where(bounded, np.minimum(lower, estimate), lower)
     upper = np.where(bounded, np.maximum(upper, estimate), upper)
     known = bounded | open_ended

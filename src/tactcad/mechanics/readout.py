@@ -9,7 +9,7 @@ text on electronic noise), through one pole at the amplifier's bandwidth B:
 
     e_out = G sqrt((e^2 + 4 k T R) pi/2 B)
 
-Flicker noise is left out: a reading lasts too short a time for it.
+Flicker noise is left out: readings are too short for it.
 """
 
 from __future__ import annotations
@@ -104,7 +104,7 @@ def bridge_nonlinearity(x: ArrayLike) -> Array:
 
 
 def output(strain: ArrayLike, factor: float, readout: ReadOut) -> Array:
-    """Amplifier's output (V) at a foil strain, held at the supplies' and the converter's limits."""
+    """Amplifier's output (V) at a foil strain, clipped to the supplies' and the converter's limits."""
     raw = unlimited_output(strain, factor, readout)
     return np.clip(raw, readout.lowest, readout.highest)
 
@@ -160,7 +160,7 @@ class Signal:
     per_deflection: Array  # K_v, V/mm, at no load
     per_force: Array  # K_v/K, V/N
     strain: Array  # of the foil at the deflection asked for
-    volts: Array  # change of the amplifier's output there, exact bridge, held at its limits
+    volts: Array  # change of the amplifier's output there, exact bridge, clipped to its limits
     nonlinearity: Array  # of the bridge there, relative
     limited: NDArray  # whether a supply or the converter holds the output
     resolution: Array  # N, two standard deviations of the averaged reading
@@ -180,7 +180,7 @@ def predict(
     s
         The elements.
     gauge, electronics
-        Alike for all elements.
+        The same for all elements.
     deflection
         Of each element at its tip, mm.
     rung
@@ -189,7 +189,7 @@ def predict(
     Raises
     ------
     CheckFailure
-        Where an element is out of the rung's range.
+        If an element is out of the rung's range.
     """
     gain = readout.volts_per_strain(gauge.factor, electronics)
     per_mm = gauge_signal.foil_strain_per_deflection(s, gauge, rung)

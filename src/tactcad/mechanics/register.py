@@ -1,9 +1,9 @@
 """A rung of the model ladder: declared once, in a module of its own.
 
 Every module in mechanics/rungs declares one or more, each a `Rung`; nothing lists them, and every list of
-rungs elsewhere is derived from them. A module without, a declaration that lacks something, or two of one name
-or place are refused when they are imported. `benchmarks/ladder_fit.py` measures their errors
-(data/ladder.json, data/accuracy.json).
+rungs elsewhere is derived from them. A module without a rung, an incomplete declaration, or two with one name
+or place are refused on import. `benchmarks/ladder_fit.py` measures their errors (data/ladder.json,
+data/accuracy.json).
 """
 
 from __future__ import annotations

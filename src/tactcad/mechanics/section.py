@@ -36,8 +36,8 @@ def _none() -> Array:
 class HingeSection:
     """Parameters of one element or of many: arrays (of no dimension for one element) that broadcast together.
 
-    Numbers and lists are also taken, and converted to arrays; code that is type-checked passes them to
-    `HingeSection.of`. The sketch stands at the top of the module.
+    Numbers and lists are converted to arrays; type-checked code passes them to `HingeSection.of`. The sketch
+    is at the top of the module.
 
     Parameters
     ----------

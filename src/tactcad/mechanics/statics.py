@@ -162,7 +162,7 @@ def tipping_pull(contacts: Sequence[Point], height: float, weight: float, load: 
     weight
         The cart's own, in its middle, N.
     load, at
-        Vertical load, N, and the point where it acts, mm.
+        Vertical load, N, and its point of action, mm.
     """
     if height == 0:
         return inf

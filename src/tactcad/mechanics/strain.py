@@ -1,7 +1,7 @@
 """Surface strain of the hinge: nominal, at the centre, as a gauge's grid averages it, and its peak.
 
 The closed forms are factors on the nominal strain, fitted on plane elements like the stiffness; the fit
-report says how well each fits. In three dimensions strain per newton goes down as the stiffness goes up;
+report gives each one's error. In three dimensions strain per newton goes down as the stiffness goes up;
 strain per deflection hardly changes.
 
 `data/strain.json`, written by `benchmarks/strain_fit.py`, divides the range into zones, as data/accuracy.json
@@ -62,7 +62,7 @@ def gauge(
     Raises
     ------
     CheckFailure
-        Where a design is out of the rung's range, or a two-sided hinge's flat part is too short for the grid.
+        If a design is out of the rung's range, or a two-sided hinge's flat part is too short for the grid.
     """
     ladder.require_range(s, rung)
     bent = nominal(s, force) / friction.factor(s)
@@ -91,7 +91,7 @@ def peak(
     Raises
     ------
     CheckFailure
-        Where a design is out of the rung's range.
+        If a design is out of the rung's range.
     """
     ladder.require_range(s, rung)
     if rung in ladder.FITTED:
@@ -153,7 +153,7 @@ def mid_width_share(s: HingeSection, data: dict | None = None) -> Array:
 
 
 def narrow(s: HingeSection, at: str, grid_length: Array | float = 0.0, data: dict | None = None) -> Array:
-    """Factor on strain ("grid", "fillet") or stress ("stress") at mid-width where a leaf is hardly wider than
+    """Factor on strain ("grid", "fillet") or stress ("stress") at mid-width for a leaf hardly wider than
     long.
 
     1 + nu^2 P (l/b - 1/NARROW), and 1 if b is NARROW l or more. P as for `mid_width_share`, under a grid
@@ -180,7 +180,7 @@ def narrow(s: HingeSection, at: str, grid_length: Array | float = 0.0, data: dic
 def features(s: HingeSection, grid_length: Array | float | None = None) -> Array:
     """l/b, t/b, nu and ln(r/t), and grid/l of a grid (mm): [..., feature]."""
     l, t, b = s.hinge_length, s.hinge_thickness, s.width
-    tiny = np.finfo(float).tiny  # a slot without fillets is out of every range, yet bounds are wanted for it
+    tiny = np.finfo(float).tiny  # a slot without fillets is out of every range, but needs bounds
     found = [l / b, t / b, s.poisson, np.log(np.maximum(s.fillet_radius / t, tiny))]
     if grid_length is not None:
         found.append(np.asarray(grid_length) / l)
@@ -363,8 +363,8 @@ def _logistic(z: Array) -> Array:
 
 
 SIDES = {"two": True, "one": False}
-# Slot lengths on the flat face (two-sided: lengths of flat part and one fillet) above which a grid is a long
-# one, and above which none was measured.
+# Slot lengths on the flat face (two-sided: lengths of flat part and one fillet) above which a grid counts as
+# long, and above which none was measured.
 LONG_GRID, LONGEST_GRID = 2.0, 5.0
 # Of fem-solid, twice the most by which its meshes 2 to 4 were found to differ: under a grid 0.024 %, and
 # 0.145 % where the slot is shorter than SHORT thicknesses; 0.70 % at the fillet of a narrow two-sided hinge
@@ -409,7 +409,7 @@ def stated(s: HingeSection, grid_length: float, rung: str) -> StrainErrors:
 
 
 def in_zone(bounds: dict[str, list[float | None]], s: HingeSection) -> np.ndarray:
-    """Which designs have every group that bounds a zone between its ends (None: no end)."""
+    """Designs with every group of a zone between its ends (None: no end)."""
     groups, inside = validity.groups(s), np.ones(s.shape, dtype=bool)
     for name, (low, high) in bounds.items():
         inside &= (groups[name] >= (low or 0.0)) & (groups[name] < (np.inf if high is None else high))

@@ -1,5 +1,5 @@
-"""At which force the hinge yields or fatigues, which force it is rated for, and the load on a hinge whose arm
-is pressed onto the overload stop by a force too large for the hinge alone.
+"""Forces at which the hinge yields or fatigues, its rated force, and the load on a hinge whose arm is pressed
+onto the overload stop by a force too large for the hinge alone.
 
 The stop holds the arm's tip, at `arm` (mm) from the hinge's centre; the force acts at L < arm. Three beams
 are joined end to end: the body, a cantilever of length Lb; the hinge, a leaf of length l; the arm beyond it,
@@ -8,16 +8,16 @@ a cantilever. The deflection at i by a unit force at j is, for i <= j (mm from t
   d_ij = C (i j + l^2/12) + rest_ij
   rest_ij = (p q Lb + (p + q) Lb^2/2 + Lb^3/3)/(E b Hb^3/12) + u^2 (3 v - u)/(6 E b h^3/12)
   p = i + l/2, q = j + l/2, u = i - l/2, v = j - l/2
-  C = (1/K - rest_LL)/(L^2 + l^2/12), K the stiffness at the load line; not below 0, which it would be where
-      the sheet is so wide that body and arm cannot curl sideways and are stiffer than rest_LL says
+  C = (1/K - rest_LL)/(L^2 + l^2/12), K the stiffness at the load line; not below 0, which it would be for a
+  sheet so wide that body and arm cannot curl sideways and are stiffer than by rest_LL
 
 Each newton beyond the force that closed the stop is met at the tip by the reaction
 
   S = d_La/(d_aa + give), a = arm, with `give` the compliance of the stop in mm/N
 
-and reaches the hinge as the shear V = 1 - S and the moment M = L - S arm. M is negative where the body bends
-so far that the arm tilts back over the held tip. That this relieves the hinge at first is not counted; that
-it may bend the hinge the other way too far is.
+and reaches the hinge as the shear V = 1 - S and the moment M = L - S arm. M is negative if the body bends so
+far that the arm tilts back over the stopped tip. The initial relief of the hinge is not counted; bending it
+too far the other way is.
 
 Of the stop's functions s is the element, `stiffness` (N/mm) is K, `arm` (mm) the tip's distance and `give`
 (mm/N) the stop's compliance; arrays broadcast together.
@@ -36,8 +36,8 @@ from .section import Array, HingeSection
 def yield_force(s: HingeSection, alloy: Alloy) -> Array:
     """Force at which the fillet's surface reaches the yield strength, N.
 
-    Raises CheckFailure, as the module's other functions of a section do, where the closed forms
-    for stress were not fitted.
+    Raises CheckFailure, as the module's other functions of a section do, if the closed forms for stress were
+    not fitted.
     """
     return alloy.yield_strength / strain.peak_stress(s, 1.0)
 
@@ -99,8 +99,8 @@ def stop_share(s: HingeSection, stiffness: Array, arm: Array, give: float) -> Ar
 def stress_share(s: HingeSection, stiffness: Array, arm: Array, give: float) -> Array:
     """Force at a free arm's load line (N) that stresses the fillet as one newton does on a closed stop.
 
-    The bending moment where the stress is largest, at w from the hinge's centre, is M + V w on the stop and
-    L + w by a newton at a free arm's load line; their ratio is returned, with M not below 0.
+    The bending moment at the point of largest stress, w from the hinge's centre, is M + V w on the stop and L
+    + w by a newton at a free arm's load line; their ratio is returned, with M not below 0.
     """
     L, w, S = s.load_arm, strain.peak_position(s), stop_share(s, stiffness, arm, give)
     return (np.maximum(L - S * arm, 0.0) + (1.0 - S) * w) / (L + w)
@@ -134,13 +134,13 @@ def largest_closing_force(
     overload : float
         Force at the load line, N.
     limit : array
-        Force at a free arm's load line whose angle and stress the hinge may have at most, N.
+        Force at a free arm's load line that gives the hinge's largest allowed angle and stress, N.
 
     Returns
     -------
     array
-        N, at most `limit`. 0 or less where a stop that is closed from the start would not protect the hinge:
-        its share of the overload alone exceeds the limit, or bends the hinge back too far.
+        N, at most `limit`. 0 or less if a stop closed from the start would not protect the hinge: its share
+        of the overload alone exceeds the limit, or bends the hinge back too far.
     """
     share = _share(s, stiffness, arm, give)
     closing = limit - share / (1.0 - share) * np.maximum(overload - limit, 0.0)

@@ -1,4 +1,4 @@
-"""Where a rung may be used: named rules, each giving a mask over the designs."""
+"""A rung's range of validity: named rules, each giving a mask over the designs."""
 
 from __future__ import annotations
 
@@ -137,7 +137,7 @@ WIDTH_GROUPS: dict[str, Callable[[HingeSection], Array]] = {
     "b/Hb": lambda s: s.width / s.body_height,
 }
 
-# Groups with a lower bound only: what is wrong below it, the group, and whose fit it bounds.
+# Groups with a lower bound only: the fault below it, the group, and the bounded fit.
 LEAST: dict[str, tuple[str, Callable[[HingeSection], Array], str]] = {
     "Lb/t": ("body too short", lambda s: s.body_length / s.hinge_thickness, "plane"),
     "L/t": ("load arm too short", lambda s: s.load_arm / s.hinge_thickness, "plane"),
@@ -229,7 +229,7 @@ def broken_rules(s: HingeSection, rung: str) -> dict[str, np.ndarray]:
     dict of str to ndarray of bool
         By the rule's name, the mask of the designs that break it, of the section's shape.
     """
-    known = s.__dict__.setdefault("broken_rules", {})  # asked again by every formula of the section
+    known = s.__dict__.setdefault("broken_rules", {})  # used by every formula of the section
     if rung not in known:
         with np.errstate(all="ignore"):
             masks = {rule.name: rule.broken(s) for rule in rules(rung)}
@@ -250,7 +250,7 @@ def reasons(s: HingeSection, rung: str) -> np.ndarray:
 
 
 def in_words(broken: np.ndarray) -> np.ndarray:
-    """`first_broken` as `reasons` says it."""
+    """`first_broken` in the words of `reasons`."""
     words = np.empty(broken.shape, dtype=object)
     words.reshape(-1)[:] = ["" if one is None else str(one) for one in broken.reshape(-1)]
     return words

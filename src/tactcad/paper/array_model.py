@@ -56,7 +56,7 @@ class ArrayModel:
     stiffness_factor: float  # of the material's own modulus over the design's
     modulus_per_kelvin: float  # 1/K, by which the modulus falls
     rig: MeasuringRig
-    layers: tuple[Layer, ...]  # on the leaf: the bond line first, where the design says what it is
+    layers: tuple[Layer, ...]  # on the leaf: the bond line first, if the design has one
     bond_line: bool
 
     def rows(self, number: np.ndarray) -> np.ndarray:
@@ -79,7 +79,7 @@ def from_design(design: Design) -> ArrayModel:
         design.name,
         np.array([p.number for p in places]),
         np.array([float(p.arm) for p in places]),
-        # friction acts at the pad of a calibration rig, and is asked for there
+        # friction acts at the pad of a calibration rig, and is evaluated there
         hinge_section(layout, places).with_(pad_height=0.0, friction=0.0),
         design.element.pad_length,
         design.element.pad_height,
@@ -112,8 +112,8 @@ def from_design(design: Design) -> ArrayModel:
 def gauge_layers(design: Design) -> tuple[Layer, ...]:
     """Layers from the leaf's face outwards, the foil last.
 
-    The first one is the adhesive, of a design that says which ([bonding]); what of gauge.grid_height it does
-    not take is the carrier's backing. The foil's metal counts by its share of the grid's area.
+    The first one is the adhesive, if the design names one ([bonding]); the rest of gauge.grid_height is the
+    carrier's backing. The foil's metal counts by its share of the grid's area.
     """
     g, b = design.gauge, design.bonding
     carrier = (min(g.carrier_width, design.sheet.thickness), (g.carrier_arm_side, g.carrier_body_side))

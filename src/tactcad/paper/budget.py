@@ -174,7 +174,7 @@ def _reference(pair: BudgetPair, study: Table2Study, data: Published, array: Arr
     return effect("reference", (size, nan), off, remaining, half=half)
 
 
-# --- on K where it is computed from the drawing: the element as built, and what a model leaves out ---
+# --- on K computed from the drawing: the element as built, and the model's omissions ---
 
 
 def _as_built(pair: BudgetPair, array: ArrayModel) -> list[Effect]:

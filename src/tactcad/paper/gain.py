@@ -122,7 +122,7 @@ def _log_mean(measured: np.ndarray, q: np.ndarray) -> tuple[float, float]:
 
 
 def _with_length(s: HingeSection, length: float) -> HingeSection:
-    """The same elements with another slot length, the clamp's edge where it is."""
+    """The same elements with another slot length and the same clamp edge."""
     clamp = s.body_length + s.hinge_length / 2
     return s.with_(hinge_length=np.full(s.shape, length), body_length=clamp - length / 2)
 

@@ -52,7 +52,7 @@ class Form:
     effective_spread: float  # over the 95 % region: (largest - least)/mean
     radius_from_strain: tuple[
         float, float
-    ]  # radii whose face strain agrees with the printed strains; NaN if none
+    ]  # radii with a face strain that agrees with the printed strains; NaN if none
 
 
 @dataclass(frozen=True)

@@ -34,7 +34,7 @@ OTHERS = (3.0, 10.0)  # thicknesses in place of the design's
 @dataclass(frozen=True)
 class Fitted:
     """ln R of Table 2 by one model: K_r (N/mm), slopes of each sample's face along x and y, K_obj of each
-    sample, what is left, number of parameters, and half-widths (95 %) of slopes and ln K_obj."""
+    sample, residual, number of parameters, and half-widths (95 %) of slopes and ln K_obj."""
 
     reference: float
     slope: np.ndarray  # [sample, 2]
@@ -148,7 +148,7 @@ def _fit(
     objects: bool = False,
     heights: bool = False,
 ) -> Fitted:
-    """Gauss and Newton over K_r, and what of slopes, K_obj and heights is free."""
+    """Gauss-Newton over K_r, and the free ones of slopes, K_obj and heights."""
     measured, printed = np.log(data.table2.ratio.value), data.table2.object_stiffness.value
     S, n = len(printed), len(samples.K)
     slope, ln_x, height = np.zeros((S, 2)), np.log(printed), np.zeros(n)

@@ -156,7 +156,7 @@ def findings(v: Inversion) -> tuple[str, ...]:
 
 
 def _without_its_own(v: Inversion) -> str:
-    """How many are right where the K_r is fitted without the reading that it is tried on."""
+    """Number of correct ones with K_r fitted without the reading under test."""
     x = v.object_stiffness
     left_out, *ends = (_right(e, x).sum() for e in (v.left_out, *v.at_ends))
     same = f"{ends[0]} with either end" if ends[0] == ends[1] else f"{ends[0]} and {ends[1]} with the ends"
@@ -216,7 +216,7 @@ def _median(w: Inverted, x: np.ndarray) -> float:
 
 
 def _median_of_positive(v: Inversion, x: np.ndarray) -> str:
-    """The supported median over positive estimates, where the others make a difference to it."""
+    """The supported median over positive estimates, if it differs from that over all."""
     positive = v.supported.physical()
     if positive.all() or not positive.any():
         return ""

@@ -1,7 +1,7 @@
 """The paper's tables and single figures, as data, with the uncertainty that rounding alone leaves.
 
 Source: "Spring-based tactile array for assistive robotic surgical applications", Tables 1 and 2 and the text.
-Values stay as printed; half steps (half a unit of the last printed digit) go beside them.
+Values are as printed, with half steps (half a unit of the last printed digit).
 """
 
 from __future__ import annotations
@@ -105,8 +105,8 @@ def load(table1: str | Path | None = None, table2: str | Path | None = None) -> 
     Raises
     ------
     InputError
-        With file, line and column: a missing column, text for a number, a value out of range, an element that
-        stands twice, a grid of Table 2 that has gaps.
+        With file, line and column: a missing column, text for a number, a value out of range, an element
+        listed twice, gaps in the grid of Table 2.
     """
     data = Path(str(files("tactcad.paper"))) / "data"
     figures = _figures(data / "printed.csv")

@@ -94,7 +94,7 @@ class ReferenceElement:
 
     @property
     def best(self) -> Explanation:
-        """The explanation whose K_v and K_v/K are least off."""
+        """The explanation with the least deviation of K_v and K_v/K."""
         return min(self.explanations, key=lambda e: abs(e.miss_per_deflection) + abs(e.miss_per_force))
 
 
@@ -298,7 +298,7 @@ def _printed(pair: tuple[float, float]) -> str:
     return f"{pair[0]:g} to {pair[1]:g}"
 
 
-# account of Table 2 -> how a sentence names it, and what it means when it alone fits
+# explanation of Table 2 -> its name in a sentence, and its meaning if only it fits
 ACCOUNTS = {
     "as printed": ("as printed", "Then Table 1 and the reference element's readings agree as they stand."),
     "softer reference element": (

@@ -69,7 +69,7 @@ class Residuals:
 
     @property
     def furthest(self) -> int:
-        """Row of the element whose stiffness is furthest off."""
+        """Row of the element with the largest deviation of stiffness."""
         return int(np.argmax(np.abs(self.residual)))
 
     @property
@@ -110,7 +110,7 @@ def residuals(
     rung: str = "solid",
     more: dict[str, np.ndarray] | None = None,
 ) -> Residuals:
-    """Table 1 against the design as it stands; `more` adds stiffnesses of slower rungs, for the matched
+    """Table 1 compared with the unchanged design; `more` adds stiffnesses of slower rungs, for the matched
     elements.
     """
     here, s = matched(data, array)

@@ -1,8 +1,8 @@
 """Table 1 against itself: its products, its ratios, and the load cell in series.
 
 K d should be the force and |K_v| d the signal, apart from the intercepts of the lines, which are not printed;
-K_v/K is printed beside its two terms. Stage travel = d + F/K_c for every element, so d against F is one
-line whose slope is the compliance that was really in series and whose intercept is the travel.
+K_v/K is printed along with its two terms. Stage travel = d + F/K_c for every element, so d over F is one line
+whose slope is the true compliance in series and whose intercept is the travel.
 """
 
 from __future__ import annotations

@@ -25,7 +25,7 @@ from .reference_element import ReferenceElement
 from .reference_stiffness import UNITS, Fit, Table2Study
 from .residuals import EDGE, Residuals
 
-ALIKE = 0.15  # models whose rms differ by less than this part are said to fit equally well
+ALIKE = 0.15  # relative difference of rms below which models count as fitting equally well
 USABLE = 10.0  # an interval wider than this factor is not informative
 
 
@@ -206,7 +206,7 @@ def other_witnesses(s: Table2Study, who: tuple[Witness, ...]) -> str:
         if w.high > w.low * USABLE:
             silent.append(w)
             continue
-        # a band's end is known within EDGE; a single printed value counts as agreeing within a tenth
+        # a band's end is uncertain by EDGE; a single printed value agrees if within a tenth
         slack = EDGE if w.high > w.low else 0.1
         low, high = w.low * (1 - slack), w.high * (1 + slack)
         holds = [low <= v <= high for v in (K, printed)]

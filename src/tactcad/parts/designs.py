@@ -21,7 +21,7 @@ def load(source: str | Path) -> CommonTables:
     Raises
     ------
     InputError
-        Where the file is missing or not a design, a value is not legal, or a rule is broken.
+        If the file is missing or not a design, a value is not legal, or a rule is broken.
     """
     design = read(source)
     refuse_broken(design)

@@ -2,8 +2,8 @@
 They take their places together, and nobody's file is lost.
 
 An edited zip is recognised by its seal without unpacking it; a forged one is not (as in export/contents.py).
-The places are looked at before the work, and again before the new zips take them: what is then not exactly as
-tactcad wrote it, and was not to be discarded, is kept beside as NAME-kept-1.zip.
+The places are examined before the work, and again before the new zips replace the old: a zip that is not
+exactly as tactcad wrote it, and was not to be discarded, is kept as NAME-kept-1.zip.
 """
 
 from __future__ import annotations
@@ -80,7 +80,7 @@ def fault(path: Path) -> str:
 
 
 def _directory(file: BinaryIO) -> list[zipfile.ZipInfo]:
-    """Entries of the zip's directory; none if it cannot be read, or is larger than ours could be."""
+    """Entries of the zip's directory; none if it cannot be read, or is too large to be ours."""
     file.seek(max(file.seek(0, os.SEEK_END) - MOST_DIRECTORY, 0))
     try:
         with zipfile.ZipFile(io.BytesIO(file.read(MOST_DIRECTORY))) as archive:
@@ -90,7 +90,7 @@ def _directory(file: BinaryIO) -> list[zipfile.ZipInfo]:
 
 
 def replaced_content(target: Path, new: bytes) -> list[str]:
-    """Files that the zip at `target`, if there is one, and the new one do not have alike."""
+    """Files that differ between the zip at `target`, if there is one, and the new one."""
     if not target.is_file():
         return []
     with target.open("rb") as old:
@@ -102,7 +102,7 @@ def replaced_content(target: Path, new: bytes) -> list[str]:
 
 
 LINK, OTHER, UNREADABLE = NO_FILE = "a link", "no file", "a file that cannot be read"
-Foreign = tuple[str, int, int, int]  # what is the matter with it; inode, size and time (ns) show a change
+Foreign = tuple[str, int, int, int]  # its fault; inode, size and time (ns) show a change
 
 
 def looked_at(places: Sequence[Path], others: str) -> dict[str, Foreign]:

@@ -32,7 +32,7 @@ QUOTED = ("wire-cut", "machining")  # checks whose flags are reported to the sho
 @dataclass(frozen=True)
 class Released:
     """Result of a release: the zip, whether it is a draft or a sample, the files that it holds, failures
-    (drafts only), differences from the zip that stood there before, and the suppliers' packages beside it.
+    (drafts only), differences from the previous zip, and the suppliers' packages.
     """
 
     path: Path
@@ -60,7 +60,7 @@ class Terms:
 def looked_up(
     design: CommonTables, design_file: Path, out: str | Path, shop_file: Path, terms: Terms
 ) -> tuple[list[Path], Mapping[str, Foreign]]:
-    """Places of a release's zips, the whole one's first, and what `places.looked_at` finds there."""
+    """Places of a release's zips, the whole one's first, and the result of `places.looked_at`."""
     stem = ReleaseContents(design, (), (), (), terms.draft, terms.sample).stem
     places = [Path(out) / f"{stem}{way}.zip" for way in ("", *(f"-{one.name}" for one in PACKAGES))]
     for place in places:
@@ -76,42 +76,42 @@ def release(
     progress: Progress,
     terms: Terms,
 ) -> Released:
-    """Write a design's release, `<design>-<revision>.zip`, and beside it a zip for each way of making
-    (packages.py), `<design>-<revision>-<way>.zip`; the revision is followed by SAMPLE for a sample and by
-    PRELIMINARY for a draft.
+    """Write a design's release, `<design>-<revision>.zip`, and a zip for each way of making (packages.py),
+    `<design>-<revision>-<way>.zip`; the revision is followed by SAMPLE for a sample and by PRELIMINARY for a
+    draft.
 
     Parameters
     ----------
     design, design_file
-        The design, with its owner and contact but for a sample, and the file that it was read from.
+        The design, with its owner and contact unless a sample, and its file.
     out
         The folder to write to.
     shop_file
         The limits that parts are checked against.
     progress
-        Receives what is done, and why nothing is.
+        Receives each task, and the reason if nothing is done.
     terms
         Draft or not, sample or not, and so on. A draft's README lists the checks that fail.
 
     Returns
     -------
     Released
-        The zip, its files, what differs from the one that stood there before, and the packages.
+        The zip, its files, the differences from the previous one, and the packages.
 
     Raises
     ------
     CheckFailure
-        With nothing written and older zips as they were, where a check fails, the golden file does not hold
-        just this revision, or what was written does not read back; otherwise as `places.replacing`.
+        If a check fails, the golden file does not hold exactly this revision, or a written file does not read
+        back; nothing is then written and older zips remain. Otherwise as `places.replacing`.
     InputError
-        Where `out` cannot be written, or as `places.looked_at`.
+        If `out` cannot be written, or as `places.looked_at`.
     """
     places, foreign = looked_up(design, design_file, out, shop_file, terms)
     scenes = [make_scene(design, name) for name in scene_names(design)]
     # the golden file first: it needs no kernel
     failures = golden_faults(design, design_file)
     _refuse(design, failures, terms.draft, progress)
-    # beside the published seed, which the checks take, one that nobody could design for
+    # besides the published seed of the checks, one that nobody could design for
     failures += [str(f) for f in check_assembly(design, seed=secrets.randbelow(2**32))]
     _refuse(design, failures, terms.draft, progress)
 
@@ -177,7 +177,7 @@ def release(
 
 def golden_faults(design: CommonTables, design_file: Path) -> list[str]:
     """Why the golden file does not allow a release of this revision; empty if it holds just this geometry,
-    or where the design stands in no hardware/ and can have none."""
+    or if the design is in no hardware/ and can have none."""
     path = golden_path(design_file, design)
     return [] if path is None else [finding.message for finding in check_golden(design, path)]
 

@@ -20,7 +20,7 @@ from tactcad.export.dxf import layered_dxf
 from tactcad.parts.language.description import Extrusion, Part
 from tactcad.parts.language.stock import cut_section, stock_of
 
-BORDER = 10.0  # mm beside all pieces; chosen: for clamps
+BORDER = 10.0  # mm around all pieces; chosen: for clamps
 LEAST_GAP = 5.0  # mm between pieces, or the stock's thickness; chosen: the web holds, a start hole has room
 START = 1.0  # mm, diameter of a start hole; chosen: drilled, twice the least that a wire is threaded through
 TAB = 2.0  # mm of the outline that is cut last; chosen: holds a piece of some ten grams against the flushing
@@ -181,8 +181,8 @@ def _rows(pieces: Sequence[NestedPiece], width: float, gap: float) -> tuple[floa
 
 
 def nest_dxf(nest: Nest) -> bytes:
-    """The nest as DXF: SHEET its outline, CUT the contours as nominal, START the start holes, TAB what is
-    cut last."""
+    """The nest as DXF: SHEET its outline, CUT the contours as nominal, START the start holes, TAB the last
+    cuts."""
     box = (0.0, 0.0, nest.width, nest.height)
     layers: dict[str, Sequence[Contour | Line]] = {
         "SHEET": [rectangle(*box)],

@@ -33,8 +33,8 @@ Row = dict[str, object]
 
 @dataclass(frozen=True)
 class Package:
-    """A way of making: what its zip's name ends in, its title, the processes (column of the bill) whose lines
-    are its order, and the lines' rows. `folders`: which of the parts' files it takes."""
+    """A way of making: the end of its zip's name, its title, the processes (column of the bill) of its
+    order's lines, and the lines' rows. `folders`: the folders of its parts' files."""
 
     name: str
     title: str
@@ -53,8 +53,8 @@ class Packed:
 
 
 def order_nests(contents: ReleaseContents, shop: Shop) -> dict[str, Nest]:
-    """What is ordered of sheet and plate, each material and thickness on one sheet, by its files' path
-    without ending."""
+    """The order's sheet and plate, each material and thickness on one sheet, by its files' path without
+    ending."""
     made = [
         (line.part, round(line.order), _at_once(line, shop))
         for line in contents.lines
@@ -137,7 +137,7 @@ def _files_of(
     if package is SHEET and line.part is not None and line.part.by_contour:
         return {}  # cut from the sheet by another
     needed = {kind: path for kind, path in paths.items() if path in files and kind in package.folders}
-    if package is WIRE and line.part is not None and line.part.features:  # what no contour shows
+    if package is WIRE and line.part is not None and line.part.features:  # details that no contour shows
         needed["step"] = paths["step"]
     return needed
 
@@ -172,13 +172,13 @@ def _material(part: Part) -> dict[str, object]:
 
 
 def _after(part: Part) -> str:
-    """What is measured before it is ordered: a thickness that is not the drawn one says so."""
+    """Note for a part measured before it is ordered: its thickness is not the drawn one."""
     own = own_thickness(part)
     return f"measured: thickness is {own.remark}" if own and own.remark else ""
 
 
 def _made(line: OrderLine) -> Part:
-    assert line.part is not None  # what is made has a solid
+    assert line.part is not None  # parts made have a solid
     return line.part
 
 
@@ -276,7 +276,7 @@ def table_rows(data: bytes) -> list[dict[str, str]]:
 
 
 def _of_parts(table: bytes, lines: Iterable[OrderLine]) -> bytes:
-    """Rows of the inspection list that are of these parts; empty if none is."""
+    """Rows of the inspection list for these parts; empty if there are none."""
     numbers = {line.row.part_no for line in lines}
     rows = [row for row in table_rows(table) if row["part_no"] in numbers]
     return table_bytes(rows) if rows else b""
@@ -287,7 +287,7 @@ PASSES = {"one pass": 1, "three passes": 3, "four passes": 4}
 
 @dataclass(frozen=True)
 class WireTime:
-    """Of one piece: length of all contours mm, height mm of what is cut at once, and pieces in it, contours,
+    """Of one piece: length of all contours mm, height mm of the stack cut at once, and its pieces, contours,
     passes, minutes."""
 
     length: float
@@ -298,7 +298,7 @@ class WireTime:
     minutes: float
 
 
-# mm; chosen: what a low machine's clamps and flushing take.
+# mm; chosen: the room for a low machine's clamps and flushing.
 PACK = 40.0
 
 

@@ -160,7 +160,7 @@ def _short(contents: ReleaseContents, numbers: Sequence[str]) -> str:
 
 
 def keys(contents: ReleaseContents, parts: Sequence[Part]) -> list[str]:
-    """Each distinct key characteristic with the parts that have it; empty if they have none."""
+    """Each distinct key characteristic with its parts; empty if there are none."""
     groups: dict[Characteristic, list[str]] = {}
     for part in parts:
         for c in part.characteristics:
@@ -191,7 +191,7 @@ def how(contents: ReleaseContents, parts: Sequence[Part]) -> list[str]:
 
 
 def _files(paths: Sequence[str], known: Mapping[str, str]) -> list[str]:
-    """What each of the files is, of the folders and names that are known."""
+    """A description of each of the files, by known folders and names."""
     lines = []
     for start, text in known.items():
         count = sum(path.startswith(start) for path in paths)
@@ -224,7 +224,7 @@ PACKING = (
 
 
 def wire_questions(contents: ReleaseContents) -> list[str]:
-    """What a wire-cutting shop is asked."""
+    """Questions to a wire-cutting shop."""
     material = contents.design.material
     harm = ELECTROLYSIS.get(family(material.density), "")
     supply = f"Whether your machine has an anti-electrolysis supply: {material.alloy} {harm} without it."
@@ -278,9 +278,9 @@ def package_readme(contents: ReleaseContents, one: Packed, whole: str, shop: Sho
     contents, one
         The release, and the package.
     whole
-        Name of the zip that the package was taken from, with its SHA-256.
+        Name of the whole zip, with its SHA-256.
     shop
-        Whose feed the wire's time was estimated with.
+        The shop whose feed gave the wire's time.
     """
     lines = first_lines(contents, one.package.title)
     lines += paragraph(
@@ -419,7 +419,7 @@ def heading(text: str, line: str = "-") -> list[str]:
 
 
 def table(heads: Sequence[str], groups: Sequence[tuple[str, Sequence[Sequence[str]]]]) -> list[str]:
-    """Rows below their heads, group by group, each with its title; what is too wide is wrapped."""
+    """Rows below their heads, group by group, each with its title; wide cells are wrapped."""
     rows = [heads, *(row for _, group in groups for row in group)]
     widths = [min(WIDEST, max(len(row[i]) for row in rows)) for i in range(len(heads) - 1)]
     widths = [max([w, *(len(word) for row in rows for word in row[i].split())]) for i, w in enumerate(widths)]

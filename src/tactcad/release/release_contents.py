@@ -1,5 +1,4 @@
-"""What a release is about: its owner, its scenes, what is ordered of them with spares, and how far it
-holds."""
+"""A release's owner, scenes, order with spares, and status."""
 
 from __future__ import annotations
 
@@ -47,7 +46,7 @@ class ReleaseContents:
 
     @cached_property
     def lines(self) -> tuple[OrderLine, ...]:
-        """What is ordered, made and bought."""
+        """The order, made and bought."""
         return ordered(self.scenes, self.design.design.revision, self.sets)
 
     def quantity(self, part: Part) -> float:
@@ -76,7 +75,7 @@ SPARES = (
 
 @dataclass(frozen=True)
 class OrderLine:
-    """A line of the order: the bill's row, how many the set-ups hold, and the part (None: without solid)."""
+    """A line of the order: the bill's row, the set-ups' count, and the part (None: without solid)."""
 
     row: BomRow
     qty: float
@@ -117,9 +116,9 @@ def ordered(scenes: Sequence[Scene], revision: str, sets: Sets) -> tuple[OrderLi
 def _own(
     scene: Scene, bill: Mapping[str, BomRow], array: Set[str], whole: Set[tuple[str, str]]
 ) -> Iterator[tuple[str, float]]:
-    """Quantities of a scene without those of the scenes that were put together before and stand in it, and
-    without the array's own parts: those made (`array`), one of which is in the bonding fixture, and what the
-    setting fixture holds of the array (`whole`: its designators and part numbers) while it is screwed."""
+    """Quantities of a scene without those of its ready scenes, and without the array's own parts: those made
+    (`array`), one of which is in the bonding fixture, and those in the setting fixture (`whole`: designators
+    and part numbers) while the array is screwed."""
     ready: list[Mapping[str, float]] = [
         {row.part_no: row.qty for row in bom_rows(s, "", {})} for s in scene.ready
     ]
@@ -135,7 +134,7 @@ def _own(
 def owned(design: CommonTables, owner: str | None, contact: str | None, sample: bool) -> CommonTables:
     """The design with the owner and contact that are given in place of its own.
 
-    Raises InputError if one of them is unusable as text, or, but for a sample, there is none.
+    Raises InputError if one of them is unusable as text, or missing without a sample.
     """
     given = {"organisation": ("--owner", owner), "contact": ("--contact", contact)}
     specs = Identity.__dataclass_fields__

@@ -35,7 +35,7 @@ AP242 = "-ap242"  # ends the name of a model with limits
 
 
 def check_archive(files: Mapping[str, bytes], contents: ReleaseContents) -> list[str]:
-    """What is wrong with the whole zip's files (`read_back`); empty if nothing is."""
+    """Faults of the whole zip's files (`read_back`)."""
     return [
         *_part_faults(files, contents),
         *(fault for scene in contents.scenes for fault in _scene_faults(files, contents, scene)),
@@ -47,7 +47,7 @@ def check_archive(files: Mapping[str, bytes], contents: ReleaseContents) -> list
 
 
 def read_back(path: Path, exported: Mapping[str, str] | None = None) -> tuple[dict[str, bytes], list[str]]:
-    """The zip's files, each verified once by its checksum, and what is wrong with form and checksums.
+    """The zip's files, each verified once by its checksum, and the faults of form and checksums.
 
     `exported`: checksums of files that have to be as an export's manifest lists them.
     """
@@ -143,8 +143,8 @@ def _dxf_faults(files: Mapping[str, bytes], path: str, part: Part) -> Iterator[s
 
 
 def _scene_faults(files: Mapping[str, bytes], contents: ReleaseContents, scene: Scene) -> Iterator[str]:
-    """The assembly has as many solids as its bill, the bill's files are here as it has them, and it says the
-    revision."""
+    """The assembly has as many solids as its bill, the bill's files are present with its digests, and it has
+    the revision."""
     revision = contents.design.design.revision
     path = f"step/{contents.design.name}-{scene.name}_{revision}.step"
     bill = bill_of(scene)
@@ -164,14 +164,13 @@ def _scene_faults(files: Mapping[str, bytes], contents: ReleaseContents, scene: 
         if row.make_buy == "make" and row.rev != revision:
             yield f"{bill}: {row.part_no} is of revision {row.rev!r}"
         if row.file and _checksums(files).get(row.file) != row.sha256:
-            yield f"{bill}: {row.file} is not here as it stands there"
+            yield f"{bill}: {row.file} is missing or differs from the bill"
 
 
 def _sheet_faults(files: Mapping[str, bytes], contents: ReleaseContents) -> Iterator[str]:
     """A sheet for every part made and an assembly drawing for every scene: number and revision on every page,
     key characteristics once and with the model's values, the digest of the file that the part is made from,
-    balloons and parts list as the bill has them; PRELIMINARY on every page of a draft and on none of a
-    release."""
+    balloons and parts list as in the bill; PRELIMINARY on every page of a draft and on none of a release."""
     design, revision = contents.design, contents.design.design.revision
     for part in contents.made:
         path = f"pdf/{part.part_no}_{revision}.pdf"
@@ -231,7 +230,7 @@ def _pages(files: Mapping[str, bytes], path: str) -> list[list[str]]:
 
 
 def _page_faults(path: str, pages: Sequence[Sequence[str]], contents: ReleaseContents) -> Iterator[str]:
-    """PRELIMINARY, the sample's status and the legal owner stand on every page where they belong."""
+    """PRELIMINARY, the sample's status and the legal owner are on every page that needs them."""
     owner = contents.design.design.organisation
     for n, runs in enumerate(pages, start=1):
         text = _flat("".join(runs))
@@ -266,7 +265,7 @@ def _table_faults(files: Mapping[str, bytes], contents: ReleaseContents) -> Iter
 
 
 def mark_faults(files: Mapping[str, bytes], contents: ReleaseContents) -> Iterator[str]:
-    """A draft's README says that it is one, a release's does not; and so of a sample."""
+    """A draft's README is marked as one, a release's is not; likewise a sample's."""
     said = files.get(README, b"").decode().splitlines()
     for kind, mark, meant in (("draft", DRAFT, contents.draft), ("sample", SAMPLE, contents.sample)):
         if (mark in said) != meant:
@@ -279,7 +278,7 @@ OWN = (README, MANIFEST, ORDER, PART_INSPECTION, inspection.NAME)
 def check_packages(
     paths: Sequence[Path], packages: Sequence[Packed], every: Mapping[str, bytes], contents: ReleaseContents
 ) -> list[str]:
-    """What is wrong with the written packages; empty if nothing is.
+    """Faults of the written packages.
 
     Parameters
     ----------
@@ -340,8 +339,8 @@ def _named(order: bytes) -> Iterator[tuple[str, str]]:
 def _order_faults(
     orders: Sequence[Mapping[str, str]], every: Mapping[str, bytes], contents: ReleaseContents
 ) -> Iterator[str]:
-    """Every line of the bills stands in one package, once, with at least what the largest set-up needs (for
-    one set just that), and its spares."""
+    """Every line of the bills is in one package, once, with at least the largest set-up's quantity (for one
+    set exactly that), and its spares."""
     needed: dict[str, float] = {}
     spares: dict[str, float] = {}
     for scene in contents.scenes:
@@ -351,7 +350,7 @@ def _order_faults(
                 spares[row.part_no] = row.spares
     counts = Counter(row["part_no"] for row in orders)
     yield from (f"{n} of the bills is in {counts[n]} packages" for n in needed if counts[n] != 1)
-    yield from (f"{n} of an order stands in no bill" for n in counts if n not in needed)
+    yield from (f"{n} of an order is in no bill" for n in counts if n not in needed)
     for line in orders:
         number, qty = line["part_no"], float(line["qty"])
         least = needed.get(number, 0.0)

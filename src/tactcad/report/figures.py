@@ -19,10 +19,10 @@ class Figure:
     """A number of a record, as people and programs read it.
 
     name     its field; a dot leads on into a record that the field holds ("stiffness.value")
-    heading  what stands above it in a table
+    heading  its heading in a table
     unit     in which it is shown; "" of a count or a ratio
     scale    shown number per number of the record
-    digits   how it is written: a format such as ".4g"
+    digits   its format, such as ".4g"
     column   its name in CSV; by default the field's with the unit ("rated_force_N", "stiffness_N_per_mm")
     """
 
@@ -64,7 +64,7 @@ class Figure:
         return None if value is None else self._scaled(value)
 
     def text(self, record: Any, without: str = "") -> str:
-        """The number with its digits; `without` where the record has none."""
+        """The number with its digits; `without` if the record has none."""
         return self.written(self.of(record), without)
 
     def written(self, value: float | None, without: str = "") -> str:
@@ -75,7 +75,7 @@ class Figure:
         return value if self.scale == 1.0 else value * self.scale
 
     def said(self, **other: Any) -> Figure:
-        """The same figure where a place has a reason to show it otherwise."""
+        """The same figure with another display."""
         return replace(self, **({"column": ""} | other))
 
 
@@ -94,7 +94,7 @@ class Figures(Mapping[str, Figure]):
     Raises
     ------
     TypeError
-        A figure is declared twice, or is none of the record's; a number of the record has no figure.
+        A figure is declared twice, or is not a field of the record; a number of the record has no figure.
     """
 
     def __init__(self, record: type, *figures: Figure, without: Sequence[str] = ()) -> None:

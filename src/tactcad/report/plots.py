@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from matplotlib.axis import Axis
     from matplotlib.figure import Figure as Canvas
 
-# Okabe and Ito's palette, told apart by colour-blind readers; shapes differ as well.
+# Okabe and Ito's palette, distinct for colour-blind readers; shapes differ as well.
 BLACK, ORANGE, SKY, GREEN, BLUE, RED, PURPLE = (
     "#000000",
     "#E69F00",

@@ -67,7 +67,7 @@ class ReportSection:
     tables: tuple[ReportTable, ...] = ()
     figures: tuple[Picture, ...] = ()
     values: object = None  # the study's dataclass, for JSON
-    headline: tuple[str, ...] = ()  # the findings that stand at the top of the report too
+    headline: tuple[str, ...] = ()  # the findings that are also at the top of the report
 
 
 @dataclass(frozen=True)
@@ -104,7 +104,7 @@ def sig(value: float, digits: int = 3) -> str:
 
 
 def exact(value: float) -> str:
-    """A printed number as it was printed, but for zeros at its end."""
+    """A number as printed, without trailing zeros."""
     return f"{value:g}".replace("-", "−")
 
 

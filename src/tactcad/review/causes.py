@@ -1,7 +1,7 @@
 """What was changed in a design's text: the least edits that can be made one at a time.
 
-The user's own text is compared, not the design that is read from it: what the text leaves out follows from
-what it states, and is a consequence. Texts that mean the same design differ in nothing.
+The user's own text is compared, not the design that is read from it: omitted values follow from stated ones,
+and are consequences. Texts of the same design have no differences.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ class Edit:
 class Cause:
     """Edits that mean something only together, as an alloy with its values.
 
-    kind   `value`; `title block` of what stands in every sheet's title block and nowhere else; `note` of a
+    kind   `value`; `title block` of fields only in every sheet's title block; `note` of a
            source under [origin]
     """
 
@@ -68,8 +68,8 @@ class Cause:
 def causes(old: Table, new: Table) -> list[Cause]:
     """Every cause between two designs' tables, as TOML gives them, in the order of the text.
 
-    An edit that leaves the design as it is, such as a default now written out, is none. Raises InputError
-    if a table is no design.
+    An edit that does not change the design, such as a default now written out, is none. Raises InputError if
+    a table is no design.
     """
     before = from_table(old)
     if before == from_table(new):
@@ -164,7 +164,7 @@ def _stated(value: Any) -> str:
 
 
 def _arms(old: Any, new: Any) -> str:
-    """Which elements' arms changed, where the rows are as long as they were; else both lists."""
+    """Elements whose arms changed, if the rows have their former lengths; else both lists."""
     if [len(row) for row in old] != [len(row) for row in new]:
         return f"{shown(old)} -> {shown(new)}"
     pairs = zip([a for row in old for a in row], [a for row in new for a in row])

@@ -1,4 +1,4 @@
-"""What a page of a change shows, as plain data: every scene in pieces, and the causes with what they mean."""
+"""A change page's content as plain data: every scene in pieces, and the causes with their consequences."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ def change_record(
     Raises
     ------
     CheckFailure
-        Where the designs have no scene in common.
+        If the designs have no scene in common.
     """
     scenes = {
         # what came and went first
@@ -87,7 +87,7 @@ def change_record(
 
 @dataclass
 class _Solids:
-    """Meshes and volumes (mm3) of shapes, each shape's once; named by what the shape is."""
+    """Meshes and volumes (mm3) of shapes, each shape's once; named by its content."""
 
     shapes: Shapes
     meshes: dict[str, bytes] = field(default_factory=dict)
@@ -122,7 +122,7 @@ def _named(pieces: Sequence[ScenePiece]) -> dict[str, ScenePiece]:
 
 
 def _part(piece: ScenePiece, number: int, volume: float) -> dict[str, Any]:
-    """A piece as the view and the tree take a part, with what the panel says of it."""
+    """A piece in the form of a part for view and tree, with its panel's text."""
     colour, transparency = LOOKS[piece.kind]
     return {
         "part_no": f"{piece.part_no} {piece.kind} {number}",

@@ -28,7 +28,7 @@ LOOKS: dict[PieceKind, tuple[str, int]] = {
     "kept": ("#b0b4ba", 60),
     "same": ("#c8ccd0", 85),
 }
-# What is said of a piece that the kernel did not tell apart, by what did.
+# Remarks on pieces that the kernel could not separate, by the method used.
 REMARKS = {
     "kernel": "",
     "meshes": "by meshes, for the kernel's boolean failed: curved faces are within 0.001 mm",
@@ -39,10 +39,10 @@ CLOSE = 1e-9  # mm, and of directions: places that agree so far are one
 
 @dataclass(frozen=True)
 class ScenePiece:
-    """Material of one placed part: all of it where it is the `same`, else what was kept, added or removed.
+    """Material of one placed part: all of it if it is the `same`, else the kept, added or removed material.
 
-    `shape` is in the frame that `origin` (mm) and `rotation` place. `remark`, of REMARKS, says where the
-    kernel could not tell kept from changed material.
+    `shape` is in the frame that `origin` (mm) and `rotation` place. `remark`, of REMARKS, marks places where
+    the kernel could not separate kept from changed material.
     """
 
     designator: str
@@ -83,7 +83,7 @@ def changed_scenes(
     Raises
     ------
     CheckFailure
-        Where the designs have no scene in common.
+        If the designs have no scene in common.
     """
     before, after = (chosen_scenes(design, None) for design in designs)
     names = [name for name in after if name in before]
@@ -148,8 +148,8 @@ def _solid(part: Part) -> tuple[object, ...]:
 def _pairs(
     designs: tuple[CommonTables, CommonTables], scenes: tuple[Scene, Scene]
 ) -> list[tuple[Placement | None, Placement | None]]:
-    """What each placement became: elements by their order in their row, then what stayed as it is under
-    whatever designator, the rest by designator."""
+    """Pairs of old and new placements: elements by their order in their row, then unchanged parts under any
+    designator, the rest by designator."""
     before, after = ({p.designator: p for p in scene.placements} for scene in scenes)
     pairs: list[tuple[Placement | None, Placement | None]] = []
 
@@ -178,7 +178,7 @@ def _same_place(a: Placement, b: Placement) -> bool:
 
 
 def _relative(a: Placement, b: Placement) -> tuple[Vector, Rotation]:
-    """Where a stands in b's frame; to a millionth of a millimetre, so that equal places are equal."""
+    """Place of a in b's frame; to a millionth of a millimetre, so that equal places are equal."""
     turn = np.asarray(b.rotation, float).T
     at = turn @ (np.asarray(a.origin, float) - np.asarray(b.origin, float))
     turned = turn @ np.asarray(a.rotation, float)

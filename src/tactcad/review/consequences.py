@@ -1,7 +1,7 @@
-"""What each change of a design means: every cause alone, ordered by what it does to the sensor.
+"""Consequences of a design's changes: every cause alone, ordered by its effect on the sensor.
 
-By the present code and in closed form. A cause is made alone in the old design; where that is refused, it is
-taken back alone in the new one.
+By the present code and in closed form. Each cause is applied on its own to the old design; if that is
+refused, it is reverted on its own in the new one.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ INTERACTION = 0.005
 
 @dataclass(frozen=True)
 class Consequence:
-    """One cause and what it means.
+    """One cause and its consequences.
 
     what   the cause in words
     how    `alone` made in the old design; `taken back` from the new one; `together only`: refused either way,
@@ -44,8 +44,8 @@ class Consequence:
 
     @property
     def weight(self) -> tuple[float, ...]:
-        """What stands above what: failures, what cannot be told, K and rated force and yield, the other
-        figures of elements, mass and cut, parts, and the rest; each by its largest relative change."""
+        """Order of the causes: failures, unknown effects, K and rated force and yield, the other figures of
+        elements, mass and cut, parts, and the rest; each by its largest relative change."""
         e = self.effect
         share = abs(e.yield_share.new - e.yield_share.old) if e.yield_share else 0.0
         array = [abs(f.change) for f in (e.mass, e.cut_length) if f]
@@ -66,10 +66,10 @@ class Consequence:
 class Meaning:
     """Consequences of all that changed, largest first.
 
-    together      all causes at once; None if the sides' records do not tell
-    checked       whether `together` says what checks say: both sides tell their design
-    interactions  where the causes do more or less together than one by one, one line for each element
-    untold        why there are no consequences of causes, one line each
+    together      all causes at once; None if the sides' records lack the data
+    checked       whether `together` includes checks: both sides have their design
+    interactions  elements on which the causes act differently together than one by one, one line each
+    untold        reasons for missing consequences, one line each
     """
 
     consequences: tuple[Consequence, ...] = ()
@@ -80,7 +80,7 @@ class Meaning:
 
     @property
     def effects(self) -> tuple[SensorEffect, ...]:
-        """Of the whole: of the design, and of the code where that differs."""
+        """Effects of the whole: of the design, and of the code if that differs."""
         code = [c.effect for c in self.consequences if c.how == "code"]
         return (self.together, *code) if self.together is not None else tuple(code)
 
@@ -88,8 +88,8 @@ class Meaning:
 def meaning(old: Side, new: Side) -> Meaning:
     """What the change from one side to the other means.
 
-    Sides that tell no design (golden files) are compared by what they record; so is what the code of a
-    revision makes of the same design as the present code.
+    Sides without a design (golden files) are compared by their records; so are the results of a revision's
+    code and of the present code for the same design.
     """
     designs = [_loaded(side) for side in (old, new)]
     untold = tuple(d for d in designs if isinstance(d, str))
@@ -114,7 +114,7 @@ def meaning(old: Side, new: Side) -> Meaning:
 
 
 def kept_designs(old: Side, new: Side) -> tuple[CommonTables, CommonTables]:
-    """Both sides' designs by the present code. Raises InputError if one tells none, or breaks a rule."""
+    """Both sides' designs by the present code. Raises InputError if one has none, or breaks a rule."""
     for side in (old, new):
         if side.table is None:
             raise InputError(
@@ -124,7 +124,7 @@ def kept_designs(old: Side, new: Side) -> tuple[CommonTables, CommonTables]:
 
 
 def _loaded(side: Side) -> CommonTables | str | None:
-    """The side's design by the present code, None if it tells none; why it is refused."""
+    """The side's design by the present code, None if it has none; the reason for a refusal."""
     if side.table is None:
         return None
     try:
@@ -141,7 +141,7 @@ def _kept(table: Table) -> CommonTables:
 
 
 def _other_arrays(old: CommonTables, new: CommonTables) -> bool:
-    """Whether virtual arrays may come out otherwise: more differs than names, sources, read-out and leads."""
+    """Whether virtual arrays may differ: more has changed than names, sources, read-out and leads."""
 
     def rest(design: CommonTables) -> dict[str, Any]:
         return {k: v for k, v in vars(design).items() if k not in ("design", "origin", "readout", "wiring")}
@@ -198,7 +198,7 @@ class _Each:
         return told
 
     def _effect(self, old: Reviewed, new: Reviewed) -> SensorEffect:
-        """Arrays are built for one cause only where they come out otherwise for all."""
+        """Arrays are built for single causes only if they differ for all together."""
         return reviewed_effect(old, new, self.together.yield_share is not None)
 
     def _reviewed(self, table: Table) -> Reviewed:
@@ -214,8 +214,7 @@ def _recorded(old: Side, new: Side, untold: Sequence[str]) -> Meaning:
 
 
 def _difference(old: Side, new: Side, design: CommonTables | None) -> SensorEffect | None:
-    """Of two records, of one design if it is given; None if one of them does not hold what that
-    takes."""
+    """Difference of two records, of one design if it is given; None if one of them lacks the data."""
     try:
         before, after = (recorded_state(record, design) for record in comparable(old, new))
         return effect(before, after, by_name(before, after))
@@ -224,7 +223,7 @@ def _difference(old: Side, new: Side, design: CommonTables | None) -> SensorEffe
 
 
 def _of_code(old: Side, new: Side, before: Reviewed) -> list[Consequence]:
-    """What the code of the new side makes of the old side's design otherwise than the code of the old one."""
+    """Difference between the new side's code and the old one's for the old side's design."""
     made = new.of_other if new.own_code else before.record
     if not (old.own_code or new.own_code) or made is None:
         return []
@@ -234,7 +233,7 @@ def _of_code(old: Side, new: Side, before: Reviewed) -> list[Consequence]:
 
 
 def _interactions(told: Sequence[Consequence], together: SensorEffect) -> list[str]:
-    """Elements whose K the causes change together otherwise than one after the other."""
+    """Elements whose K changes differently by all causes together than one by one."""
     lines = []
     for element in together.elements:
         if element.stiffness is None:
@@ -256,7 +255,7 @@ def _interactions(told: Sequence[Consequence], together: SensorEffect) -> list[s
 
 @dataclass(frozen=True)
 class Compared:
-    """Two sides with what changed and what it means."""
+    """Two sides with their changes and consequences."""
 
     old: Side
     new: Side
@@ -286,7 +285,7 @@ def _checks(c: Compared) -> bool:
 
 
 def _revision(c: Compared) -> bool:
-    """The letter stands for one content of every part number."""
+    """The letter identifies one content of every part number."""
     same_letter = (c.old.design, c.old.revision) == (c.new.design, c.new.revision)
     return same_letter and any(effect.parts_revised for effect in c.meaning.effects)
 

@@ -31,7 +31,7 @@ from tactcad.scenes.rig import ARRAY
 from tactcad.scenes.scene import Scene
 from tactcad.stacks.virtual_build import LEAST_YIELD, sensor
 
-# What is compared of an element, with the name that a reader sees.
+# Figures of an element that are compared, with their displayed names.
 FIGURES = {
     "stiffness": "K",
     "rated_force": "rated force",
@@ -42,7 +42,7 @@ FIGURES = {
 
 @dataclass(frozen=True)
 class ElementFigures:
-    """One element; None if the models do not reach it, or the side does not tell."""
+    """One element; None if it is out of the models' range, or the side lacks it."""
 
     stiffness: float | None  # N/mm
     rated_force: float | None  # N, in use
@@ -84,7 +84,7 @@ class SensorState:
 
 
 def recorded_state(record: Record, design: CommonTables | None) -> SensorState:
-    """What a record of geometry tells; the rated force follows with the design's rating."""
+    """State from a record of geometry; the rated force follows with the design's rating."""
     parts, rating = record["parts"], getattr(design, "rating", None)
 
     def figures(element: Mapping[str, Any]) -> ElementFigures:
@@ -114,8 +114,8 @@ def _made(part: Record, line: Record) -> MadePart:
 
 @dataclass(frozen=True)
 class Reviewed:
-    """A design that keeps its rules, by the present code; `known` keeps findings of parts that designs
-    share, `told` is its record of geometry where that was made already."""
+    """A design that keeps its rules, by the present code; `known` keeps findings of parts that designs share,
+    `told` is its record of geometry if already made."""
 
     design: CommonTables
     known: dict[str, tuple[Part, list[Finding]]] = field(default_factory=dict, repr=False)
@@ -150,7 +150,7 @@ class Reviewed:
         )
 
     def _signals(self, count: int) -> list[float | None]:
-        """V/N of every element; None for all where one is out of the model's range, or nothing reads them."""
+        """V/N of every element; None for all if one is out of the model's range, or nothing reads them."""
         readout = family_of(self.design).readout
         try:
             return readout.signals(self.design) if readout else [None] * count
@@ -349,7 +349,7 @@ def reviewed_effect(old: Reviewed, new: Reviewed, build: bool) -> SensorEffect:
 
 
 def _who(finding: Finding, names: Mapping[str, str]) -> tuple[str, str, str]:
-    """What a finding is about: of an element its designator, as it is called now, whatever its part is."""
+    """A finding's subject: of an element its present designator, for any part."""
     return finding.check, finding.severity, names.get(finding.part, finding.part)
 
 
@@ -371,7 +371,7 @@ def _elements(
 
 
 def _changed(old: float | None, new: float | None) -> ChangedFigure | None:
-    """Both numbers where they differ by more than rounding; None if one is not known."""
+    """Both numbers if they differ by more than rounding; None if one is not known."""
     if old is None or new is None or isclose(old, new, rel_tol=SHARE, abs_tol=0.0):
         return None
     return ChangedFigure(old, new)
@@ -390,7 +390,7 @@ def _bill(old: SensorState, new: SensorState) -> dict[str, tuple[float, float]]:
 
 
 def _assemblies(old: SensorState, new: SensorState) -> Iterator[str]:
-    """Scenes whose assembly drawing shows something else."""
+    """Scenes whose assembly drawing changes."""
     kept = {n for n, part in new.made.items() if n in old.made and _same(old.made[n].shape, part.shape)}
     for name, scene in new.scenes.items():
         shown = [n for n in scene["bom"] if n in new.made]

@@ -41,8 +41,8 @@ BUILT = 1000  # arrays of each distribution, as `tactcad build` and the stack's 
 
 @dataclass(frozen=True)
 class PlacedFact:
-    """One designator: its part, where it stands (mm; rows of its rotation), its way out in the exploded view
-    (mm), the step of the guide that puts it there (from 0), and the sub-assemblies that it belongs to."""
+    """One designator: its part, place (mm; rows of its rotation), way out in the exploded view (mm), step of
+    the guide (from 0), and sub-assemblies."""
 
     designator: str
     part_no: str
@@ -56,7 +56,7 @@ class PlacedFact:
 @dataclass(frozen=True)
 class MotionFact:
     """A declared motion: of each group its designators and the offsets (mm) that it goes from and to, and the
-    share of the way at which the scene stands, None if it does not stand on it."""
+    scene's own place as a share of the way, None if it is not on it."""
 
     name: str
     ways: tuple[tuple[tuple[str, ...], Vector, Vector], ...]
@@ -65,8 +65,7 @@ class MotionFact:
 
 @dataclass(frozen=True)
 class PoseFact:
-    """An element under the force sensor: of each group of designators that stands elsewhere than at rest the
-    offset, mm."""
+    """An element under the force sensor: for each moved group of designators the offset from rest, mm."""
 
     name: str
     ways: tuple[tuple[tuple[str, ...], Vector], ...]
@@ -122,8 +121,8 @@ def _ways(scene: Scene) -> dict[str, Vector]:
 
 
 def _under(scene: Scene, designator: str) -> tuple[str, ...]:
-    """Names of the sub-assemblies that hold it, the outer one first: the guide's unit, or its step where the
-    scene is one unit; then the scene that was put together before."""
+    """Names of its sub-assemblies, the outer one first: the guide's unit, or its step if the scene is one
+    unit; then the ready scene."""
     step = next((s for s in scene.steps if designator in s.designators), None)
     if step is None:
         return ()
@@ -164,7 +163,7 @@ def _rest(motion: Motion) -> float | None:
 
 @dataclass(frozen=True)
 class LimitFact:
-    """A toleranced dimension: nominal and limits in mm, and the features that it stands on."""
+    """A toleranced dimension: nominal and limits in mm, and its features."""
 
     name: str
     nominal: float
@@ -354,7 +353,7 @@ class FitFacts:
 class ElementFacts:
     """All elements, by designator: the estimate's fields and those of the virtual builds; their pairs.
 
-    `why_not` says why there is no estimate, "" if there is one.
+    `why_not`: the reason for a missing estimate, else "".
     """
 
     rung: str
@@ -407,7 +406,7 @@ def _per_newton(strain: float | None, row: ElementEstimate) -> float | None:
 
 
 def _pairs(rows: list[ElementEstimate]) -> list[PairFact]:
-    """Each element that is softer than the stiffest, with it: one as stiff finds no object."""
+    """Each element softer than the stiffest, paired with it: one as stiff cannot measure an object."""
     if not rows:
         return []
     reference = max(rows, key=lambda r: (r.stiffness, -r.number))
@@ -431,7 +430,7 @@ class FindingFact:
     """One finding.
 
     about        as the check names it
-    scene        that it belongs to, "" if to all that hold the part
+    scene        its scene, "" for all that hold the part
     designators  of the parts that it is about; of a part number all of its
     place        mm, in the scene's frame if there is a scene, else in the part's own; empty: all of it
     """

@@ -1,5 +1,5 @@
-"""A design, or what changed between two, as FreeCAD's own document (FCStd): made by FreeCAD where it is
-installed, without a screen, from a record in plain data.
+"""A design, or the changes between two, as FreeCAD's own document (FCStd): made by an installed FreeCAD,
+without a screen, from a record in plain data.
 """
 
 from __future__ import annotations
@@ -86,7 +86,7 @@ def freecad_document(
     Raises
     ------
     CheckFailure
-        Where FreeCAD is not installed, or ends without a document.
+        If FreeCAD is not installed, or ends without a document.
     """
     command = program()
     scenes = tuple(make_scene(design, name) for name in scene_names)
@@ -167,8 +167,8 @@ def _listed(value: Any) -> str:
 
 
 def estimate_rows(design: CommonTables) -> list[Row]:
-    """A heading and a row for each element, of what the family's estimates have; one row that says why where
-    the estimator does not reach."""
+    """A heading and a row for each element, with the family's estimates; one row with the reason if it is out
+    of the estimator's range."""
     try:
         family = family_of(design)
         rows = family.estimate.rows(family.layout(design), DEFAULT_RUNG, None)
@@ -216,7 +216,7 @@ def _scene(scene: SceneFacts, findings: Sequence[FindingFact]) -> dict[str, Any]
 
 
 def _about(finding: FindingFact, at: Mapping[str, PlacedFact]) -> list[str]:
-    """Where a finding gets a mark: at the designators that it is about, else once at the scene's origin."""
+    """Places of a finding's marks: at its designators, else once at the scene's origin."""
     if finding.scene and finding.place:
         return [finding.check]
     here = [d for d in finding.designators if d in at]
@@ -254,7 +254,7 @@ def freecad_changes(
     Raises
     ------
     CheckFailure
-        Where FreeCAD is not installed or ends without a document, or the designs have no scene in common.
+        If FreeCAD is not installed or ends without a document, or the designs have no scene in common.
     """
     command = program()
     scenes = changed_scenes(designs, shapes, say)
@@ -265,7 +265,7 @@ def freecad_changes(
 def changes_record(
     designs: tuple[CommonTables, CommonTables], scenes: dict[str, list[ScenePiece]], changes: Sequence[Row]
 ) -> tuple[dict[str, Any], list[bytes]]:
-    """The record, and the shapes (BREP) of its parts; equal shapes stand in it once."""
+    """The record, and the shapes (BREP) of its parts; equal shapes are in it once."""
     from tactcad.solids.step import to_bytes
 
     parts: dict[tuple[bytes, PieceKind], dict[str, Any]] = {}
@@ -340,7 +340,7 @@ def made_by_freecad(
     Raises
     ------
     CheckFailure
-        Where FreeCAD ends without a document.
+        If FreeCAD ends without a document.
     """
     with scratch_folder("freecad") as folder:
         for n, (part, text) in enumerate(zip(record["parts"], texts, strict=True)):

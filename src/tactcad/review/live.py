@@ -1,8 +1,8 @@
-"""A design file followed while it is written: the last good model, what is wrong with the text since, and the
-page of it on this machine's own address, for who has the token and for nobody else.
+"""A design file followed while it is edited: the last good model, the text's faults since, and its page on
+this machine's own address, only with the token.
 
-The server answers two requests: the page, and what changed since a version. No request names a file, and none
-is read for one.
+The server answers two requests: the page, and the changes since a version. No request names a file or causes
+one to be read.
 """
 
 from __future__ import annotations
@@ -38,8 +38,8 @@ from .review_record import record_head
 
 POLL = 0.1  # s between two looks at the file; chosen: a tenth of the second in which a change is to be seen
 ADDRESS = "127.0.0.1"
-WAIT = 20.0  # s that a question is held; chosen: below what browsers and their helpers end by themselves
-TIMEOUT = 10.0  # s for a reader or writer that stands still; chosen
+WAIT = 20.0  # s that a request waits; chosen: below the timeouts of browsers and proxies
+TIMEOUT = 10.0  # s for a stalled reader or writer; chosen
 HEADERS = {
     "Cache-Control": "no-store",
     "X-Content-Type-Options": "nosniff",
@@ -69,7 +69,7 @@ class LiveState:
     version  grows with every change of the rest
     model    version at which the model changed last
     seconds  that the model took from the file's reading on
-    message  why the file as it is now gives no model, "" if it does
+    message  why the present file gives no model, "" if it does
     changes  of `number_changes`, from the model before
     """
 
@@ -82,7 +82,8 @@ class LiveState:
 
 
 def load_kernel() -> None:
-    """Load the kernel now: a first model from the cache did without, and the first save would wait for it."""
+    """Load the kernel now: a first model from the cache does not need it, and the first save would wait for
+    it."""
     for module in ("build", "step", "triangles"):
         importlib.import_module(f"tactcad.solids.{module}")
 
@@ -103,7 +104,7 @@ class Live:
         self.shown = LiveState(0, 0, str(path), time.perf_counter() - started, "", ())
 
     def look(self) -> None:
-        """Take up the file where it changed."""
+        """Reload the file if it changed."""
         started = time.perf_counter()
         try:
             text: str | None = self._read()
@@ -118,14 +119,14 @@ class Live:
             design, record, block = self._made(text)
         except (InputError, CheckFailure) as error:
             self._later(text, str(error))
-        except Exception as error:  # what is being written may be what nobody tried: the page stays up
+        except Exception as error:  # a file in editing may hold anything: keep the page up
             traceback.print_exc()
             self._later(text, f"{type(error).__name__}: {error}")
         else:
             self._take(text, (design, record, block), started)
 
     def state(self) -> tuple[LiveState, dict[str, Any], bytes]:
-        """What is to be shown, with the record and the block of the same version."""
+        """The present state, with the record and the block of the same version."""
         with self.changed:
             return self.shown, self.record, self.block
 
@@ -145,8 +146,7 @@ class Live:
         return design, *live_record(design, scene, self.shapes())
 
     def _later(self, text: str | None, message: str) -> None:
-        """Show the message when it stands at a second look: an editor may be writing, or replacing, the
-        file."""
+        """Show the message if a second look confirms it: an editor may be writing, or replacing, the file."""
         if message != self._trouble:
             self._trouble = message
             return
@@ -274,7 +274,7 @@ class LiveServer(ThreadingHTTPServer):
         except BaseException:
             self.server_close()
             raise
-        # a page elsewhere whose name is made to mean this machine asks under that name
+        # a foreign page whose name resolves to this machine sends that name (DNS rebinding)
         self.hosts = {f"{name}:{self.server_port}" for name in (ADDRESS, "localhost")}
 
     @property
@@ -282,13 +282,13 @@ class LiveServer(ThreadingHTTPServer):
         return f"http://{ADDRESS}:{self.server_port}/{self.token}/"
 
     def page(self) -> bytes:
-        """The page as it is now."""
+        """The present page."""
         shown, record, block = self.live.state()
         return review_page(record | {"live": asdict(shown)}, block, self.library)
 
     def news(self, version: int, model: int) -> bytes:
-        """What is to be shown once it is no longer that version, at most after WAIT: a line of JSON; where
-        the model is another one, its record is in it and its block follows."""
+        """The state after that version, at most after WAIT: a line of JSON; if the model changed, its record
+        is included and its block follows."""
         shown, record, block = self.live.after(version, WAIT)
         if shown.model == model:
             return _line(shown, None)
@@ -325,7 +325,7 @@ class _Answer(BaseHTTPRequestHandler):
             self.end_headers()
             self.wfile.write(data)
         except OSError:
-            pass  # the reader has gone, or stands still
+            pass  # the reader is gone or stalled
 
     def version_string(self) -> str:
         return "tactcad"

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 # Chord error in mm, and turn between facets in radians. Chosen: a full round of 0.3 mm is drawn by 11 facets,
 # and all parts of the published array with its rigs take 0.7 MB; chords of half that cost half as much again.
 LINEAR, ANGULAR = 0.01, 0.3
-# As the viewer names what it is given, with the kind of number.
+# The viewer's names of its arrays, with the kind of number.
 ARRAYS = {
     "vertices": "<f4",
     "normals": "<f4",
@@ -59,7 +59,7 @@ def mesh_pack(
 
 
 def mesh_bytes(content: str, shape: Callable[[], TopoDS_Shape], cache: Cache) -> bytes:
-    """A mesh: a line of JSON with the arrays' lengths, then the arrays; from the cache where it holds one of
+    """A mesh: a line of JSON with the arrays' lengths, then the arrays; from the cache if it holds one of
     that content."""
 
     def make() -> bytes:

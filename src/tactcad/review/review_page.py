@@ -36,7 +36,7 @@ SCRIPTS = (
     "changes",
     "start",
 )
-LIVE = "live"  # after those, where the record says that the page is served and follows a file
+LIVE = "live"  # after those, if the page is served and follows a file
 # Nothing is fetched: not even the page's own address. Scripts are the page's one, known by its digest, and
 # the viewer, which that unpacks into a blob; the viewer sets styles itself and draws its symbols from data.
 POLICY = (
@@ -68,7 +68,7 @@ def viewer_library() -> ViewerLibrary:
     Raises
     ------
     InputError
-        If it is not installed; says how to get it.
+        If it is not installed; the message gives the command.
     CheckFailure
         If it is not whole, or not of the version that the page needs.
     """
@@ -115,7 +115,7 @@ def review_page(record: Mapping[str, Any], block: bytes, library: ViewerLibrary)
         "SCRIPT": script,
     }
     page = folder.joinpath("page.html").read_text("utf-8")
-    pieces = page.split("@@")  # text, name, text, name, ..., text: what is put in is not read again
+    pieces = page.split("@@")  # text, name, text, name, ..., text: inserted text is not expanded again
     pieces[1::2] = [places[name] for name in pieces[1::2]]
     return "".join(pieces).encode()
 

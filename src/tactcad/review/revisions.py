@@ -1,13 +1,13 @@
-"""A git revision as a side of a comparison: a design as it was committed, and if asked for its code.
+"""A git revision as a side of a comparison: the committed design, and on request its code.
 
 The present code reads the design's text. A revision's own code runs only if the user asks for it: from a
-checkout, in a process of its own, and tells the record of geometry by the command that every revision has:
-the difference from a golden file without parts. If it does not run here, the revision's committed golden file
-stands for it.
+checkout, in a process of its own, and gives the record of geometry by a command that every revision has: the
+difference from a golden file without parts. If it does not run here, the revision's committed golden file is
+used.
 
-Nothing else of a repository runs, whatever it holds. git finds it and names its commits, and refuses one of
-another owner (safe.directory); objects are read through an empty repository of ours, to which that one lends
-its objects and nothing else: no settings, hooks, filters or replacements. Nothing is ever fetched.
+Nothing else of a repository runs. git finds it and names its commits, and refuses one of another owner
+(safe.directory); objects are read through an empty repository of ours, to which that one lends its objects
+and nothing else: no settings, hooks, filters or replacements. Nothing is ever fetched.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ from tactcad.export.golden_file import SCHEMA, faults, read_golden
 from tactcad.export.inputs import flattened
 from tactcad.export.sides import Side, design_side, design_values, read_side
 
-WORKING = "."  # in place of a revision: the files as they stand
+WORKING = "."  # in place of a revision: the present files
 CODE = "src/tactcad/__main__.py"
 SECONDS = 300  # a revision's code may take; chosen: the largest array takes some 30
 TREE = "tree"  # a checkout in its folder
@@ -44,13 +44,13 @@ KEPT = ("GIT_CONFIG", "GIT_CEILING_DIRECTORIES")
 NO_FETCH = {"GIT_ALLOW_PROTOCOL": "", "GIT_NO_LAZY_FETCH": "1"}
 LEGAL = "a design in a git work tree of your own"
 LINK, SUBMODULE = b"120000", b"160000"  # modes of git's tree entries
-# A name, as git check-ref-format takes it, and steps to parents. What searches (:/text, ^{/text}) or looks
-# into the reflog (@{-1}) is none.
+# A name, as git check-ref-format takes it, and steps to parents. Searches (:/text, ^{/text}) and the reflog
+# (@{-1}) are excluded.
 REVISION = re.compile(
     r"(?!-)((?:(?!@\{|\.\.)[^\0-\x20\x7f~^:?*\[\\])+)((?:[~^][0-9]*)*)(?:\^\{(?:commit)?\})?"
 )
-# The tactcad of that folder or none: an installed one must not stand in for it, which is found out before
-# anything of that folder runs.
+# The tactcad of that folder or none: an installed one must not replace it, which is tested before anything of
+# that folder runs.
 DRIVER = """\
 import importlib.util, runpy, sys
 source = sys.argv.pop(1)
@@ -63,7 +63,7 @@ runpy.run_module("tactcad", run_name="__main__", alter_sys=True)
 
 
 class _NotBuilt(Exception):
-    """The revision's code does not run here, or gives no record; says why."""
+    """The revision's code does not run here, or gives no record; with the reason."""
 
 
 def revision_sides(
@@ -74,12 +74,12 @@ def revision_sides(
     Parameters
     ----------
     old, new
-        Commits, branches or tags, as HEAD~3; WORKING for the files as they stand, by the present code.
+        Commits, branches or tags, as HEAD~3; WORKING for the present files, by the present code.
     design
         A path, or a name in hardware/.
     their_code
-        Receives what is about to run, from where: each revision's own code. None: no code of theirs runs,
-        the present one reads their designs.
+        Receives each revision's own code before it runs. None: no code of theirs runs, the present one reads
+        their designs.
 
     Raises
     ------
@@ -106,8 +106,8 @@ def revision_sides(
 
 
 def design_file(design: str) -> Path:
-    """Where the design's file stands at the end of all links, or would stand: a revision may have what is
-    gone now. Raises InputError as `find` does."""
+    """The design's file with all links resolved, even if it is absent now: a revision may have it. Raises
+    InputError as `find` does."""
     try:
         file = find(design)
     except InputError:
@@ -129,7 +129,7 @@ class _Revision:
         return f"{self.name}:{self.path}"
 
     def side(self, their_code: Callable[[str], None] | None, other: bytes | None) -> Side:
-        """The side; its own code, where it runs, is asked for the `other` side's design, too."""
+        """The side; if its own code runs, it also evaluates the `other` side's design."""
         text = self._file(self.path, MOST_BYTES)
         if text is None:
             raise InputError(self.source, "no such design in that revision", legal="one that was committed")
@@ -177,7 +177,7 @@ class _Revision:
         )
 
     def _golden(self, table: dict[str, Any], folder: Path, why: _NotBuilt) -> Record:
-        """The golden file that was committed beside the design's hardware/."""
+        """The committed golden file of the design's hardware/."""
         file, name = Path(self.path), table.get("design", {}).get("name")
         place = file.parent.parent / "exports" / "golden" / f"{name}.json"
         data = self._file(place.as_posix(), MOST_GOLDEN) if file.parent.name == "hardware" else None
@@ -196,7 +196,7 @@ def _record(folder: Path, design: Path) -> Record:
     nothing = {"schema": SCHEMA, "design": "none", "revision": "A", "parts": {}, "scenes": {}, "elements": {}}
     (folder / "nothing.json").write_text(json.dumps(nothing))
     source = folder / TREE / "src"
-    # -I: neither PYTHONPATH nor the working folder is looked into, and no sitecustomize of theirs
+    # -I: no PYTHONPATH, no working folder, and no sitecustomize of theirs
     command = [sys.executable, "-I", "-c", DRIVER, str(source), "diff", "nothing.json", str(design), "--json"]
     try:
         run = shutdown.run(command, SECONDS, cwd=folder)
@@ -212,7 +212,7 @@ def _record(folder: Path, design: Path) -> Record:
 
 
 def _from_nothing(said: dict[str, Any]) -> Record:
-    """The record whose every part, scene and element was said to be added. Raises ValueError, LookupError or
+    """The record in which every part, scene and element is an addition. Raises ValueError, LookupError or
     TypeError if it is none."""
     record: Record = {"schema": SCHEMA, **{name: said["new"][name] for name in ("design", "revision")}}
     record |= {"parts": {}, "scenes": {}, "elements": {}}
@@ -227,8 +227,8 @@ def _from_nothing(said: dict[str, Any]) -> Record:
 
 @contextmanager
 def repository_of(file: Path) -> Iterator[Repository]:
-    """The repository of the folder where a file stands, or stood. Raises InputError if there is none, git
-    is not installed, or git refuses it."""
+    """The repository of a file's folder. Raises InputError if there is none, git is not installed, or git
+    refuses it."""
     folder = next(f for f in file.parents if f.is_dir())
     run = _git(folder, "rev-parse", "--show-toplevel")
     if run.returncode:

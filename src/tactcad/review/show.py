@@ -25,9 +25,7 @@ from .review_page import review_page, viewer_library
 from .review_record import review_record
 from .subject import shapes_of, subject
 
-HEIGHT = (
-    720  # px of a page in a notebook; chosen: the whole page is seen beside its cell on a laptop's screen
-)
+HEIGHT = 720  # px of a page in a notebook; chosen: the whole page fits a laptop's screen with its cell
 VSCODE = "ocp_vscode"
 INSTALL = "pip install ocp-vscode, of the same version as the extension OCP CAD Viewer"
 OPEN = "in VS Code run the command 'OCP CAD Viewer: Open viewer', elsewhere `python -m ocp_viewer`"
@@ -68,9 +66,9 @@ def show(design: str | Path | CommonTables, scene: str = "array") -> ShownPage:
     InputError
         If there is no such design or scene, or the design breaks a rule.
     CheckFailure
-        Where the page's viewer, the extra `review`, is not installed.
+        If the page's viewer, the extra `review`, is not installed.
     """
-    library = viewer_library()  # a missing one is said before any work
+    library = viewer_library()  # report a missing one before any work
     read, sheets = _read(design)
     shapes = shapes_of(read, warnings.warn)
     record, block = review_record(read, chosen_scenes(read, [scene]), shapes, _quiet, sheets)
@@ -91,7 +89,7 @@ def show_changes(before: str | Path | CommonTables, after: str | Path | CommonTa
     InputError
         As `show`.
     CheckFailure
-        As `show`, and where the designs have no scene in common.
+        As `show`, and if the designs have no scene in common.
     """
     library = viewer_library()
     designs = _read(before)[0], _read(after)[0]
@@ -119,7 +117,7 @@ def show_in_vscode(design: str | Path | CommonTables, scene: str = "array") -> N
     InputError
         As `show`.
     CheckFailure
-        Where the package ocp-vscode is not installed, or no viewer listens.
+        If the package ocp-vscode is not installed, or no viewer listens.
     """
     viewer = _listening()
     read, _ = _read(design)
@@ -169,4 +167,4 @@ def _title(design: CommonTables) -> str:
 
 
 def _quiet(done: int, total: int, text: str) -> None:
-    """Progress: a notebook says by itself that it is busy."""
+    """No progress: a notebook shows by itself that it is busy."""

@@ -24,7 +24,7 @@ class StrainField:
 
     points    (n, 2) places x and z in the element's frame, mm
     moved     (n, 2) displacements there, mm/N
-    strain    (n,) strain along x, 1/N; positive where the material is stretched
+    strain    (n,) strain along x, 1/N; positive in tension
     quads     (q, 4) corners of the picture's facets
     """
 
@@ -35,12 +35,12 @@ class StrainField:
 
 
 def strain_field(layout: Layout, place: ElementPlace) -> StrainField:
-    """The field of one element, held at the clamp edge, pressed away from the object at its load line.
+    """The field of one element, clamped at its clamp edge, pressed away from the object at its load line.
 
     Raises
     ------
     CheckFailure
-        Where the mesh cannot follow its contour.
+        If the mesh cannot follow its contour.
     """
     contour = element(layout, place).extrusion.outer
     shape = cut_element(contour, layout.clamp_edge, place.hinge_x - place.load_arm)

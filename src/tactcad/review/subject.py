@@ -1,4 +1,4 @@
-"""What is reviewed: a design, or an export's folder, which says what design it was made from."""
+"""The subject of a review: a design, or an export's folder, whose manifest has its design."""
 
 from __future__ import annotations
 
@@ -24,8 +24,8 @@ from tactcad.scenes.scene import Scene
 
 @dataclass(frozen=True)
 class Subject:
-    """A design that keeps its rules, the file or folder that it was read from, the scenes that an export
-    holds (None: all of the design's), and the sheets that lie there, SVG by part number."""
+    """A design that keeps its rules, its file or folder, the scenes of an export (None: all of the design's),
+    and the export's sheets, SVG by part number."""
 
     design: CommonTables
     path: Path

@@ -18,17 +18,17 @@ from .effect import FIGURES, ChangedFigure, SensorEffect
 # Of each list in a Markdown summary; together at most MOST_LINES.
 MOST_LINES, MOST_CAUSES, MOST_TURNED, MOST_NOTES, MOST_NAMES = 60, 24, 8, 4, 8
 MOST_TEXT = 160  # characters of a cause in a table
-PLAIN = str.maketrans({"`": "'", "|": "\u00a6", "<": "\u2039"})  # what looks alike, and is no markup
+PLAIN = str.maketrans({"`": "'", "|": "\u00a6", "<": "\u2039"})  # similar characters that are no markup
 COLUMNS = (*FIGURES.values(), "yield", "mass", "cut length")
 
 
 def cause_lines(c: Consequence) -> list[str]:
-    """What a cause means, in lines."""
+    """A cause's consequences, in lines."""
     return [*_how(c), *effect_lines(c.effect, title=c.kind == "title block")]
 
 
 def lines(meaning: Meaning) -> Iterator[str]:
-    """For the terminal: each cause, largest consequence first, with what it means below it."""
+    """For the terminal: each cause, largest consequence first, with its consequences below."""
     if meaning.consequences:
         yield "causes, largest consequence first:"
     for c in meaning.consequences:
@@ -41,7 +41,7 @@ def lines(meaning: Meaning) -> Iterator[str]:
 
 
 def as_record(meaning: Meaning) -> dict[str, Any]:
-    """Plain data for JSON: relative changes beside old and new values."""
+    """Plain data for JSON: relative changes with old and new values."""
     record = asdict(meaning)
     effects = [c["effect"] for c in record["consequences"]] + [record["together"] or {}]
     for effect in effects:
@@ -54,8 +54,8 @@ def as_record(meaning: Meaning) -> dict[str, Any]:
 
 
 def markdown(old: Side, new: Side, changes: Sequence[Change], meaning: Meaning) -> str:
-    """A summary for a pull request, at most MOST_LINES lines; what is left out is counted. Texts of the
-    designs stand as code, so that they are never markup, links or mentions."""
+    """A summary for a pull request, at most MOST_LINES lines; omitted lines are counted. Texts of the designs
+    are quoted as code, so that they are never markup, links or mentions."""
     told = [f"### {_code(new.design)} {_code(old.source)} → {_code(new.source)}", ""]
     told += [f"Revision {_code(old.revision)} → {_code(new.revision)}; {len(changes)} differences.", ""]
     if meaning.consequences:
@@ -135,7 +135,7 @@ def effect_lines(effect: SensorEffect, title: bool = False) -> Iterator[str]:
 
 
 def _words(effect: SensorEffect, title: bool) -> Iterator[str]:
-    """What no column has."""
+    """The effects without a column."""
     if title:
         yield "title block of every sheet"
         return

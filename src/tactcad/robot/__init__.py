@@ -1,7 +1,7 @@
 """The sensor in a robot: URDF, MJCF and a table of taxels, and joint positions back to force and K_obj.
 
-In: a design, or the table that an export wrote of it. Its family declares what moves on which joints
-(`mechanism`); every file follows from that.
+In: a design, or its exported table. Its family declares the moving parts and joints (`mechanism`); every file
+follows from that.
 """
 
 from .felt import Felt, read

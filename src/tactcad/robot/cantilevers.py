@@ -24,12 +24,13 @@ from .taxel_table import Taxel
 
 
 def cantilevers(design: Design) -> Mechanism:
-    """The array from its carrier's upper face, where the robot's flange is.
+    """The array from its carrier's upper face, on the robot's flange.
 
-    The hinge lies level with the leaf's middle, so far from the pad's middle that pad and tip deflect as the
-    estimator says: the stop closes at its gap at the tip, and K at the pad's middle is the estimate. What is
-    left of the leaf's middle moves. The pad touches by a ball whose middle is level with the hinge, so that a
-    rigid face presses at the pad's middle, as the estimate takes it, however far the arm has turned.
+    The hinge lies level with the leaf's middle, at the distance from the pad's middle that gives the
+    estimator's deflections of pad and tip: the stop closes at its gap at the tip, and K at the pad's middle
+    is the estimate. All on the pad's side of the leaf's middle moves. The pad touches by a ball whose middle
+    is level with the hinge, so that a rigid face presses at the pad's middle, as in the estimate, at any turn
+    of the arm.
 
     Raises CheckFailure if an element is out of the estimator's range.
     """
@@ -80,7 +81,7 @@ def cantilevers(design: Design) -> Mechanism:
 
 
 def _parted(part: Part, x: float) -> tuple[Part, Part]:
-    """What of an element moves, and what stands: parted where the leaf's middle is."""
+    """The moving and the fixed part of an element, cut at the leaf's middle."""
     whole = part.extrusion
 
     def piece(name: str, side: str, openings: tuple) -> Part:

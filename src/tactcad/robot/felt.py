@@ -1,4 +1,4 @@
-"""From joint positions to forces and to the stiffness of what is touched, as `tactcad stiffness` has it."""
+"""From joint positions to forces and to the touched object's stiffness, as in `tactcad stiffness`."""
 
 from __future__ import annotations
 
@@ -57,10 +57,10 @@ def read(taxels: Taxels, joints: ArrayLike, level: float = 0.95, coupling: float
     """Forces and K_obj from the elements' joint positions, from one frame or from many.
 
     Positions are from rest, in the table's order, rad (of slides m): [joint], or [frame, joint]. The
-    interval, at that level, is by the read-out's noise, by how far K and the pads' heights are known of an
-    array as made, and by any coupling of the pads from 0 (separate springs) to `coupling` (1: a half-space).
-    Raises InputError for positions that are not finite or not one for each joint, and a level or share out
-    of range.
+    interval, at that level, is by the read-out's noise, by the uncertainty of K and of the pads' heights of
+    an array as made, and by any coupling of the pads from 0 (separate springs) to `coupling` (1: a
+    half-space). Raises InputError for positions that are not finite or not one for each joint, and a level or
+    share out of range.
     """
     require_level(level)
     if not 0 <= coupling <= 1:
@@ -90,7 +90,7 @@ def read(taxels: Taxels, joints: ArrayLike, level: float = 0.95, coupling: float
 
 
 def _object(taxels: Taxels, s: np.ndarray, used: np.ndarray, level: float, share: float) -> Interval | None:
-    """K_obj of one frame: each pad's way stands for its slope over the approach."""
+    """K_obj of one frame: each pad's travel replaces its slope over the approach."""
     rows = np.flatnonzero(used)
     if len(rows) < 2:
         return None
@@ -100,7 +100,7 @@ def _object(taxels: Taxels, s: np.ndarray, used: np.ndarray, level: float, share
     known = Sensitivity(taxels.column("number"), K, variance**0.5, volts, zero, zero, many, rigid, zero)
     noise = float(taxels.column("noise_V").max()) ** 2
     slopes = slopes_of(known.element[rows], (volts * s)[rows], known, noise, int(KNOWN))
-    # a pad that stands back is pressed less: its height enters as an error of s
+    # a lower pad is pressed less: its height enters as an error of s
     part = slopes.from_calibration.copy()
     part[:, 1, 1] += taxels.column("variance_offset_mm2")[rows]
     part[:, [0, 1], [1, 0]] -= (s * taxels.column("covariance_stiffness_offset_N"))[rows, None]
@@ -114,6 +114,6 @@ def _object(taxels: Taxels, s: np.ndarray, used: np.ndarray, level: float, share
 
 @lru_cache(maxsize=16)
 def _shares(taxels: Taxels) -> np.ndarray:
-    """What the force on one pad does to another on a half-space, over what it does to the first."""
+    """Effect of one pad's force on another on a half-space, relative to its effect on the first."""
     x, y, length, width = (taxels.column(f"{name}_mm") for name in ("x", "y", "length", "width"))
     return shares_between(x, y, float(length[0]), float(width[0]), inf, INCOMPRESSIBLE)

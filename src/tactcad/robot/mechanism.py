@@ -1,4 +1,4 @@
-"""What stands and what moves, on which joints: what a family declares of its sensor for robots.
+"""The fixed and moving parts of a sensor, and its joints: a family's declaration for robots.
 
 Everything is in the mount's frame, mm: its origin and axes are those of the robot's flange, +z toward the
 object. A pad's frame has its origin in the middle of the pad's face, +z outwards. An element's frame is
@@ -23,7 +23,7 @@ from tactcad.scenes.scene import Placement, rotation
 
 from .taxel_table import Taxel, require_positive
 
-OUTWARD = 0.5  # rad or mm toward the object, where nothing stops an element
+OUTWARD = 0.5  # rad or mm toward the object, if nothing stops an element
 NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_.-]*")  # of XML 1.0's names those that ROS and MuJoCo take too
 
 
@@ -54,10 +54,10 @@ class Moving:
     turn       axes of the pad's frame and the element's, as columns, [3, 3]
     joints_at  origin of the element's frame, in the pad's
     joints     one, or three of a cell (sink and two tilts) along its stiffness matrix's own axes
-    parts      what of it moves, at its place
-    box        least and largest corner of what of it can be hit besides the pad, in its frame
-    ball       radius of the ball that stands for the pad where it touches; 0: the flat pad
-    rubs       what touches may push the pad sideways, by its own friction
+    parts      its moving parts, in place
+    box        least and largest corner of its collision box besides the pad, in its frame
+    ball       radius of the ball that replaces the pad in contact; 0: the flat pad
+    rubs       whether an object may push the pad sideways by friction
     """
 
     taxel: Taxel
@@ -81,7 +81,7 @@ class Moving:
 
 @dataclass(frozen=True)
 class Mechanism:
-    """A sensor: what stands, and what moves.
+    """A sensor: its fixed and moving parts.
 
     Raises InputError for a name that XML cannot hold, and for an element without stiffness or way.
     """
@@ -139,8 +139,7 @@ def together(bodies: Sequence[Inertia]) -> Inertia:
 
 @dataclass(frozen=True)
 class Solid:
-    """A body in its own frame: inertia, what is drawn of it (mm), boxes that can be hit (middle, half sides,
-    m)."""
+    """A body in its own frame: inertia, drawn shape (mm), collision boxes (middle, half sides, m)."""
 
     inertia: Inertia
     looks: tuple[Placement, ...]

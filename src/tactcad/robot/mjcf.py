@@ -26,7 +26,7 @@ RUBS = {"priority": 0, "condim": 3, "friction": (0.0, 0.0, 0.0), "solmix": 1e6}
 
 
 def moment(joint: ElementJoint, arm: Solid) -> float:
-    """What a joint moves: kg m2, or kg."""
+    """Inertia moved by a joint: kg m2, or kg."""
     axis = np.array(joint.axis)
     return float(axis @ arm.inertia.at(np.zeros(3)) @ axis) if joint.kind == "hinge" else arm.inertia.mass
 

@@ -34,7 +34,7 @@ def jobs(plan: Plan) -> Iterator[Batch]:
     key, name = digest(("robot", plan.shapes.made_by, design, detail)), design.design.name
     paths = [f"robot/{p}" for p in ("taxels.csv", "taxels.json", f"{name}.urdf", f"{name}.xml", *meshes)]
     files = tuple(Output(path, "robot", "", f"{key} {path}") for path in paths)
-    own = Shapes(plan.shapes.cache, plan.shapes.made_by)  # whole parts, where the export's are envelopes
+    own = Shapes(plan.shapes.cache, plan.shapes.made_by)  # whole parts, if the export's are envelopes
     yield Batch(files, partial(_made, mechanism, own, meshes), size=200)
 
 
@@ -50,7 +50,7 @@ def _made(mechanism: Mechanism, shapes: Shapes, meshes: dict[str, Part]) -> Sequ
 
 
 def refuse_foreign_meshes(name: str, text: bytes, known: Collection[str]) -> None:
-    """Raise InputError for a mesh of a model, as read back, that is none of its folder's."""
+    """Raise InputError for a mesh of a model, as read back, that is not in its folder."""
     root = ElementTree.fromstring(text)
     compiler = root.find("compiler")
     folder = PurePosixPath("" if compiler is None else compiler.get("meshdir", ""))
@@ -64,7 +64,7 @@ def refuse_foreign_meshes(name: str, text: bytes, known: Collection[str]) -> Non
 
 
 def solids(mechanism: Mechanism, shapes: Shapes, drawn: bool) -> tuple[Solid, tuple[Solid, ...]]:
-    """What stands, in the mount's frame, and every element in its own; `drawn`: with looks."""
+    """The fixed parts, in the mount's frame, and every element in its own; `drawn`: with appearance."""
     made = [p for p in mechanism.fixed if p.part.process not in NOT_MADE]
     stands = together([_inertia(p, shapes) for p in mechanism.fixed])
     base = Solid(stands, mechanism.fixed if drawn else (), tuple(_box(p, shapes) for p in made))
@@ -95,7 +95,7 @@ def _inertia(p: Placement, shapes: Shapes) -> Inertia:
 
 
 def _box(p: Placement, shapes: Shapes) -> tuple[np.ndarray, np.ndarray]:
-    """Middle and half sides, m, of a part that stands square."""
+    """Middle and half sides, m, of an axis-parallel part."""
     (low, high), R = np.array(_measured(p.part, shapes)["box"]), np.array(p.rotation)
     return MM * (R @ (low + high) / 2 + p.origin), MM * np.abs(R) @ (high - low) / 2
 

@@ -1,4 +1,4 @@
-"""The sensor as URDF: metres, kilograms, radians. It has no springs; the table of taxels says K."""
+"""The sensor as URDF: metres, kilograms, radians. It has no springs; the table of taxels has K."""
 
 from __future__ import annotations
 

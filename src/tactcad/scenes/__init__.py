@@ -90,7 +90,7 @@ def make_scene(design: CommonTables, name: str, pose: Pose | None = None) -> Sce
     Raises
     ------
     InputError
-        Where the pose is impossible.
+        If the pose is impossible.
     """
     from .scene import REST, with_added
 

@@ -214,7 +214,7 @@ def check_bom(scene: Scene, as_csv: bytes, as_json: bytes) -> list[str]:
     if solids != len(scene.placements):
         wrong.append(f"{solids} solids instead of {len(scene.placements)}")
     numbers = [row.part_no for row in rows]
-    wrong += [f"{n} stands on two lines" for n in sorted(set(numbers)) if numbers.count(n) > 1]
+    wrong += [f"{n} is on two lines" for n in sorted(set(numbers)) if numbers.count(n) > 1]
     return wrong + [text for row in rows for text in incomplete(row)]
 
 

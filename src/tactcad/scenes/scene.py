@@ -198,7 +198,7 @@ class Scene:
     Raises
     ------
     ValueError
-        Where designators are not unique, the steps do not place each once, or two parts share a number.
+        If designators are not unique, the steps do not place each once, or two parts share a number.
     """
 
     name: str

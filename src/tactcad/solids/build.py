@@ -55,7 +55,7 @@ OUTSIDE = 0.5
 
 
 class SolidError(RuntimeError):
-    """The kernel made something other than the description says."""
+    """The kernel's solid differs from the description."""
 
 
 def build(part: Part) -> TopoDS_Shape:
@@ -90,7 +90,7 @@ def _built(part: Part) -> TopoDS_Shape:
 
 
 def _cut(stock: TopoDS_Shape, tools: Sequence[TopoDS_Shape]) -> TopoDS_Shape:
-    """Stock less all tools; what is left of one surface is one face."""
+    """Stock less all tools; the remainder of one surface is one face."""
     operation, first, others = BRepAlgoAPI_Cut(), TopTools_ListOfShape(), TopTools_ListOfShape()
     first.Append(stock)
     for tool in tools:

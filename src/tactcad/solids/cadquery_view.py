@@ -58,7 +58,7 @@ def bought_from_step(
     Raises
     ------
     InputError
-        Where the file does not hold exactly one solid.
+        If the file does not hold exactly one solid.
     """
     from .step import model_file
 
@@ -80,14 +80,14 @@ def bought_from_cadquery(
     model
         One solid, mm.
     path
-        Where it is written (STEP) and from then on read.
+        The STEP file that is written, and read from then on.
     part_no, name, material, purchase
         Of the part, see `tactcad.parts.language.description.Part`.
 
     Raises
     ------
     InputError
-        Where the model is not one solid.
+        If the model is not one solid.
     """
     shape = model.val() if isinstance(model, cq.Workplane) else model
     solids = shape.Solids() if isinstance(shape, cq.Shape) else []

@@ -1,5 +1,5 @@
-"""Which material two solids share, and which only one of them has: by the kernel's booleans, and by those of
-meshes where they fail."""
+"""Material common to two solids, and of only one of them: by the kernel's booleans, or by those of meshes if
+they fail."""
 
 from __future__ import annotations
 
@@ -27,8 +27,8 @@ CHORD, TURN = 1e-3, 0.3
 
 @dataclass(frozen=True)
 class ChangedMaterial:
-    """Pieces of material, None if there is none, and what told them apart: the kernel; meshes, whose
-    curved faces miss by up to CHORD; or nothing: `removed` and `added` are the old and the new solid."""
+    """Pieces of material, None if there is none, and the method: the kernel; meshes, whose curved faces miss
+    by up to CHORD; or nothing: `removed` and `added` are the old and the new solid."""
 
     kept: TopoDS_Shape | None
     removed: TopoDS_Shape | None
@@ -47,7 +47,7 @@ def changed(old: TopoDS_Shape, new: TopoDS_Shape) -> ChangedMaterial:
 
 
 def _by_kernel(old: TopoDS_Shape, new: TopoDS_Shape) -> ChangedMaterial:
-    """Raises ValueError, or the kernel's own error, where a boolean fails."""
+    """Raises ValueError, or the kernel's own error, if a boolean fails."""
     operations = BRepAlgoAPI_Common(old, new), BRepAlgoAPI_Cut(old, new), BRepAlgoAPI_Cut(new, old)
     kept, removed, added = (_pieces(done) for done in operations)
     v_kept, v_removed, v_added = (volume(s) if s is not None else 0.0 for s in (kept, removed, added))
@@ -78,7 +78,7 @@ def _by_meshes(old: TopoDS_Shape, new: TopoDS_Shape) -> ChangedMaterial:
 
 
 def _without_films(mesh: manifold3d.Manifold) -> manifold3d.Manifold:
-    """Without what is thinner than the chords' error: one curved face, meshed twice."""
+    """Without pieces thinner than the chords' error: one curved face, meshed twice."""
     thick = [m for m in mesh.decompose() if 2.0 * m.volume() > CHORD * m.surface_area()]
     return manifold3d.Manifold.compose(thick)
 

@@ -100,11 +100,11 @@ def faces_within(faces: Faces, place: Placement, box: np.ndarray, reach: float) 
     faces
         In the shape's own frame.
     place
-        Where the shape stands.
+        The shape's place.
     box : ndarray, shape (2, 3)
         Least and largest corner in the scene, mm.
     reach
-        How near a face's own box has to come, mm.
+        Largest distance of a face's own box, mm.
 
     Returns
     -------
@@ -129,9 +129,9 @@ def met_at_vertex(
     first: TopoDS_Shape | None, second: TopoDS_Shape | None, within: float
 ) -> tuple[float, Vector] | None:
     """A vertex of one set of faces that lies within that distance (mm) of the other set: its distance and
-    place, as of `nearest`; None if those that are tried lie further off, though the sets may not.
+    place, as of `nearest`; None if the vertices tried are further off, though the sets may not be.
 
-    Quick where faces have thousands of edges, whose pairs `nearest` would all look at.
+    Fast for faces with thousands of edges, whose pairs `nearest` would all measure.
     """
     for own, other in ((first, second), (second, first)):
         if own is None or other is None:
@@ -162,7 +162,7 @@ def nearest(first: TopoDS_Shape | None, second: TopoDS_Shape | None) -> tuple[fl
     Returns
     -------
     tuple
-        The distance, mm, infinite where a set is empty; and the point of the first set where it is taken.
+        The distance, mm, infinite if a set is empty; and its point on the first set.
     """
     if first is None or second is None:
         return inf, (0.0, 0.0, 0.0)

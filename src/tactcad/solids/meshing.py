@@ -9,8 +9,8 @@ CHORD_MM = 0.05  # largest chord error; the turn governs small radii, this one t
 
 @dataclass(frozen=True)
 class Meshing:
-    """`angular`: largest turn between facets, rad; `error`: largest relative error of a part's volume that is
-    promised, None if only what facets can explain is."""
+    """`angular`: largest turn between facets, rad; `error`: largest promised relative error of a part's
+    volume, None for the facets' own error."""
 
     angular: float = 0.2
     error: float | None = None

@@ -45,7 +45,7 @@ as_edge, as_face, as_vertex, as_wire = (
 def end_threads() -> None:
     """End the threads that the kernel started for booleans, and let it start no more.
 
-    A forked process has none of them, and its first boolean would wait for them for ever.
+    A forked process has none of these threads, and its first boolean would wait for them for ever.
     """
     pool = getattr(OSD_ThreadPool, "DefaultPool_s", None) or OSD_ThreadPool.DefaultPool
     pool().Init(1)

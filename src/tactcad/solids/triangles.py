@@ -55,7 +55,7 @@ def triangles(shape: TopoDS_Shape, linear: float, angular: float) -> tuple[np.nd
     Raises
     ------
     ValueError
-        Where the kernel cannot mesh a face.
+        If the kernel cannot mesh a face.
     """
     meshed = [face_triangles(face) for face in tessellated(shape, linear, angular)]
     starts = np.cumsum([0, *(len(points) for points, _ in meshed)])
@@ -108,7 +108,7 @@ def polyhedra(mesh: manifold3d.Manifold) -> TopoDS_Shape:
     Raises
     ------
     ValueError
-        Where a triangle has no area.
+        If a triangle has no area.
     """
     build, compound = BRep_Builder(), TopoDS_Compound()
     build.MakeCompound(compound)
@@ -126,7 +126,7 @@ def _polyhedron(mesh: manifold3d.Manifold) -> TopoDS_Solid:
     edges: dict[tuple[int, int], TopoDS_Edge] = {}
 
     def edge(start: int, end: int) -> TopoDS_Edge:
-        """The one edge of two corners, as it is gone along."""
+        """The edge between two corners, in the direction of travel."""
         low, high = min(start, end), max(start, end)
         if (low, high) not in edges:
             edges[low, high] = BRepBuilderAPI_MakeEdge(corners[low], corners[high]).Edge()
@@ -153,7 +153,7 @@ Indices = NDArray[np.uint32]
 
 @dataclass(frozen=True)
 class Facets:
-    """What is drawn of a shape.
+    """A shape's facets and edges for drawing.
 
     vertices, normals   (n, 3) points in mm and unit vectors; faces share none, so that edges stay sharp
     triangles           (m, 3) indices, facing outwards, face after face
@@ -191,7 +191,7 @@ def facets(shape: TopoDS_Shape, linear: float, angular: float) -> Facets:
     Raises
     ------
     ValueError
-        Where the kernel cannot mesh a face.
+        If the kernel cannot mesh a face.
     """
     faces = tessellated(shape, linear, angular)
     meshed = [_face(face) for face in faces]
@@ -229,7 +229,7 @@ def _face(face: TopoDS_Face) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 
 def _edge(shape: TopoDS_Shape, faces: list[TopoDS_Face]) -> np.ndarray:
-    """The straight pieces (s, 2, 3) of an edge as the mesh of a face has them; none of a seam or a pole."""
+    """The straight pieces (s, 2, 3) of an edge in the mesh of a face; none for a seam or a pole."""
     edge: TopoDS_Edge = as_edge(shape)
     if BRep_Tool.Degenerated_s(edge):
         return np.zeros((0, 2, 3))

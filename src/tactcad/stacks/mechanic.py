@@ -1,9 +1,9 @@
-"""The virtual mechanic: puts an array together as the guide says, from parts as they were made.
+"""The virtual mechanic: assembles an array by the guide, from parts as made.
 
-Pins are pressed into the tapped plate; elements slide on them; both plates stand with their lower edges on
-the setting fixture's steps. Pressed down there, an element touches its floor with its pad and its pin with
-the top of its hole: that sets its height and its turn about the dowel. The stop plate lies on all ledges.
-Parts are rigid. With several dowels a row, the first one locates.
+Pins are pressed into the tapped plate; elements slide on them; both plates rest with their lower edges on the
+setting fixture's steps. Pressed down there, an element touches the fixture's floor with its pad and its pin
+with the top of its hole: this sets its height and its turn about the dowel. The stop plate lies on all
+ledges. Parts are rigid. With several dowels a row, the first one locates.
 """
 
 from __future__ import annotations
@@ -100,7 +100,7 @@ class Assembled:
 
     @cached_property
     def side(self) -> Array:
-        """1 for elements of row one, which stand at positive x, -1 for row two."""
+        """1 for elements of row one, at positive x, -1 for row two."""
         return np.array([1.0 if p.row == 1 else -1.0 for p in self.layout.elements])
 
     @property
@@ -134,16 +134,15 @@ class Assembled:
         return (pair + own)[:, self.first_pins]
 
     def over_floor(self, which: Plate) -> Array:
-        """How much higher than drawn the first holes of both rows stand in a plate on the fixture,
-        (arrays, 2)."""
+        """Height over nominal of both rows' first holes in a plate on the fixture, (arrays, 2)."""
         at = [1 if which == "tapped" else 0]
         reach = self.dowel_x / SettingLayout(self.layout.design).half  # of a step's half length
         step = self.made[STEPS][:, at] + self.made[STEPS_LEAN][:, at] * reach * np.array([1.0, -1.0])
         return step + self.made[over_edge(which)][:, self.first_pins]
 
     def pin(self, axis: Axis, y: Array | float) -> Array:
-        """How far the first pins of both rows are off along an axis at y, (arrays, 2); along z over the
-        fixture's floor, where the head plate holds their ends within its play."""
+        """Deviation of both rows' first pins along an axis at y, (arrays, 2); along z over the fixture's
+        floor, with their ends in the head plate within its play."""
         layout = self.layout
         # as a share of the squareness's zone, which is as wide as SQUARE
         zone = self.made[squareness(axis)][:, self.first_pins]
@@ -178,8 +177,8 @@ class Assembled:
 
     @cached_property
     def turn(self) -> Array:
-        """How far each element is turned about its dowel, rad, its rear end up: its hole hangs on its pin, an
-        edge of its pad, which may lean, stands on the floor, which may lie lower there."""
+        """Turn of each element about its dowel, rad, rear end up: its hole hangs on its pin, and an edge of
+        its pad, which may lean, rests on the floor, which may be lower there."""
         layout, high = self.layout, self.high - self.made[FLOOR_FLAT]
         inner = (high + self.made[PAD_LEAN]) / (self.dowel_x - layout.pad_inner)
         return np.minimum(inner, (high - self.made[PAD_LEAN]) / (self.dowel_x - layout.pad_outer))
@@ -194,9 +193,16 @@ class Assembled:
         return self.raised((self.layout.pad_inner + self.layout.pad_outer) / 2)
 
     @property
+    def carried(self) -> Array:
+        """Height of each pad's middle once the carrier is screwed on: it stays flat, and the stack between
+        the end plates turns with them about y until their upper edges lie on it, half of the twist each."""
+        middle = (self.layout.pad_inner + self.layout.pad_outer) / 2
+        return self.pads - self.twist * self.side * middle * self.y / self.plates_apart
+
+    @property
     def pads_apart(self) -> Array:
         """Highest over lowest pad, (arrays, 1)."""
-        return np.ptp(self.pads, axis=1, keepdims=True)
+        return np.ptp(self.carried, axis=1, keepdims=True)
 
     # --- end plates ---
 
@@ -224,14 +230,30 @@ class Assembled:
 
     @property
     def tilt(self) -> Array:
-        """The carrier's angles against the fixture's floor, along the row and across, degrees, (arrays, 2),
-        by the upper edges of both plates over their lower ones."""
-        y = self.layout.stack / 2 + self.layout.design.clamp.end_plate_thickness / 2
-        tapped = self.over_floor("tapped") - self.holes("tapped", "z")
-        head = self.over_floor("head") - self.holes("head", "z")
-        along = (head - tapped).mean(axis=1, keepdims=True) / (2 * y)
-        across = (tapped[:, :1] - tapped[:, 1:]) / (2 * self.dowel_x)
-        return np.degrees(np.hstack([along, across]))
+        """The carrier's angles against the fixture's floor, degrees, (arrays, 3), by the plates' upper edges
+        over their lower ones: along the row, and across on each plate, between which it lies."""
+        along = (self.edges("head") - self.edges("tapped")).mean(axis=1, keepdims=True) / self.plates_apart
+        return np.degrees(np.hstack([along, self.across("tapped"), self.across("head")]))
+
+    @property
+    def plates_apart(self) -> float:
+        """From the middle of one end plate to that of the other, mm."""
+        return self.layout.stack + self.layout.design.clamp.end_plate_thickness
+
+    def edges(self, which: Plate) -> Array:
+        """How much higher than drawn a plate's upper edge is over its first holes, (arrays, 2)."""
+        return self.over_floor(which) - self.holes(which, "z")
+
+    def across(self, which: Plate) -> Array:
+        """Slope of a plate's upper edge across the row, (arrays, 1)."""
+        edge = self.edges(which)
+        return (edge[:, :1] - edge[:, 1:]) / (2 * self.dowel_x)
+
+    @property
+    def twist(self) -> Array:
+        """By how much the upper edges of both plates differ in slope, rad, (arrays, 1): tapped plate's, at
+        +y, less the other's."""
+        return self.across("tapped") - self.across("head")
 
     # --- rows ---
 
@@ -292,7 +314,7 @@ class Assembled:
         changed = {f: getattr(drawn, f) + m.get(name, zero) for name, f in HINGE.items()}
         arm = m[of_element(ARM_LENGTH)] - m[of_element(PAD_LENGTH)] / 2
         modulus = drawn.youngs_modulus * (1.0 + m[MODULUS])
-        # nor does a fillet reach higher than the arm
+        # a fillet is never higher than the arm
         deep = WITHIN * (changed["arm_height"] - changed["hinge_thickness"]) / drawn.notch_sides
         full = np.minimum(np.minimum(changed["fillet_radius"], changed["hinge_length"] / 2), deep)
         return drawn.with_(
@@ -313,8 +335,8 @@ class Assembled:
     def yield_shares(self) -> Array:
         """Stress at each fillet under the overload force, its stop closed, over the yield strength.
 
-        Where the estimator does not reach a hinge, its stiffness is the section's integral, as for the drawn
-        gaps; where its limits leave no hinge or sheet, CUT.
+        For a hinge out of the estimator's range, the stiffness is the section's integral, as for the drawn
+        gaps; if its limits leave no hinge or sheet, CUT.
         """
         s, known, d = self.section, self.stiffness, self.layout.design
         K = np.where(np.isnan(known), ladder.evaluate(s, "section").stiffness, known)
@@ -332,7 +354,7 @@ BLOCK = 2000  # rows of one program: below that a call's own cost, above it the 
 
 
 def resting_plane(points: Array, heights: Array) -> Array:
-    """The plane that rests on points, pressed down in the middle of them.
+    """The plane that rests on points, pressed down in their middle.
 
     Parameters
     ----------
@@ -344,9 +366,8 @@ def resting_plane(points: Array, heights: Array) -> Array:
     Returns
     -------
     Array
-        (arrays, 3): height at the origin and slopes along both axes, so that the plane is nowhere below a
-        point and as low at the origin as it can be; of planes that rock over two points, the one that is
-        nowhere far above any.
+        (arrays, 3): height at the origin and slopes along both axes, so that the plane is below no point and
+        as low at the origin as possible; of planes that rock over two points, the one closest to all.
     """
     n = len(points)
     plane = np.column_stack([np.ones(n), points])

@@ -25,7 +25,7 @@ from .variables import SHEET, SPACER, STACK_LENGTH, STOP_PLATE, array_variables
 # Least engaged thread at any limits, in diameters: the torques of data/screws.csv are half of what the screw
 # bears, for which 1.5 d of aluminium are usual; bought parts have threads in steel.
 LEAST_ENGAGED, LEAST_IN_STEEL = 1.0, 0.6
-# Least space between neighbours, mm; chosen: twice what cut faces may stand out by burr and roughness.
+# Least space between neighbours, mm; chosen: twice the burr and roughness of cut faces.
 LEAST_BETWEEN = 0.02
 
 

@@ -1,11 +1,11 @@
-"""Screwed joints of a scene as stacks: how far each screw engages, and what is left before it bottoms.
+"""Screwed joints of a scene as stacks: each screw's engagement, and its distance from bottoming.
 
-Read off the placements: a cap screw, the tapped hole it stands in, and every part between its head and that.
+Read off the placements: a cap screw, its tapped hole, and every part between.
 
-One screw always finds its thread; several fix each other. Along the line through two of them, four holes are
-off by half their zone each, and the clearance holes leave a screw the room between it and the least of them
-on either side: as a sum of deviations, room H - d against the zones of hole and thread (the formula of fixed
-fasteners, ISO 2692 and ASME Y14.5, without the rooms of larger holes).
+One screw always fits its thread; several constrain each other. Along the line through two of them, four holes
+are off by half their zone each, and the clearance holes leave a screw its least clearance on either side: as
+a sum of deviations, room H - d against the zones of hole and thread (the formula of fixed fasteners, ISO 2692
+and ASME Y14.5, without the rooms of larger holes).
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ from tactcad.scenes.threads import COAXIAL, engaged, thread_range
 from .variables import STACK_LENGTH
 
 CAP_SCREW = re.compile(r"ISO4762-(M[\d.]+)x([\d.]+)-")
-# What is stacked between the end plates: its length is held as a whole.
+# The stack between the end plates, toleranced in its total length.
 STACKED = ("element", "spacer", "blank")
 # Product grade A: lengths of cap screws are js15 (ISO 4759-1:2000).
 LENGTH = "js15"
@@ -102,7 +102,7 @@ def joints(design: str, screws: Sequence[Screwed], known: dict[str, DimensionLim
     design, screws
         The design's name, and the screws of a scene of it.
     known
-        Variables by name; those of the joints are added if they are not known yet.
+        Variables by name; those of the joints are added if missing.
     """
     return list(dict.fromkeys(_joint(design, s, known) for s in screws))
 
@@ -150,7 +150,7 @@ def short(design: str, p: Placement) -> str:
 
 
 def is_stacked(design: str, p: Placement) -> bool:
-    """Whether a part stands between the end plates."""
+    """Whether a part is between the end plates."""
     return p.part.part_no.startswith(tuple(f"{design}-{w}" for w in STACKED))
 
 
@@ -174,7 +174,7 @@ def _screwed(
 
 @dataclass(frozen=True)
 class _Bored:
-    """A placed part with its holes; where they begin and which way they lead, in the scene, (n, 3) mm."""
+    """A placed part with its holes; their starts and directions in the scene, (n, 3) mm."""
 
     placed: Placement
     holes: tuple[Hole, ...]
@@ -258,7 +258,7 @@ def patterns(
             continue
         s, pierced, hole = min(some, key=lambda one: one[2].diameter)
         who, into = short(design, pierced), short(design, s.tapped)
-        if is_stacked(design, pierced):  # elements of all arms are alike here
+        if is_stacked(design, pierced):  # elements of all arms are equal here
             who = next(kind for kind in STACKED if who.startswith(kind))
         room = hole.diameter - general(hole.diameter) - METRIC[s.thread].d - _off_pins(layout, pierced.part)
         room = round(room, 9)

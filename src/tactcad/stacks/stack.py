@@ -22,7 +22,7 @@ HEAD = ("requirement", "unit", "lower", "upper", "nominal", "worst_low", "worst_
 CONTRIBUTORS = 5  # columns of the table; a stack's further ones are small
 SEED = 20261122  # published: the day on which stacks were first made
 CORNERS, EFFECTS = 250, 125  # arrays on their corners, and of these for effects: to some percent of the whole
-# A requirement counts as kept where it is missed by no more than rounding, in its unit.
+# A requirement counts as kept if it is missed by no more than rounding, in its unit.
 ROUNDING = 1e-9
 
 
@@ -110,9 +110,9 @@ def _behind_contacts(
 ) -> Iterator[StackLine]:
     """Values behind contacts, from arrays with every part on one of its limits.
 
-    Shares are total effects (Jansen 1999): half the mean square by which the value changes where one variable
-    alone is drawn anew. The worst cases are the arrays with each part at the limit that its correlation with
-    the value points to, or what the drawn arrays show where that is worse.
+    Shares are total effects (Jansen 1999): half the mean square of the value's change if one variable alone
+    is drawn anew. The worst cases are the arrays with each part at the limit given by its correlation with
+    the value, or the worst drawn array if that is worse.
     """
     if not wanted:
         return
@@ -161,8 +161,8 @@ def _climbed(
     effect: dict[str, float],
     variables: dict[str, DimensionLimits],
 ) -> list[float]:
-    """Lowest and highest value by turning single pieces over, from the drawn arrays that are worst: where a
-    value falls to both sides of its middle no correlation points the way. Only where few pieces matter."""
+    """Lowest and highest value by moving single pieces to their other limit, from the worst drawn arrays: if
+    a value falls to both sides of its middle, no correlation shows the way. Only if few pieces matter."""
     names = [n for n, v in effect.items() if v > 0.0]
     flips = [(name, i) for name in names for i in range(variables[name].pieces)]
     if not 0 < len(flips) <= FEW:
@@ -201,7 +201,7 @@ def _way(deviations: Array, value: Array) -> Array:
 
 
 def _corner(variables: dict[str, DimensionLimits], ways: dict[str, Array], sign: float) -> Deviations:
-    """One array with each piece at the limit that its way points to, in the middle if it has none."""
+    """One array with each piece at the limit of its direction, in the middle if it has none."""
     return {
         name: ((v.upper + v.lower) / 2 + sign * ways[name] * (v.upper - v.lower) / 2)[np.newaxis]
         for name, v in variables.items()

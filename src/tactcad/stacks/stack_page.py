@@ -11,7 +11,7 @@ from .stack import StackLine
 from .virtual_build import LEAST_YIELD, Builds
 
 WIDTH, HEIGHT, EDGE = 300.0, 30.0, 10.0  # of a requirement's bar, px
-SHOWN = 3  # contributors named beside it
+SHOWN = 3  # contributors named with it
 
 
 def stack_page(title: str, builds: Builds, lines: Sequence[StackLine]) -> bytes:

@@ -72,7 +72,7 @@ OF_ELEMENT: dict[str, Matters] = {PAD_HEIGHT: "pads", DOWEL_HOLE: "pads", LEDGE:
 
 
 def array_variables(layout: Layout) -> dict[str, DimensionLimits]:
-    """Variables of the array by name; what is cut from one sheet has one thickness, a single piece."""
+    """Variables of the array by name; parts of one sheet share one thickness, a single piece."""
     return {v.name: v for v in _array(layout)}
 
 
@@ -111,7 +111,7 @@ def _array(layout: Layout) -> Iterable[DimensionLimits]:
         on: Matters = "pads" if which == "tapped" else "neither"
         if (
             part is pair[0]
-        ):  # the pair is made together: what it shares lies in one zone, its difference in another
+        ):  # the pair is made together: its common error is in one zone, its difference in another
             for axis in AXES:
                 yield _zone(pair_holes(axis), "dowel holes", pins, "pads", *pair)
                 yield _zone(squareness(axis), "dowel holes' squareness", pins, "pads", part)
@@ -119,7 +119,7 @@ def _array(layout: Layout) -> Iterable[DimensionLimits]:
         for axis in AXES:
             yield _zone(own_holes(which, axis), "dowel holes of the pair", pins, on, part)
         bore = next(c for c in part.characteristics if c.name == DOWEL_HOLE)
-        size = float(d.clamp.dowel)  # pin and hole are both counted from it
+        size = float(d.clamp.dowel)  # pin and hole both refer to it
         of = ((part.part_no, bore.name),)
         yield variable(bore_in(which), bore.lower - size, bore.upper - size, pins, of, on)
     fixture = setting_fixture(SettingLayout(d))
@@ -154,13 +154,13 @@ def _characteristic(variable_name: str, part: Part, name: str, pieces: int = 1) 
 
 
 Distribution = Literal["normal", "uniform", "corners"]
-# Limits stand at two standard deviations, and what lies beyond them is sorted out.
+# Limits are at two standard deviations; parts beyond are sorted out.
 SIGMAS = 2.0
-# Share of a dimension's variance that one machine's offset gives all pieces of a batch alike; chosen: as much
-# as each piece has of its own.
+# Share of a dimension's variance by one machine's offset, common to a batch; chosen: as much as each piece's
+# own.
 OFFSET_SHARE = 0.5
-# Share of the variance of a wire-cut piece's tightest size that the wire's offset gives it; the others move
-# with it as far as it takes them. Chosen: the rest is the machine's way and what the skimming cuts leave.
+# Share of the variance of a wire-cut piece's tightest size by the wire's offset; the other sizes move with
+# it. Chosen: the rest is the machine's path and the skimming cuts.
 WIRE_SHARE = 0.5
 
 
@@ -181,12 +181,12 @@ def made(
     count
         Arrays to make parts for.
     distribution
-        `normal`, cut at its limits, which stand at SIGMAS standard deviations; `uniform` between them;
+        `normal`, cut at its limits, which are at SIGMAS standard deviations; `uniform` between them;
         `corners`: on one of them.
     rng
         Source of chance.
     only
-        Names of variables that differ at all; the others are at the middle of their limits.
+        Names of the variables that vary; the others are at the middle of their limits.
     alike
         Whether pieces of one array share their machine's offset, and sizes of a piece their wire's.
 
@@ -194,8 +194,8 @@ def made(
     -------
     dict of str to Array
         By variable, of shape (count, pieces). Pieces of one array share an offset: a Gaussian copula with a
-        correlation of OFFSET_SHARE, so that each piece's own distribution is just the one asked for. Sizes of
-        a wire-cut piece share the wire's offset likewise, as many mm as each grows with it.
+        correlation of OFFSET_SHARE, so that each piece's own distribution is exactly the one asked for. Sizes
+        of a wire-cut piece share the wire's offset likewise, each by its own growth.
     """
     out = {}
     own_chance, wire_chance = rng.spawn(2)  # which draw nothing from rng itself

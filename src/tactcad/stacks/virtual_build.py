@@ -26,7 +26,7 @@ from .variables import Distribution, made, of_element
 
 # Least share of arrays that meet all requirements; below it nothing is released.
 LEAST_YIELD = 0.995
-# What decides: the worse of these. Corners are reported beside them.
+# The worse of these decides. Corners are also reported.
 DECIDING: tuple[Distribution, ...] = ("normal", "uniform")
 AT_ONCE = 20_000  # elements in memory at a time
 
@@ -44,7 +44,7 @@ class ElementBuilt:
     stop_closes_at_least: float
 
     def known(self) -> dict[str, Any]:
-        """By field, with None for figures that are not: arrays built outside the closed form's range have no
+        """By field, with None for unknown figures: arrays built outside the closed form's range have no
         stiffness."""
 
         def figures(value: Any) -> Any:
@@ -178,7 +178,7 @@ def element_figures(arrays: Assembled) -> dict[str, Array]:
     arm = np.array([p.load_arm for p in places])
     return {
         "stiffness": arrays.stiffness,
-        "pad_height_um": 1e3 * (arrays.pads - arrays.pads.min(axis=1, keepdims=True)),
+        "pad_height_um": 1e3 * (arrays.carried - arrays.carried.min(axis=1, keepdims=True)),
         "load_arm": arm + made_[of_element(ARM_LENGTH)] - made_[of_element(PAD_LENGTH)] / 2,
         "stop_gap": arrays.gaps,
         "closes": arrays.closing_force,

@@ -1,6 +1,6 @@
 """Many designs measured, on one machine or many, kept as they finish and joined into one table.
 
-In: a study (STUDY.toml): a design, which of its fields vary and how, what is measured. Out: a table with a
-row for every design, and a page that shows what depends on what. Dask decides where and when each task runs;
-a store keyed by content keeps what is finished.
+In: a study (STUDY.toml): a design, its varied fields, and the results to measure. Out: a table with a row for
+every design, and a page of the results' dependences. Dask schedules the tasks; a store keyed by content keeps
+finished results.
 """

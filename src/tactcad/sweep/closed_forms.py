@@ -30,7 +30,7 @@ STIFFNESS = ("stiffness", "expected_error")  # N/mm; relative, at most
 FORCES = ("yield_force", "rated_force", "rated_deflection")  # N, N, mm
 
 
-# Of a chunk: all of them, which takes views instead of copies, or those of an index.
+# Designs of a chunk: all, as views instead of copies, or those of an index.
 Rows = slice | NDArray[np.int64]
 ALL = slice(None)
 
@@ -40,7 +40,7 @@ class Refused:
 
     def __init__(self, count: int) -> None:
         self.valid = np.ones(count, bool)
-        self._reason: NDArray[Any] | None = None  # made when one is refused: mostly none is
+        self._reason: NDArray[Any] | None = None  # made only when one is refused, which is rare
 
     @property
     def reason(self) -> NDArray[Any]:
@@ -80,7 +80,7 @@ def closed_forms(
     columns
         The designs.
     refused
-        Which of them are not to be measured; filled in with those that closed forms refuse.
+        Mask of those not to be measured; those refused by closed forms are added.
     results
         By column, NaN if nothing is known: filled in.
     """

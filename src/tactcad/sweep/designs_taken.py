@@ -1,6 +1,6 @@
 """The designs of a study by their index: every process takes the same ones, chunk by chunk.
 
-Drawn ones are any stretch of scipy's scrambled Sobol sequence, without drawing what stands before it. A point
+Drawn designs are any stretch of scipy's scrambled Sobol sequence, without drawing the earlier ones. A point
 is linear over GF(2) in the bits of its place: with x_i its coordinates as whole numbers of 2^-30,
 
     x_i = x_0 ^ XOR of (x_(2^k) ^ x_0) over the bits k that are set in i
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 GRID, LIST, HYPERCUBE, SOBOL = "grid", "list", "latin-hypercube", "sobol"
 BITS = 30  # scipy's own: a place is below 2^30
 Points = NDArray[np.uint32]
-Column = NDArray[Any]  # one field's values: floats, or objects where it is no number
+Column = NDArray[Any]  # one field's values: floats, or objects if they are no numbers
 
 
 def designs_taken(study: Study, start: int, stop: int) -> dict[str, Column]:

@@ -18,7 +18,7 @@ _OVERRIDE = re.compile(r"override\.(?P<number>[1-9][0-9]{0,3})\.(?P<name>\w+)")
 
 
 def spec_at(design: CommonTables, path: str) -> Spec | None:
-    """What the field at that path takes; None if there is no such field, or no such place in its list."""
+    """Spec of the field at that path; None if there is no such field, or no such place in its list."""
     found = _PLACE.fullmatch(path)
     if not found:
         return None
@@ -45,7 +45,7 @@ def value_at(design: CommonTables, path: str) -> Any:
 
 
 def placed(table: dict[str, Any], design: CommonTables, path: str, value: Any) -> dict[str, Any]:
-    """A copy of a design's table with that value at the path; what is not on the way to it is shared.
+    """A copy of a design's table with that value at the path; the rest is shared with the original.
 
     Parameters
     ----------

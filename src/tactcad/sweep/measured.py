@@ -26,8 +26,8 @@ from .study import BUILDS, CHECKS, EXPORT, HYPERCUBE, Study
 if TYPE_CHECKING:
     import pyarrow as pa
 
-# Designs a task. Of closed forms as many as one vector call takes in some 100 ms, beside which a task's own
-# time is small; of rules, a second's worth. All else takes long enough alone.
+# Designs a task. For closed forms the number of a vector call of some 100 ms, much longer than a task's
+# overhead; for rules, of a second. All else takes long enough alone.
 CLOSED_FORMS_A_TASK = 1 << 18
 RULES_A_TASK = 16
 
@@ -45,7 +45,7 @@ KERNEL = (
 
 @cache
 def made_by(what: tuple[str, ...]) -> Inputs:
-    """The rooms and libraries that what is measured depends on, as this process found them."""
+    """The rooms and libraries that the results depend on, as found by this process."""
     solids = bool({CHECKS, EXPORT} & set(what))
     return inputs_of({}, ROOMS + WITH_SOLIDS * solids, LIBRARIES + KERNEL * solids)
 
@@ -64,12 +64,12 @@ def loaded_first(study: Study) -> list[str]:
 
 
 def export_folder(folder: Path, number: int) -> Path:
-    """Where the files of the design of that number go."""
+    """Folder for the files of the design of that number."""
     return folder / "exports" / f"{number:06}"
 
 
 def measured(study: Study, start: int, stop: int, folder: Path) -> pa.Table:
-    """What is found of designs `start` to `stop` (exclusive).
+    """Results of designs `start` to `stop` (exclusive).
 
     Returns
     -------
@@ -99,7 +99,7 @@ def measured(study: Study, start: int, stop: int, folder: Path) -> pa.Table:
 
 
 def as_rows(study: Study, start: int, found: pa.Table) -> pa.Table:
-    """Rows of the study's table: what was found, and what is known of designs from `start` without it."""
+    """Rows of the study's table: the results, and the known columns of designs from `start` on."""
     import pyarrow as pa
 
     count = found.num_rows
@@ -138,7 +138,7 @@ def from_bytes(data: bytes) -> pa.Table:
     return pa.ipc.open_stream(data).read_all()
 
 
-# Columns beside those of the elements, by what is measured: numbers, then texts.
+# Columns besides those of the elements, by measure: numbers, then texts.
 NUMBERS = {BUILDS: ("yield",), CHECKS: ("checks_failed", "checks_flagged"), EXPORT: ("files",)}
 TEXTS = {BUILDS: ("most_missed",), CHECKS: ("first_failure",), EXPORT: ("manifest_sha256",)}
 
@@ -159,7 +159,7 @@ def texts_of(study: Study) -> list[str]:
 
 
 def measured_whole(study: Study, table: dict[str, Any], folder: Path) -> tuple[dict[str, Any], str]:
-    """What is asked of one design, by column, and why it was refused ("" if it was not).
+    """Results of one design, by column, and the reason of its refusal ("" if there was none).
 
     Parameters
     ----------
@@ -173,7 +173,7 @@ def measured_whole(study: Study, table: dict[str, Any], folder: Path) -> tuple[d
     Raises
     ------
     InputError
-        The export's folder is not ours to write, which says nothing about the design.
+        The export's folder cannot be written, which is no fault of the design.
     """
     found: dict[str, Any] = {}
     try:

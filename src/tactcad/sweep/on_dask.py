@@ -46,7 +46,7 @@ ENVIRONMENT = {
     "MKL_NUM_THREADS": "1",
 }
 
-# Dask's own account of what this module says in a line.
+# Dask's own log messages, which this module replaces by a line.
 LOGS = ("distributed", "distributed.client", "tornado.application", "asyncio")
 QUIET = {"logging": dict.fromkeys(LOGS, "critical")}
 
@@ -72,7 +72,7 @@ class Done:
 
 
 class SweepOrder(Protocol):
-    """A task as it is handed to a worker."""
+    """A task for a worker."""
 
     def carry_out(self) -> Done:
         """Do it, unless the store has it: Dask runs tasks of a dead worker again, finished ones too."""
@@ -81,7 +81,7 @@ class SweepOrder(Protocol):
 @dataclass(frozen=True)
 class SweepTask:
     """Designs `start` to `stop` (exclusive) of a study, kept in `folder` or at the address `store`, made by
-    what `inputs` says."""
+    `inputs`."""
 
     study: Study
     inputs: Inputs
@@ -139,9 +139,9 @@ def cluster(
     workers
         Processes on this machine.
     loads
-        Modules that these start with; never the CAD kernel, which bears no fork.
+        Modules that these start with; never the CAD kernel, which cannot be forked.
     prepare
-        What is to be done here while they do.
+        Work to do here meanwhile.
     say
         Receives the dashboard's address.
     scratch
@@ -150,7 +150,7 @@ def cluster(
     Raises
     ------
     InputError
-        Where nobody answers.
+        If nobody answers.
     """
     import dask
 
@@ -187,8 +187,8 @@ def _environment(values: Mapping[str, str]) -> Iterator[None]:
 
 @contextmanager
 def _loaded_ahead(modules: list[str], scratch: Path) -> Iterator[None]:
-    """The process that workers are forked from: what it has loaded none of them loads again, and having no
-    threads it can be forked. It is asked by a socket in `scratch`."""
+    """The process from which workers are forked: they share its loaded modules, and without threads it can be
+    forked. It is reached by a socket in `scratch`."""
     config: dict[str, object] = vars(multiprocessing.current_process())["_config"]
     folder = os.open(scratch, os.O_RDONLY)  # by its number, as a socket's path has at most 107 bytes
     config["tempdir"] = f"/proc/self/fd/{folder}"
@@ -199,7 +199,7 @@ def _loaded_ahead(modules: list[str], scratch: Path) -> Iterator[None]:
     finally:
         server = vars(forkserver)["_forkserver"]
         os.kill(server._forkserver_pid, signal.SIGKILL)  # to end by itself takes it most of a second
-        server._stop()  # the next sweep starts its own, whose socket is there
+        server._stop()  # the next sweep starts its own, with its own socket
         config["tempdir"] = None
         os.close(folder)
 
@@ -260,9 +260,9 @@ def all_done(client: Client, orders: Iterable[SweepOrder]) -> Iterator[Done]:
     Raises
     ------
     InputError
-        Where a worker is of another version, or does not see the folder.
+        If a worker is of another version, or does not see the folder.
     CheckFailure
-        Where a task killed every worker it was given to, or the scheduler is gone.
+        If a task killed every worker it was given to, or the scheduler is gone.
     """
     from distributed import CancelledError, KilledWorker, as_completed
     from distributed.comm.core import CommClosedError

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     import pyarrow as pa
 
 PARQUET, CSV = "results.parquet", "results.csv"
-ROWS_A_GROUP = 1 << 16  # of Parquet: a row group is what a reader takes at once
+ROWS_A_GROUP = 1 << 16  # of Parquet: a reader takes a row group at once
 SELDOM = 16  # rows a value from which on a column repeats; chosen: with fewer, a dictionary saves little
 LOOKED_AT = 1 << 13  # first rows that tell; chosen: counting values takes longer than writing them
 MOST_REASONS = 1000  # that are counted; of more, the rest counts as one
@@ -25,7 +25,7 @@ MOST_REASONS = 1000  # that are counted; of more, the rest counts as one
 
 @dataclass
 class Tally:
-    """What a table holds: rows, those that are refused, and why, most frequent first; its files' SHA-256."""
+    """A table's summary: rows, refused ones with reasons, most frequent first; its files' SHA-256."""
 
     rows: int = 0
     refused: int = 0
@@ -44,7 +44,7 @@ class Tally:
 
 
 class _Digested(io.BufferedWriter):
-    """A file whose digest is known when it is written: reading it back takes as long again."""
+    """A file with its digest computed on writing: reading it back would take as long again."""
 
     def __init__(self, path: Path) -> None:
         super().__init__(io.FileIO(path, "wb"))
@@ -56,7 +56,7 @@ class _Digested(io.BufferedWriter):
 
 
 def write_tables(folder: Path, chunks: Iterable[pa.Table], with_csv: bool, varied: Iterable[str]) -> Tally:
-    """Write results.parquet, and results.csv where asked, each whole or not at all.
+    """Write results.parquet, and results.csv if asked, each whole or not at all.
 
     Parameters
     ----------
@@ -65,9 +65,9 @@ def write_tables(folder: Path, chunks: Iterable[pa.Table], with_csv: bool, varie
     chunks
         Tables of one schema, in the order of the designs.
     with_csv
-        Whether CSV is written too.
+        Whether CSV is also written.
     varied
-        Columns whose words are the user's: in CSV none of them is a formula.
+        Columns whose words are the user's: in CSV none is a formula.
 
     Raises
     ------
@@ -98,8 +98,8 @@ def write_tables(folder: Path, chunks: Iterable[pa.Table], with_csv: bool, varie
 
 
 def _without_formulas(table: pa.Table, names: Iterable[str]) -> pa.Table:
-    """For CSV: an apostrophe before each word that a spreadsheet would run, and another where one is there
-    already, so that the first can always be taken away again."""
+    """For CSV: an apostrophe before each word that a spreadsheet would run, or that begins with one, so that
+    the first can always be removed again."""
     import pyarrow.compute as pc
 
     for name in names:
@@ -110,9 +110,8 @@ def _without_formulas(table: pa.Table, names: Iterable[str]) -> pa.Table:
 
 
 def _encoded(first: pa.Table) -> dict[str, Any]:
-    """How Parquet keeps a study's columns. Drawn numbers neither repeat nor compress: to try takes as long
-    again as to write them. What repeats is kept as a dictionary and runs of places in it; designs' own
-    numbers as steps."""
+    """How Parquet keeps a study's columns. Drawn numbers neither repeat nor compress, and trying doubles the
+    time. Repeated values are kept as a dictionary and runs of places in it; designs' own numbers as steps."""
     import pyarrow as pa
     import pyarrow.compute as pc
 

@@ -1,4 +1,4 @@
-"""A study from its file to its table: what is not in the store is computed, then everything is joined."""
+"""A study from its file to its table: results missing in the store are computed, then all are joined."""
 
 from __future__ import annotations
 
@@ -67,13 +67,13 @@ def sweep(
     workers
         How many of those.
     with_csv
-        Whether CSV is written whatever the number of rows.
+        Whether CSV is written for any number of rows.
     say
         Receives lines worth keeping.
     tell
         Receives (done, total, text) as designs finish.
     store
-        An fsspec address that keeps what is finished; None for the folder.
+        An fsspec address that keeps finished results; None for the folder.
 
     Raises
     ------
@@ -113,8 +113,8 @@ def sweep(
 def _chunks(
     kept: StudyStore, tasks: list[tuple[int, int]], orders: list[SweepTask], done: Iterator[Done]
 ) -> Iterator[pa.Table]:
-    """Every task's rows in the order of the designs, each as soon as it is kept: so most of the table is
-    written while others compute."""
+    """Every task's rows in the order of the designs, each as soon as it is kept, so that most of the table is
+    written during the computation."""
     running = {order.start for order in orders}
     for start, stop in tasks:
         while start in running:
@@ -128,7 +128,7 @@ def _chunks(
 
 
 class _Work:
-    """What is computed of `wanted` designs of `count`, told as they finish, and how long its parts took."""
+    """Progress of `wanted` designs of `count`, and the times of its parts."""
 
     def __init__(self, count: int, wanted: int, tell: Callable[[int, int, str], None]) -> None:
         self.count, self.wanted, self.tell = count, wanted, tell

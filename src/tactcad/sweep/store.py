@@ -1,4 +1,4 @@
-"""The folder of a study: whose it is, what is finished in it, and the table at its end.
+"""The folder of a study: its mark, the finished results, and the final table.
 
 DIR/study.json names the study by digest; DIR/store, or another place, holds one entry for every task that is
 finished, each written in one step and verified when it is read (tactcad.export.cache, or `FarStore` at an
@@ -33,16 +33,16 @@ MOST_BYTES = 100_000
 
 
 class StudyStore:
-    """What is finished of a study: an entry a task.
+    """Finished results of a study: an entry a task.
 
     Parameters
     ----------
     study
         The study.
     folder
-        Where; absolute, so that a worker with another working folder finds it.
+        Its path; absolute, so that a worker with another working folder finds it.
     made_by
-        Digest of the rooms and libraries that results come from (`measured.made_by`).
+        Digest of the rooms and libraries behind the results (`measured.made_by`).
     store
         Address of the store if it is not in the folder.
     """
@@ -54,7 +54,7 @@ class StudyStore:
         self._store = FarStore(store) if store else Cache(folder / STORE, self._said.append)
 
     def get(self, start: int, stop: int) -> pa.Table | None:
-        """What is kept of these designs; None if they are not finished, or the entry is damaged."""
+        """Kept results of these designs; None if they are not finished, or the entry is damaged."""
         data = self._store.get(self._key(start, stop))
         table = from_bytes(data) if data is not None else None
         return None if table is None or self._lacks_files(start, table) else table
@@ -76,7 +76,7 @@ class StudyStore:
         return f"{self._prefix} {start} {stop}"
 
     def _lacks_files(self, start: int, table: pa.Table) -> bool:
-        """Whether an export that was finished is no longer there as it was."""
+        """Whether a finished export is missing or changed."""
         if EXPORT not in self.study.measure.what:
             return False
         wanted = table["manifest_sha256"][0].as_py()
@@ -91,12 +91,12 @@ def claimed(study: Study, out: str | Path) -> Path:
     Raises
     ------
     InputError
-        Where it holds another study, or anything else.
+        If it holds another study, or anything else.
     """
     folder = absolute(out)
     make_folder(folder)
     if not (folder / MARK).exists():
-        killed = f".{MARK}{OWN}"  # what a killed run's mark was written to
+        killed = f".{MARK}{OWN}"  # the temporary mark of a killed run
         if left := sorted(n for n in os.listdir(folder) if not n.startswith(killed)):
             what = f"holds files that are no study's, such as {left[0]}"
             raise InputError(str(out), what, legal="a new or empty folder, or one of this study")
@@ -114,8 +114,8 @@ def claimed(study: Study, out: str | Path) -> Path:
 
 
 def store_apart(address: str, folder: Path) -> str | None:
-    """The address of a store, from the root where it is a path; None if it is the folder's own. Raises
-    InputError if it is another place in the folder, another study's folder or store, or no address."""
+    """The address of a store, absolute if it is a path; None if it is the folder's own. Raises InputError if
+    it is another place in the folder, another study's folder or store, or no address."""
     files, root = files_at(address)
     if "file" not in files.protocol:
         return address
@@ -129,7 +129,7 @@ def store_apart(address: str, folder: Path) -> str | None:
 
 
 def mark_of(folder: Path) -> dict[str, Any]:
-    """What the folder says of its study. Raises InputError if it is no study's."""
+    """The folder's mark of its study. Raises InputError if it is no study's."""
     there = (folder / MARK).exists()
     found = read_json(folder / MARK, MOST_BYTES, "a study's mark") if there else None
     if not isinstance(found, dict) or found.get("schema") != SCHEMA:
@@ -148,10 +148,9 @@ class FarStore:
     Raises
     ------
     InputError
-        Where fsspec does not know such addresses, what it needs for them is not installed, or there can be no
-        store.
+        If fsspec does not know such addresses, a package for them is not installed, or there can be no store.
     CheckFailure
-        Later, where the place does not answer or refuses.
+        Later, if the place does not answer or refuses.
     """
 
     def __init__(self, address: str) -> None:

@@ -1,4 +1,4 @@
-"""What a study varies of which design, and what it measures: one frozen dataclass a table of a study file."""
+"""A study file: its design, varied fields and measures; one frozen dataclass a table."""
 
 from __future__ import annotations
 
@@ -83,7 +83,7 @@ class Varied:
 
 @dataclass(frozen=True)
 class Measures:
-    """[measure]: what is measured of every design."""
+    """[measure]: the results for every design."""
 
     what: tuple[str, ...] = given(
         SomeOf(
@@ -105,7 +105,7 @@ class Measures:
 
     @property
     def whole_designs(self) -> bool:
-        """Whether anything but closed forms is asked, for which a design is read whole and keeps its
+        """Whether more than closed forms is asked for, which needs designs read whole and keeping their
         rules."""
         return not set(self.what) <= {*CLOSED_FORMS, STRENGTH}
 
@@ -126,8 +126,8 @@ class Study:
 
     @cached_property
     def identity(self) -> str:
-        """Digest of what is asked: equal for equal tables, whatever their comments. The order of the varied
-        fields counts: in it they run, and are drawn."""
+        """Digest of the study: equal for equal tables with any comments. The order of the varied fields
+        counts: it is the order of running and drawing."""
         return digest([self.study, list(self.vary.items()), self.measure, self.base])
 
     @cached_property
@@ -272,7 +272,7 @@ def _refuse_contradiction(study: Study, path: str, one: Varied) -> None:
 
 
 def _refuse_overlap(study: Study, path: str) -> None:
-    """A list and a place in it: one of them would undo the other."""
+    """Refuse a list together with a place in it: one would overwrite the other."""
     if whole := next((other for other in study.vary if path.startswith(f"{other}[")), None):
         raise InputError("vary", f"{whole} and {path} vary the same value", legal="one of the two")
 
@@ -322,6 +322,6 @@ def _refuse_measures(study: Study) -> None:
 
 
 def _row_arms(study: Study) -> list[list[float]]:
-    """Arms of every array that the study takes, where the arrays themselves vary."""
+    """Arms of every array of the study, if the arrays themselves vary."""
     one = study.vary.get("array.row_arms")
     return [sum(map(list, rows), []) for rows in (one.values or ())] if one else []

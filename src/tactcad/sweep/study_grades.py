@@ -37,7 +37,7 @@ def with_allowance(study: Study, asked: Allowance, workers: int) -> tuple[Study,
     study
         As read.
     asked
-        P is the error of K, and of the yield's interval its half-width; where both are measured, of both.
+        P is the error of K, and of the yield's interval its half-width; if both are measured, of both.
     workers
         Processes that share the work.
 

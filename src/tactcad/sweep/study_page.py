@@ -248,7 +248,7 @@ def _pairs_section(
 
 
 def _name_words(axis: Axis, words: list[str] | None, rotation: float) -> None:
-    """Words instead of their places, where the axis is of words."""
+    """Words instead of their places, if the axis is of words."""
     if words:
         short = [w if len(w) <= MOST_LETTERS else w[:MOST_LETTERS] + "..." for w in words]
         axis.set_ticks(range(len(words)), short, rotation=rotation, fontsize=7)

@@ -518,7 +518,7 @@ def _ratio(got: Synthesis, ratio: float) -> tuple[float, float] | None:
 
 
 def _changes(got: Synthesis, arrays: int) -> Iterator[Task]:
-    """What of the target, changed alone by the least, would make it possible; each shown by a run."""
+    """The least change of each single field that would make the target possible; each shown by a run."""
 
     def change(name: str) -> LeastChange | None:
         near = got.found

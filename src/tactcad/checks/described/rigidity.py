@@ -1,4 +1,4 @@
-"""Whether every part of the array and its rigs that is taken as rigid bends as little as it may.
+"""Whether every part of the array and its rigs that is taken as rigid keeps its allowed deflection.
 
 Rigs' rules (parts/rules/stiffness_remedy.py) use the same lines and leave the scene out that fails here; so
 flags remain.

@@ -57,8 +57,8 @@ class _Cut:
 def check_wirecut(part: Part, shop: Shop) -> list[Finding]:
     """Findings of every rule for a wire-cut part; an empty list if there is nothing to say.
 
-    Rules on widths are tried only where the contours are simple: elsewhere widths have no meaning.
-    Raises TypeError if the part is not an extrusion.
+    Rules on widths are tried only on simple contours: otherwise widths have no meaning. Raises TypeError if
+    the part is not an extrusion.
     """
     outer, openings = section(part)
     cut = _Cut(
@@ -141,7 +141,7 @@ def slots(cut: _Cut) -> Iterator[Finding]:
 
 
 def walls(cut: _Cut) -> Iterator[Finding]:
-    """Free-standing walls are thick enough; a hinge is flagged with what its quotation must say."""
+    """Free-standing walls are thick enough; a hinge is flagged with the note for its quotation."""
     limits, source = cut.shop.limits, cut.shop.source
     field = "wall_aluminium" if family(cut.part.material.density) == "aluminium" else "wall"
     limit = getattr(limits, field)

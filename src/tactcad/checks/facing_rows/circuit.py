@@ -1,8 +1,8 @@
-"""Whether the circuit reads what it is to read: every gauge in one bridge, the rules on what reads it,
-signals in range that tell the force which the design wishes for.
+"""Whether the circuit works: every gauge in one bridge, the read-out's rules kept, signals in range, and the
+asked force resolved.
 
-The rules (parts/rules/readout_rules.py) refuse a design that fails here; the netlist is looked at as it is
-written.
+The rules (parts/rules/readout_rules.py) refuse a design that fails here; this check reads the written
+netlist.
 """
 
 from __future__ import annotations
@@ -164,8 +164,8 @@ def _channels(circuit: Netlist, joined: dict[str, str]) -> set[frozenset[str]]:
 
 
 def _gauges_of_bridge(arms: Arms, pairs: set[frozenset[str]], supply: str, foot: str) -> list[str]:
-    """Gauges among the four arms between the bridges' supply and a switch; none if there are other than
-    four, their middles carry others too, or are no channel's pair."""
+    """Gauges among the four arms between the bridges' supply and a switch; none if there are not four, their
+    middles have other connections, or are no channel's pair."""
     upper, lower = arms.get(supply, {}), arms.get(foot, {})
     middles = [net for net in lower if net in upper]
     around = [c for net in middles for c in (*upper[net], *lower[net])]
@@ -199,8 +199,8 @@ def check_signals(design: Design) -> Iterator[Finding]:
 def _beyond_converter(
     found: DigitalReadout, signals: Sequence[ElementSignal], said: str
 ) -> Iterator[Finding]:
-    """Where a bridge, out of balance by all its tolerances and under overload, is more than the converter's
-    input takes at its gain."""
+    """A bridge's output, out of balance by all its tolerances and under overload, if it exceeds the
+    converter's input range at its gain."""
     most = found.excitation / found.gain
     for signal, reach in zip(signals, found.largest):
         if reach > most:

@@ -1,7 +1,7 @@
-"""Whether the gauges themselves bear what their foil is strained by; and whose figures nobody read.
+"""Whether the gauges bear their foil's strain; and parts with unverified figures.
 
-A limit that nobody read in a maker's sheet decides nothing without a word: what stands on it is flagged, and
-the parts are named.
+A limit that nobody read in a maker's sheet never decides silently: results that depend on it are flagged,
+with the parts.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from tactcad.parts.array.layout import Layout
 from tactcad.parts.bought.electronic_parts import parts_used
 from tactcad.parts.language.finding import Finding
 
-# What stands on the figures of each kind of part.
+# Results that depend on the figures of each kind of part.
 STAND_ON = {
     "amplifier": "range, common mode, settling, noise, drift",
     "multiplexer": "supplies, settling, noise",
@@ -33,7 +33,7 @@ def check_gauges(design: Design) -> Iterator[Finding]:
     foil = FOILS[design.gauge.foil]
     try:
         signals = element_signals(Layout(design))
-    except CheckFailure:  # out of the estimator's range, as the check of signals says
+    except CheckFailure:  # out of the estimator's range: reported by the check of signals
         signals = []
     unread = "" if foil.verified else "; the limit is unread"
     tried = f"makers try them for {foil.cycles:.0e} cycles at"

@@ -3,11 +3,11 @@ and pressed arms stay clear of their own body, the stop plate and the opposite r
 
 Clearance is exact on the contours, no kernel. A pressed arm is turned rigidly about the hinge's centre: to
 its stop's gap and tolerance at the tip, or by the deflection at the end of the calibration's travel, if
-there is no stop plate. The rules on pressed arms (`parts/rules/pressed_rules.py`) say in closed form which
+there is no stop plate. The rules on pressed arms (`parts/rules/pressed_rules.py`) give in closed form which
 corner meets which wall first. This check tests every piece of the contour, and so covers shapes of arm,
-fillet or land to which those formulas do not apply. Of thousands of designs that keep the rules none has had
-a finding here. The space beside an arm, and the room of gauges and leads, are covered by the rules alone: no
-contour describes them.
+fillet or land outside those formulas. Of thousands of designs that keep the rules none has had a finding
+here. The space at an arm's sides, and the room of gauges and leads, are covered by the rules only: no contour
+describes them.
 """
 
 from __future__ import annotations

@@ -1,10 +1,9 @@
 """Whether placed parts overlap, and whether those that meet are meant to.
 
-Pairs whose boxes are apart are skipped. Of the rest only distinct situations reach the kernel. Two parts that
-stand to each other as another pair of the same parts does have the same verdict. If everything of part A near
-part B stays the same while B moves along one of A's axes (a rod, a plate's edge, a bar), all these places
-have one verdict too: that is read from the descriptions. A long array needs as few verdicts of the kernel as
-a short one.
+Pairs whose boxes are apart are skipped. Of the rest only distinct situations reach the kernel. Pairs of the
+same parts in the same relative position have the same verdict. If all of part A near part B stays the same
+while B moves along one of A's axes (a rod, a plate's edge, a bar), all these places also have one verdict, by
+the descriptions. A long array needs as few verdicts of the kernel as a short one.
 """
 
 from __future__ import annotations
@@ -53,8 +52,8 @@ VOLUME_AGREES = 1e-6
 
 @dataclass(frozen=True)
 class Meeting:
-    """How two placed parts stand to each other: overlap in mm3, distance in mm, a point of it (mm, in the
-    frame of the part `anchor`: 0 the first, 1 the second)."""
+    """Relation of two placed parts: overlap in mm3, distance in mm, a point of it (mm, in the frame of the
+    part `anchor`: 0 the first, 1 the second)."""
 
     overlap: float
     distance: float
@@ -125,10 +124,9 @@ def relative(first: Placement, second: Placement) -> tuple[float, ...]:
 def _situation(
     first: Placement, second: Placement, local: Mapping[str, list], changing: Mapping[str, tuple | None]
 ) -> tuple[tuple, int]:
-    """A key that two pairs share only where they have the same verdict, and the part (0, 1) that it is seen
-    from.
+    """A key that two pairs share only if they have the same verdict, and the part (0, 1) whose frame it uses.
 
-    Where one part looks the same along an axis around the other one, the place along that axis is left out.
+    If one part is uniform along an axis around the other one, the place along that axis is left out.
     """
     numbers = (first.part.part_no, second.part.part_no)
     for anchor, (slider, other) in enumerate(((second, first), (first, second))):
@@ -153,8 +151,8 @@ def meeting(
 ) -> Meeting:
     """The kernel's verdict on a pair of placed parts.
 
-    Surfaces that touch do so in faces that reach the other part's box: only these are measured. One part can
-    contain the other without touching it only where its box contains the other's.
+    Touching surfaces are faces that reach the other part's box: only these are measured. One part can contain
+    the other without touching it only if its box contains the other's.
 
     Parameters
     ----------
@@ -273,7 +271,7 @@ def _along(contours: Iterable[Contour], axis: int) -> list[tuple[float, float]]:
 
 
 def feature_box(feature: Feature) -> tuple[np.ndarray, np.ndarray]:
-    """Least and largest corner (mm) of a box around what a feature takes off."""
+    """Least and largest corner (mm) of a box around a feature's removed material."""
     at, axis = np.array(feature.at, float), np.array(feature.axis, float)
     if isinstance(feature, Hole):
         depth = feature.depth + (drill_point_height(feature.diameter) if feature.drill_point else 0.0)
@@ -306,8 +304,7 @@ def _merged(intervals: Sequence[tuple[float, float]]) -> Zones:
 
 
 def stretch(along: Zones, low: float, high: float) -> int | None:
-    """Which stretch between zones holds low to high with NEAR_MM around it (mm); None if a zone is
-    near."""
+    """Stretch between zones that holds low to high with a margin of NEAR_MM (mm); None if a zone is near."""
     n = bisect_left(along, (low - NEAR_MM, -np.inf))
     before = along[n - 1][1] < low - NEAR_MM if n else True
     after = along[n][0] > high + NEAR_MM if n < len(along) else True

@@ -100,7 +100,7 @@ def _moving_pairs(scene: Scene, motion: Motion) -> Iterator[_Meeting]:
 
 
 def _span(a: np.ndarray, b: np.ndarray, pair: _Meeting) -> tuple[float, float] | None:
-    """The stretch of the way, within 0 to 1, in which the boxes meet; None if they never do."""
+    """The part of the way, within 0 to 1, in which the boxes meet; None if they never do."""
     low, high = 0.0, 1.0
     for axis in range(3):
         gap0 = a[0, axis] - b[1, axis] - TOUCH_MM  # they meet while gap0 <= offset <= gap1
@@ -118,7 +118,7 @@ def _span(a: np.ndarray, b: np.ndarray, pair: _Meeting) -> tuple[float, float] |
 def _meets(
     pair: _Meeting, span: tuple[float, float], full: Shapes, envelope: Shapes
 ) -> tuple[float, str] | None:
-    """Where on the way the pair meets without being meant to; None if it is shown not to meet."""
+    """Place on the way of an unintended meeting of the pair; None if it is shown not to meet."""
     t, end = span
     for _ in range(MOST_STEPS):
         free = _distance(pair, t, envelope)

@@ -78,7 +78,7 @@ def check_brep(part: Part, shape: TopoDS_Shape) -> list[Finding]:
 
 
 def check_step(part: Part, shape: TopoDS_Shape) -> list[Finding]:
-    """The same findings on the part's STEP file, and where its solid is not the shape that was written."""
+    """The same findings on the part's STEP file, and one if its solid is not the shape that was written."""
     try:
         return check_step_file(part, shape, write_step(shape))
     except ValueError as error:
@@ -135,8 +135,8 @@ def _size(sub: TopoDS_Shape, kind: TopAbs_ShapeEnum) -> tuple[float, tuple[float
 def meets_itself(shape: TopoDS_Shape) -> bool:
     """Whether faces or edges of a valid solid pass through each other.
 
-    A prism does not where the edges of its plane area keep clear of each other: that is told in the plane, in
-    a hundredth of the kernel's time for a foil of thousands of edges. All else the kernel decides.
+    A prism does not if the edges of its plane area keep clear of each other, which a plane test shows in a
+    hundredth of the kernel's time for a foil of thousands of edges. The kernel decides all other cases.
     """
     edges = prism_edges(shape)
     if edges and keep_clear(edges, CLEAR_MM + 2.0 * ShapeAnalysis_ShapeTolerance().Tolerance(shape, 1)):
@@ -152,7 +152,7 @@ def meets_itself(shape: TopoDS_Shape) -> bool:
 
 def check_mesh(part: Part, shape: TopoDS_Shape, meshing: Meshing = USUAL) -> list[Finding]:
     """Findings on the mesh of the part's shape: every edge used twice, windings alike, volume and area in
-    bounds, the volume within what is promised where anything is."""
+    bounds, the volume within its promised error, if any."""
     with making("mesh", part.part_no):
         vertices, faces = triangles(shape, CHORD_MM, meshing.angular)
     mesh = trimesh.Trimesh(vertices, faces, process=False)

@@ -1,9 +1,9 @@
-"""Whether the assembly's steps can be carried out: every move is made with the solids, past all that
-stands there by then, every step finds what it needs, and contacts set what it says they set.
+"""Whether the assembly's steps can be carried out: every move is made with the solids past all parts then
+present, every step has its needs, and contacts fix the freedoms that it states.
 
 A pair is tried on meshes at PLACES or more of each leg, no further apart than a third of both parts'
-lengths along it: what is cut by more than FILM is in the way. What a screw or a pin shares with its hole at
-its place it may share on the way.
+lengths along it: an overlap of more than FILM is in the way. The overlap of a screw or pin with its hole at
+its final place is allowed on the way.
 """
 
 from __future__ import annotations
@@ -28,15 +28,15 @@ from tactcad.stacks.mechanic import TAKEN_AS_SET
 
 from ..check import Check
 
-PLACES = 9  # on a leg, at least, from where the boxes of a pair meet to where they part; chosen
+PLACES = 9  # on a leg, at least, from the first to the last contact of a pair's boxes; chosen
 FILM = 0.05  # mm3: what chords of two curved faces, 0.002 mm off, may share over a pin's length
 CHORD, TURN = 0.02, 0.1  # mm, rad: of the meshes
-AROUND = 0.1  # mm around what a body passes on a leg: no more of a large part is cut again and again
-REACH = 0.03  # mm that a body is shifted to find what it meets
+AROUND = 0.1  # mm around a body's path on a leg: only this much of a large part is cut each time
+REACH = 0.03  # mm that a body is shifted to find its contacts
 SLIP = 0.1  # mm, in a hole that slips over a pin: 0.075 is the play to one side that rules leave a dowel
-PATCH = 1e-3  # mm3 that it must then share: 0.03 mm2 of contact
-# Two fingertips that hold a pin: each so thick and so wide (mm), over so much of its end. Chosen: half of an
-# adult's fingertip of 16 to 20 mm, which gives way.
+PATCH = 1e-3  # mm3 of overlap that shows a contact: 0.03 mm2
+# Two fingertips that hold a pin: thickness and width of each, and length of the pin's end that they cover
+# (mm). Chosen: half of an adult's fingertip of 16 to 20 mm, which is soft.
 THICK, WIDE, GRIP = 10.0, 12.0, 4.0
 WAYS = {f: f"along {f}" if len(f) == 1 else f"to turn about {f[1]}" for f in FREEDOMS}
 
@@ -95,7 +95,7 @@ class Trial:
         yield from self._taken()
 
     def _unset(self, step: Step, body: Sequence[str], held: Held) -> Iterator[Finding]:
-        """Freedoms that a step says are set, and its contacts do not."""
+        """Freedoms that a step states as fixed, but its contacts do not fix."""
         levers = self._levers(body, held.by)
         for freedom in held.freedoms:
             if levers[FREEDOMS.index(freedom)] < LEVER:
@@ -106,7 +106,7 @@ class Trial:
                 yield Finding("freedom", "fail", body[0], (), 0.0, LEVER, message)
 
     def _taken(self) -> Iterator[Finding]:
-        """Freedoms that virtual arrays take as set, and no step says so."""
+        """Freedoms that virtual arrays take as fixed, but no step states."""
         taken = TAKEN_AS_SET.get(self.scene.name, {})
         said = [
             (n, f) for s in self.scene.steps for h in s.held for b in h.bodies for n in b for f in h.freedoms
@@ -135,8 +135,8 @@ class Trial:
         return 1.0 / np.sqrt(np.diag(np.linalg.inv(stiffness)))
 
     def _patches(self, p: Placement, q: Placement) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarray]]:
-        """Where a part cannot be shifted for another one, by direction: triangles' corners on both faces,
-        normals and areas."""
+        """Faces that keep a part from shifting against another one, by direction: triangles' corners on both
+        faces, normals and areas."""
         a, b = self._box(p), self._box(q)
         pair = p.designator, q.designator
         slips = frozenset(pair) not in self.kind and any(n in self.goes_into for n in pair)
@@ -225,7 +225,7 @@ class Trial:
         boxes = [np.reshape(m.bounding_box(), (2, 3)) for m in (moving, standing)]
         allowed = FILM
         screw = next((a.part for a in (p, q) if a.part.thread and a.part.kind), None)
-        if kind == "thread" and screw:  # as deep as what it goes through
+        if kind == "thread" and screw:  # as deep as the part it goes through
             m = METRIC[screw.thread]
             host = boxes[1] if screw is p.part else boxes[0]
             through = float((host[1] - host[0]) @ np.abs(end - start)) / float(np.linalg.norm(end - start))
@@ -252,8 +252,8 @@ class Trial:
         return worst if worst[0] > 0.0 else None
 
     def _held(self, step: Step, moment: Moment) -> Iterator[Finding]:
-        """Fingertips find room, from one side or the other, at the end by which a part is pulled out of its
-        hole, or is left in it."""
+        """Fingertips have room, from one side or the other, at the end by which a part is pulled out of its
+        hole or left in place."""
         (name,) = moment.move.designators
         at, pulled = moment.move.start, np.array(moment.move.path[0]) - moment.move.start
         box = self._box(self.placed[name]) + at

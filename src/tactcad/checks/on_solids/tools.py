@@ -1,7 +1,7 @@
 """Whether a key or a socket reaches every screw and nut when the assembly's steps put them in.
 
 A tool is a cylinder out of the screw's socket, or over the nut, as long as a hand needs. Obstacles are the
-parts that stand when the screw goes in, each where it is at that time (scenes/moves.py).
+parts present when the screw goes in, each at its place at that time (scenes/moves.py).
 """
 
 from __future__ import annotations
@@ -79,7 +79,7 @@ def _reached(
 
 
 def _screwed(nut: Placement, other: Placement) -> bool:
-    """Whether the other part is the rod that stands in the nut."""
+    """Whether the other part is the rod in the nut."""
     beside = (np.array(other.origin) - np.array(nut.origin)) @ np.array(nut.rotation)[:, :2]
     return not _socket(nut.part) and bool(np.linalg.norm(beside) < OFF)
 
@@ -91,7 +91,7 @@ def _cylinder(part: Part) -> tuple[Faces, list[list[float]]]:
 
 
 def _tool(p: Placement) -> Placement | None:
-    """The tool at the fastener, pointing away from it; None for what no tool turns."""
+    """The tool at the fastener, pointing away from it; None for parts that no tool turns."""
     socket = _socket(p.part)
     if socket is not None:
         return _placed(p, _round("key", _corners(socket.contour)), socket.at[2] - OFF, -1.0)

@@ -1,9 +1,8 @@
-"""Exploded views by calculation: how placed parts come off each other, read off a scene's contacts and the
-parts' boxes, without a kernel; and how far each piece of a sub-assembly moves so that all stand clear.
+"""Exploded views by calculation: the directions in which placed parts come off each other, from a scene's
+contacts and the parts' boxes, without a kernel; and each piece's shift so that all are clear.
 
-A screw leaves its thread along its own axis, on the side of its head; so does any turned part that stands in
-a hole. Other parts leave normal to the faces at which they meet, or else the shortest way out of each other's
-boxes.
+A screw leaves its thread along its own axis, on the side of its head; so does any turned part in a hole.
+Other parts leave normal to their common faces, or else by the shortest way out of each other's boxes.
 
 Along each axis the pieces' shifts u solve a linear program. A joint demands u[upper] - u[lower] >= length of
 the way out + gap; across its axis its pieces should stay together. The objective is the sum of the joints'
@@ -147,7 +146,7 @@ def _solved(
 def _overlapping(
     pieces: Sequence[Piece], boxes: Mapping[str, Extent], shifts: np.ndarray
 ) -> list[tuple[Placement, Placement]]:
-    """One pair of parts for every two pieces whose boxes overlap where they stand, the earlier part first."""
+    """One pair of parts for every two pieces whose boxes overlap, the earlier part first."""
     overlaps = []
     for i, k in combinations(range(len(pieces)), 2):
         for a, b in product(pieces[i].placements, pieces[k].placements):
@@ -164,9 +163,9 @@ def _sorted_out(
 ) -> tuple[Placement, Placement, int]:
     """Which of two parts is the lower one, and along which axis.
 
-    As a joint of their pieces says; else as they are assembled, where one lies beyond the other along an axis
-    along which either comes off (sideways it would leave behind what holds a piece); else the later one
-    leaves along its own axis, the way that it came off.
+    By a joint of their pieces; else as assembled, if one lies beyond the other along an axis on which either
+    comes off (sideways it would leave its holding part behind); else the later one leaves along its own axis,
+    as it came off.
     """
     ends = owner[a.designator], owner[b.designator]
     for j in joints:
@@ -200,7 +199,7 @@ class Joint:
 
 
 def joints_of(placements: Sequence[Placement], contacts: Sequence[Contact]) -> list[Joint]:
-    """A joint for each contact. Parts of one number that meet, such as weights on each other, have none."""
+    """A joint for each contact. Touching parts of one number, such as stacked weights, have none."""
     at = {p.designator: p for p in placements}
     boxes = {name: box_of(p) for name, p in at.items()}
     leaving = {  # screws: axis and sign along which each leaves its thread

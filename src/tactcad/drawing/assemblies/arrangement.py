@@ -98,7 +98,7 @@ def arrangement(
         placed = [placed_shape(shapes[p.part.part_no], p.origin, p.rotation) for p in some]
         (bx, by), (px, py) = boxes[name][:2], places[name]
         items += edges(drawing(placed, view).sharp, f, (px - f * bx, py - f * by))
-    # on three sides that face nothing: texts of short dimensions stand beside them
+    # on the three free sides: texts of short dimensions are next to them
     dimensioned: dict[str, tuple[Side, ...]] = (
         {"front": ("left",), "plan": ("bottom", "right")}
         if face
@@ -159,7 +159,7 @@ def _largest(
 def _with_notes(paper: Paper, lines: Sequence[str], block: TitleBlock) -> tuple[list[Item], Box]:
     """The notes, and the area that they leave for the views.
 
-    On a landscape sheet they stand over the title block, on a portrait one over its whole width.
+    On a landscape sheet they are over the title block, on a portrait one over its whole width.
     """
     x0, y0, x1, y1 = paper.area
     lying = paper.width > paper.height
@@ -228,7 +228,7 @@ def _torques(design: CommonTables, scene: Scene, kind: Kind) -> str:
 
 
 def _sensing_face(array: Scene, view: Box, f: float) -> list[Item]:
-    """What is written on the array's view from below, whose lower left corner lies at (0, 0) at the scale f:
+    """Annotations of the array's view from below, with its lower left corner at (0, 0), at the scale f:
     element numbers, axes, pitch and gap between the rows.
 
     `view` is the view's box, mm.

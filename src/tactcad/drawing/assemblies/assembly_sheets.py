@@ -105,8 +105,8 @@ def assembly_written(order: AssemblyOrder) -> Written:
 
 
 def assembly_faults(pdf: bytes, number: str, revision: str, rows: Sequence[BomRow]) -> list[str]:
-    """What is wrong with an assembly's PDF: pages without number, revision or sheet count; items that have a
-    solid and not just one balloon; rows of the bill that are not in the parts list as the bill has them."""
+    """Faults of an assembly's PDF: pages without number, revision or sheet count; solid items without exactly
+    one balloon; rows of the bill that differ in the parts list."""
     pages = pdf_runs(pdf)
     wrong = []
     for n, runs in enumerate(pages, start=1):

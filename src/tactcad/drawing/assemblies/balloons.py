@@ -1,4 +1,4 @@
-"""Item numbers: in balloons around a view (ISO 6433:2012), where each stands and where its leader ends; and
+"""Item numbers: in balloons around a view (ISO 6433:2012), with the places of balloon and leader's end; and
 in the parts list (ISO 7573), whose rows are the scene's bill of materials.
 
 Each balloon takes a place of a square grid, outside the parts' outlines and clear of every line. Places and
@@ -43,7 +43,7 @@ LINE = 1.75  # from line to line, of the text's height
 
 @dataclass(frozen=True)
 class Balloon:
-    """An item number or a view's letter; the middle of its circle, and where its leader ends, mm of paper."""
+    """An item number or a view's letter; the middle of its circle, and its leader's end, mm of paper."""
 
     item: int | str
     centre: Point
@@ -102,7 +102,7 @@ def _places(lines: Sequence[Sequence[Point]], area: Box) -> list[Point]:
     framed = np.pad(drawn, 1)
     regions, _ = ndimage.label(~framed)
     outside = (regions == regions[0, 0])[1:-1, 1:-1]
-    # distance to what is drawn or lies inside an outline
+    # distance to lines and to the inside of outlines
     room = ndimage.distance_transform_edt(outside) * CELL
     places = []
     for x in np.arange(x0 + RADIUS + 1.0, x1 - RADIUS - 1.0 + 1e-9, PITCH):
@@ -149,7 +149,7 @@ def _without_faults(
 
 
 def faults(balloons: Sequence[Balloon]) -> list[tuple[int, int]]:
-    """Pairs (by index) of balloons whose leaders meet, or one's that comes near the other's circle."""
+    """Pairs (by index) of balloons whose leaders meet, or of a leader near the other's circle."""
     return [
         (i, k)
         for (i, a), (k, b) in combinations(enumerate(balloons), 2)
@@ -205,7 +205,7 @@ def laid(rows: Sequence[BomRow], size: float) -> Laid:
     cells = []
     for row in rows:
         quantity = f"{row.qty:g}" if row.unit == "pcs" else f"{row.qty:g} {row.unit}"
-        bought = row.standard_designation or row.mpn or row.material  # what it is ordered by
+        bought = row.standard_designation or row.mpn or row.material  # order designation
         material = row.material if row.make_buy == "make" else bought
         texts = (str(row.item), quantity, row.part_no, row.description, material)
         cells.append(tuple(tuple(_broken(t, size, w - 2 * PAD)) for t, w in zip(texts, WIDTHS)))

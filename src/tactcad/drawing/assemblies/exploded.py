@@ -44,7 +44,7 @@ Label = int | str  # item number, or letter of a sub-assembly's own view
 
 @dataclass(frozen=True)
 class Exploded:
-    """Visible lines (mm, picture plane) of everything drawn, and of what is labelled, by label."""
+    """Visible lines (mm, picture plane) of everything drawn, and of the labelled parts, by label."""
 
     own: dict[Label, list[Polyline]]
     lines: tuple[Polyline, ...]
@@ -62,7 +62,7 @@ class Exploded:
 def seen_of_pieces(
     pieces: Sequence[Piece], shapes: Mapping[str, TopoDS_Shape], eye: Viewpoint
 ) -> list[list[Polyline]]:
-    """Visible lines of each piece (mm, picture plane) as the pieces stand."""
+    """Visible lines of each piece (mm, picture plane) at its place."""
     from tactcad.solids.occt import placed_shape
 
     from ..engine.picture import compound, seen_of_each
@@ -75,14 +75,14 @@ def seen_of_pieces(
 
 
 def lengths_alone(pieces: Sequence[Piece], shapes: Mapping[str, TopoDS_Shape], eye: Viewpoint) -> list[float]:
-    """Length (mm) of each piece's visible lines where nothing stands before it."""
+    """Length (mm) of each piece's visible lines with nothing in front of it."""
     unlike = {alike(piece): piece for piece in reversed(pieces)}
     known = {key: total_length(seen_of_pieces([piece], shapes, eye)[0]) for key, piece in unlike.items()}
     return [known[alike(piece)] for piece in pieces]
 
 
 def alike(piece: Piece) -> tuple:
-    """A key that is equal for pieces that look the same from one eye, wherever they stand."""
+    """A key that is equal for pieces that look the same from one eye at any place."""
     first = piece.placements[0]
     return first.part.part_no, first.rotation, len(piece.placements), piece.letter
 
@@ -112,11 +112,11 @@ def total_length(lines: Iterable[Polyline]) -> float:
 def exploded_page(
     view: Exploded, heading: Sequence[str], list_: balloons.Laid | None, small: bool = False
 ) -> tuple[Page, bool] | None:
-    """The view at the largest scale at which its balloons find places, and whether the parts list stands
-    beside it.
+    """The view at the largest scale at which its balloons find places, and whether the parts list is next to
+    it.
 
-    The list stands beside the view where that does not reduce the scale; likewise the paper is A4 where that
-    is allowed (`small`). None if the balloons find no place.
+    The list is next to the view if that does not reduce the scale; likewise the paper is A4 if allowed
+    (`small`). None if the balloons find no place.
     """
     bx0, by0, bx1, by1 = view.box
     choices: list[tuple[Paper, balloons.Laid | None]] = [(A3, list_)] if list_ else []
@@ -156,7 +156,7 @@ def _heading(lines: Sequence[str], area: Box) -> tuple[list[Item], Box]:
 
 
 def room(paper: Paper, with_list: bool) -> Box:
-    """Where an exploded view may stand: left of the list, else left of or over the title block."""
+    """Room for an exploded view: left of the list, else left of or over the title block."""
     x0, y0, x1, y1 = paper.area
     beside, over = (x0, y0, x1 - WIDTH, y1), (x0, y0 + HEIGHT, x1, y1)
     sizes = [(b[2] - b[0]) * (b[3] - b[1]) for b in (beside, over)]
@@ -165,8 +165,8 @@ def room(paper: Paper, with_list: bool) -> Box:
 
 @dataclass(frozen=True)
 class UnitView:
-    """A view's letter and title, the scene whose contacts tell how its pieces meet, and the pieces; no pieces
-    where the whole scene is drawn as its steps explode it.
+    """A view's letter and title, the scene whose contacts join its pieces, and the pieces; no pieces if the
+    whole scene is exploded by its steps.
     """
 
     letter: str
@@ -176,8 +176,8 @@ class UnitView:
 
 
 def unit_views(scene: Scene) -> list[UnitView]:
-    """The whole, with each sub-assembly assembled in it; then each sub-assembly by itself, followed by the
-    ready scenes that stand in it.
+    """The whole, with each sub-assembly assembled in it; then each sub-assembly by itself, followed by its
+    ready scenes.
 
     None if the scene has fewer than two sub-assemblies.
     """

@@ -51,8 +51,8 @@ from .exploded import (
 if TYPE_CHECKING:
     from OCP.TopoDS import TopoDS_Shape
 
-GAP = 0.06  # least distance in an exploded view, of the largest extent of what it takes apart
-GAP_OF_UNITS = 0.2  # and where all of its pieces are sub-assemblies
+GAP = 0.06  # least distance in an exploded view, as a share of the exploded assembly's largest extent
+GAP_OF_UNITS = 0.2  # and if all of its pieces are sub-assemblies
 SEEN = 0.5  # a part counts as seen where this share of its edges is
 WELL = 0.8  # leaders go to parts that are seen nearly as well as the best-seen equal part
 FARTHER = (2.0, 4.0, 8.0, 16.0)  # times that distance, for parts that are not seen
@@ -69,11 +69,10 @@ def numbered_pages(
     list_: balloons.Laid | None,
     block: TitleBlock,
 ) -> tuple[list[Page], bool]:
-    """Views in which every item that has a solid is numbered once, and whether the parts list stands beside
-    one.
+    """Views in which every item that has a solid is numbered once, and whether the parts list is next to one.
 
     A scene of several sub-assemblies is taken apart one by one; others in one view. Items that these do not
-    show follow in further views, and where an exploded view would be too large or too crowded the parts stand
+    show follow in further views; if an exploded view would be too large or too crowded, the parts are drawn
     side by side.
     """
     from ..engine.picture import ABOVE
@@ -84,7 +83,7 @@ def numbered_pages(
     listed = False
 
     def add(view: Exploded, title: str, further: Sequence[str], letters: Sequence[str], small: bool) -> bool:
-        """A page for the view, where it finds room: it numbers what none before it does."""
+        """A page for the view, if it finds room: it numbers the items not numbered before."""
         nonlocal listed
         fresh = view.labelled(lambda label: label in letters or label not in where)
         before = [f"{n} (see {where[n]})" for n in view.own if isinstance(n, int) and n in where]
@@ -123,7 +122,7 @@ def numbered_pages(
 
 
 def _taken_apart(unit: UnitView, item: Mapping[str, int], shapes: Mapping[str, TopoDS_Shape]) -> Exploded:
-    """The unit exploded; parts that are hardly seen are pulled out farther, where that shows more of them."""
+    """The unit exploded; hardly visible parts are pulled out farther if that shows more of them."""
     from ..engine.picture import ABOVE
 
     if not unit.pieces:
@@ -215,8 +214,8 @@ class Shown:
 
 
 def side_by_side(own: Mapping[int, Sequence[Polyline]], area: Box) -> list[list[Shown]] | None:
-    """The parts by number, no larger on the paper than fits one page, or on as many as they need; None if
-    a part is too large for the smallest scale."""
+    """The parts by number, at a scale that fits one page, or on as many as they need; None if a part is too
+    large for the smallest scale."""
     best = None
     for size in LARGEST_SIDES:
         scales = {}

@@ -1,4 +1,4 @@
-"""What stands around a board's circuits: supplies, digital lines, clamps."""
+"""The periphery of a board's circuits: supplies, digital lines, clamps."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ SUPPLIES = (POSITIVE, NEGATIVE, LOGIC)
 
 
 def around_page(circuit: Netlist) -> Page:
-    """The page of what stands around a board's circuits: supplies, digital lines, clamps."""
+    """The page of the periphery: supplies, digital lines, clamps."""
     gauge = next(circuit.of_kind("gauge"))
     own = [c for c in circuit.components if c.board == gauge.board and not c.element and c.fitted]
     pins = [p for c in own if c.kind in ("amplifier", "multiplexer") for p in c.pins]

@@ -1,4 +1,4 @@
-"""One channel in full, of boards whose bridges an amplifier reads."""
+"""One channel in full, for boards with an amplifier."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""One channel in full, and a row for each, of boards whose bridges a converter reads."""
+"""One channel in full, and a row for each, for boards with a converter."""
 
 from __future__ import annotations
 
@@ -111,7 +111,7 @@ def converter_channels(circuit: Netlist, leads: Sequence[Lead]) -> Iterator[tupl
 
 
 def converter_notes(layout: Layout, converter: Converter, letters: str) -> list[str]:
-    """What the first page says beside the symbols; `letters` of the designators."""
+    """The first page's notes; `letters` of the designators."""
     d, found, count = layout.design, digital_readout(layout, converter.name), len(boards(layout))
     selected = "CS1" if count == 1 else f"CS1 to CS{count}"
     return [

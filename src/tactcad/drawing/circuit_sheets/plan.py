@@ -27,7 +27,7 @@ Place = Callable[[float, float], Point]  # mm of the array to mm of the paper
 LEAD = LineType("lead", 0.35)
 SCALES = (5.0, 2.0, 1.0, 0.5, 0.2, 0.1, 0.05, 0.02, 0.01)  # ISO 5455
 ONWARDS = 16.0  # mm of paper that a bundle is drawn beyond its tie
-MARKS = 12.0  # mm of paper above the array for what is marked there
+MARKS = 12.0  # mm of paper above the array for its marks
 
 
 def plan_page(layout: Layout, says: list[str]) -> Page:

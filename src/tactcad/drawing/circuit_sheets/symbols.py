@@ -149,6 +149,6 @@ def stub(start: Point, text: str) -> list[Item]:
 
 
 def dashed(x: float, y: float, w: float, h: float, name: str) -> list[Item]:
-    """What stands together: on the array, on a board."""
+    """Frame around parts that belong together: on the array, on a board."""
     around = LineType("around", THIN.width, (3.0, 1.5))
     return [rectangle(x, y, w, h, around, "symbol"), Text((x + 2.0, y + 2.0), name)]

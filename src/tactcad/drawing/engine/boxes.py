@@ -94,7 +94,7 @@ def _separates(normal: Point, a: Sequence[Point], b: Sequence[Point]) -> bool:
 
 
 def clipped(chord: Chord, window: Box) -> Chord | None:
-    """What of a straight piece lies in a box (Liang and Barsky); None if nothing does."""
+    """The part of a straight piece in a box (Liang and Barsky); None if there is none."""
     (ax, ay), (bx, by) = chord
     dx, dy = bx - ax, by - ay
     t0, t1 = 0.0, 1.0

@@ -31,7 +31,7 @@ def projected_box(placements: Iterable[Placement], right: Vector, eye: Vector) -
     up = (up[0] / size, up[1] / size, up[2] / size)
     axes = np.array([right, up])
     points: dict[str, NDArray[np.float64]] = {}
-    spans: dict[tuple, Box] = {}  # equal parts turned alike differ by their place alone
+    spans: dict[tuple, Box] = {}  # equal parts with equal rotation differ by their place only
     corners = []
     for p in placements:
         key = (p.part.part_no, p.rotation)

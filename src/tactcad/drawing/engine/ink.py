@@ -131,7 +131,7 @@ def ink_box(text: str, height: float) -> Box:
 
 @dataclass(frozen=True)
 class Stroke:
-    """A line through points; closed where the last one joins the first."""
+    """A line through points; closed if the last one joins the first."""
 
     points: tuple[Point, ...]
     line: LineType = VISIBLE
@@ -240,7 +240,7 @@ class Hatch:
     @cached_property
     def _lines(self) -> tuple[Chord, ...]:
         step = self.spacing * sqrt(2.0)
-        met: dict[int, list[float]] = {}  # x + y where the outlines meet line k
+        met: dict[int, list[float]] = {}  # x + y at the outlines' intersections with line k
         for (ax, ay), (bx, by) in self.outlines():
             a, b = (ay - ax) / step, (by - bx) / step
             for k in range(ceil(min(a, b)), ceil(max(a, b))):

@@ -1,5 +1,5 @@
-"""Pages made finished sheets, and the layout check: what a draughtsman would reject,
-measured on the finished sheet.
+"""Pages made finished sheets, and the layout check: faults that a draughtsman would reject, measured on the
+finished sheet.
 
 It does not know how the sheet was composed: it sees primitives only.
 """
@@ -26,7 +26,7 @@ BESIDE_LINE = 0.25
 
 @dataclass(frozen=True)
 class _Straight:
-    """A straight piece of an item: half its line's width, what it is for, and which item it belongs to."""
+    """A straight piece of an item: half its line's width, its purpose, and its item."""
 
     ends: Chord
     half: float
@@ -35,7 +35,7 @@ class _Straight:
 
 
 def sheets_of(block: TitleBlock, pages: Sequence[Page], draft: bool, named: str = "") -> list[DrawnSheet]:
-    """The pages in frame and title block, called `named` or after their document types; a `draft` says so.
+    """The pages in frame and title block, called `named` or after their document types; a `draft` is marked.
 
     Raises CheckFailure if a layout is not clean.
     """

@@ -1,7 +1,7 @@
-"""What every sheet has beside its drawing: paper after ISO 5457:1999 (sizes, frame, centring marks, zones; A4
-upright, all others lying by default) and the preferred scales of ISO 5455:1979; the title block after ISO
-7200:2004, 180 mm wide, in the lower right corner; numbered notes; and the pages of assembly and circuit
-drawings before they have frame and title block.
+"""The common parts of all sheets: paper after ISO 5457:1999 (sizes, frame, centring marks, zones; A4 upright,
+all others lying by default) and the preferred scales of ISO 5455:1979; the title block after ISO 7200:2004,
+180 mm wide, in the lower right corner; numbered notes; and the pages of assembly and circuit drawings before
+they have frame and title block.
 """
 
 from __future__ import annotations
@@ -99,7 +99,7 @@ def frame(paper: Paper) -> list[Item]:
 
 
 def _zones(low: float, high: float, middle: float) -> list[tuple[float, float]]:
-    """Fields of ZONE length either way from the middle; what is left over joins the outermost."""
+    """Fields of ZONE length either way from the middle; the remainder joins the outermost."""
     # ISO 5457 counts them on the whole sheet: 8 x 6 on A3, 24 x 16 on A0. It has no turned sheets: there the
     # filing margin counts, so that no outermost field is much shorter than the others.
     turned = low == LEFT and 2 * middle == A4.height
@@ -127,8 +127,8 @@ def largest_fitting(width: float, height: float, room: tuple[float, float]) -> S
 WIDTH, HEIGHT = 180.0, 62.0  # ISO 7200: 180 wide, so that it fits A4
 LABEL = 1.8  # height of the cells' headings, ISO 3098 series
 TOLERANCING = "tolerancing ISO 8015"  # each limit by itself
-# Of what states no limit of its own: sizes as ISO 2768-1:1989-m has them, surfaces in a zone about what its
-# two middle ranges leave them; chosen: what is milled and wire-cut without care holds it.
+# General tolerances: sizes by ISO 2768-1:1989-m, surfaces in a zone of about its two middle ranges; chosen:
+# ordinary milling and wire-cutting keep it.
 GENERAL_TOLERANCES = (
     "ISO 22081; sizes to 6 ±0.1, to 30 ±0.2,",
     "to 120 ±0.3, to 400 ±0.5, above ±0.8;",
@@ -161,11 +161,11 @@ class TitleBlock:
     material: str = ""
     mass: float | None = None
     finish: str = ""
-    dimensioned: bool = True  # no general tolerance and no projection stands on a sheet without a dimension
+    dimensioned: bool = True  # a sheet without a dimension states no general tolerance and no projection
 
 
 def block_of(identity: Identity, number: str, title: str, draft: bool, sample: bool = False) -> TitleBlock:
-    """The entries that the title blocks of all sheets of a design share; what it does not state is blank."""
+    """The entries common to the title blocks of a design's sheets; blank if not stated."""
     return TitleBlock(
         legal_owner=identity.organisation or "",
         number=number,
@@ -282,7 +282,7 @@ def notes(at: Point, lines: Sequence[str], room: float, height: float = 2.5) -> 
 
 @dataclass(frozen=True)
 class Page:
-    """What a page has inside its frame, its scale as text, and what it is."""
+    """A page's items, its scale as text, and its kind."""
 
     paper: Paper
     scale: str
@@ -296,7 +296,7 @@ def edges(lines: Sequence[Polyline], f: float, shift: tuple[float, float]) -> li
 
 
 def fewer(placements: Sequence[Placement]) -> tuple[Placement, ...]:
-    """All of them, or where they are too many the first few of every part."""
+    """All of them, or the first few of every part if there are too many."""
     most = len(placements)
     while True:
         count: dict[str, int] = {}

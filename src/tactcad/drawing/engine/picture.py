@@ -50,7 +50,7 @@ EXACT_UP_TO = 300
 MESH_LINEAR, MESH_ANGULAR = 0.05, 0.35
 SAME_EXTENT = 0.05  # mm between the picture's extent and the one projected from the descriptions
 Lines = tuple[list[Polyline], list[Polyline]]  # sharp, smooth
-PER_WINDOW = 300  # shapes whose middle lies in one strip
+PER_WINDOW = 300  # shapes with their middle in one strip
 OFF_GRID = 5e-4  # mm: points are given to a micrometre, borders lie half-way between
 
 
@@ -134,7 +134,7 @@ def projector(eye: Vector, right: Vector) -> HLRAlgo_Projector:
 
 
 def exact(shapes: Sequence[TopoDS_Shape], projector: HLRAlgo_Projector) -> HLRBRep_HLRToShape:
-    """Exact hidden-line removal of placed shapes, whose lines are told apart by shape.
+    """Exact hidden-line removal of placed shapes, with the lines by shape.
 
     112 of them take 3.7 s, as one compound 1.0 s.
     """
@@ -196,10 +196,10 @@ def svg(drawn: Drawing, title: str, description: str, marked: Drawing | None = N
 
 
 def check_picture(data: bytes, placements: Sequence[Placement], view: Viewpoint) -> None:
-    """Hold a written picture against the descriptions of what it shows.
+    """Compare a written picture with the descriptions of its parts.
 
-    Raises CheckFailure if it does not span what the descriptions project to (within 0.05 mm); where models
-    from files stand among them it spans the others at least, and all boxes at most.
+    Raises CheckFailure if its span differs from the descriptions' projection (by more than 0.05 mm); with
+    models from files among them it must span at least the others, and at most all boxes.
     """
     text = data.decode()
     points = [(float(x), float(y)) for x, y in re.findall(r"[ML](-?[\d.]+),(-?[\d.]+)", text)]
@@ -291,7 +291,7 @@ def between_borders(line: Polyline, axis: int, left: float, right: float) -> Ite
 
 
 def _within(a: Point, b: Point, axis: int, left: float, right: float) -> Chord | None:
-    """Both ends of what lies between the borders of the segment from a to b, None if nothing does."""
+    """Both ends of the part of segment a to b between the borders, None if there is none."""
     p, q = a[axis], b[axis]
     if max(p, q) < left or min(p, q) > right:
         return None

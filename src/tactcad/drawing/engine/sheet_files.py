@@ -1,5 +1,5 @@
-"""Sheets as files, at the paper's size: one vector PDF, the same bytes in every process, with texts that
-readers find again; and SVG, whose texts are held to the width that they have in the PDF.
+"""Sheets as files, at the paper's size: one vector PDF, the same bytes in every process, with searchable
+texts; and SVG, with texts of the same width as in the PDF.
 """
 
 from __future__ import annotations

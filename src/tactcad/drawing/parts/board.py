@@ -1,4 +1,4 @@
-"""A sheet while it is composed: the items on it, and the search for free places for texts and leaders."""
+"""A sheet in composition: its items, and the search for free places for texts and leaders."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ from .sheet_plan import ENVELOPE, Callout, Datum
 from .tolerances import FRAME, block, datum, frame_width
 
 STEP = 1.7 * LETTERS  # between lines of a callout
-SHELF = 3.0  # of the leader beside the text
+SHELF = 3.0  # of the leader at the text
 BELOW_LINE = 1.5  # from the last line's baseline to a frame
 # Lengths of leaders tried, mm.
 REACHES = (7.0, 9.0, 11.0, 14.0, 17.0, 20.0, 24.0, 28.0, 33.0, 38.0, 44.0, 50.0, 58.0, 66.0, 75.0, 85.0, 95.0)
@@ -49,12 +49,12 @@ AT_END = 12.0  # cost of a leader at the very end of an arc
 NEAR, PARALLEL = 0.7, 0.03  # mm between such lines, and the sine of the angle between them
 FORBIDDEN = 80.0  # of the costs above: lines that a datum's stem never crosses
 AROUND_LETTER = 3.2  # mm kept free from the middle of a datum's letter, each way
-RING, RINGED, RING_GAP = 1.75, 1.8, 0.9  # radius around a letter, its height, and white beside the ring, mm
+RING, RINGED, RING_GAP = 1.75, 1.8, 0.9  # radius around a letter, its height, and white around the ring, mm
 AROUND = 0.9  # white kept around a callout's texts beyond what the check asks, mm
 
 
 class Board:
-    """Items on paper, areas that nothing may enter, and the search for free places."""
+    """Items on paper, forbidden areas, and the search for free places."""
 
     def __init__(self, area: Box) -> None:
         self.area = area
@@ -84,7 +84,7 @@ class Board:
         self._bounds.append(bounds(quad))
 
     def _near(self, box: Box) -> list[Quad]:
-        """Of the texts and framed letters, those whose bounds meet the box."""
+        """Texts and framed letters whose bounds meet the box."""
         b = np.array(self._bounds).reshape(-1, 4)
         x0, y0, x1, y1 = box
         return [
@@ -160,7 +160,7 @@ class Board:
         return [*lines, arrow(tip, elbow, ARROW, "leader"), *texts, *extras], cost
 
     def free(self, quads: Sequence[Quad]) -> bool:
-        """Whether texts may stand there: inside the area, outside every view, over nothing."""
+        """Whether texts fit there: inside the area, outside every view, over nothing."""
         x0, y0, x1, y1 = box = bounds([p for quad in quads for p in quad])
         ax0, ay0, ax1, ay1 = self.area
         if x0 < ax0 + 2 or y0 < ay0 + 2 or x1 > ax1 - 2 or y1 > ay1 - 2:
@@ -168,7 +168,7 @@ class Board:
         return not any(overlap(box, kept) for kept in self.kept) and not self.hit(quads, box)
 
     def passed(self, leg: Chord) -> float | None:
-        """Cost of what a line crosses; None if it would run through a text."""
+        """Cost of a line's crossings; None if it would run through a text."""
         through = any(chord_meets(leg, quad) for quad in self._near(bounds(leg)))
         return None if through else self._crossings(leg)
 
@@ -219,7 +219,7 @@ class Board:
 
 
 def _ways(c: Callout, n: int, scale: float, origin: Point) -> list[tuple[Point, float, float]]:
-    """Where a leader may end on the n-th target, its directions there (degrees), and what they cost."""
+    """Possible ends of a leader on the n-th target, its directions there (degrees), and their costs."""
     (x, y), radius = c.targets[n]
     centre = (origin[0] + x * scale, origin[1] + y * scale)
     if not c.spans:
@@ -238,7 +238,7 @@ def _ways(c: Callout, n: int, scale: float, origin: Point) -> list[tuple[Point, 
 
 
 def _block(c: Callout, start: Point, towards: float) -> tuple[list[Text], list[Item]]:
-    """Texts beside the shelf's end, the first line level with it; below them tolerance frames and a datum's
+    """Texts at the shelf's end, the first line level with it; below them tolerance frames and a datum's
     symbol, level with it if there is no text."""
     x, y = start
     wide = max([FRAME, *map(_line_width, c.lines), *map(frame_width, c.frames)])

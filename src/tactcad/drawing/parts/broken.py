@@ -20,15 +20,15 @@ from .measures import Owner, Round, contours, widest
 from .sheet_plan import Breaks, SheetPlan, View
 
 LEAST_LEFT_OUT = 1 / 3  # of a part's length: less is not worth a broken view
-MARGIN = 1 / 2  # of the part's width, shown beside every feature, so that each is seen in its surroundings
+MARGIN = 1 / 2  # share of the part's width shown on either side of every feature
 LEAST_MARGIN = 1 / 100  # of its length, for narrow parts
 GAP = 1 / 40  # between two break lines, of the length that is shown: 2 to 5 mm of paper
 FAR = 1e9  # mm: beyond any part
 
 
 def breaks_of(part: Part, holes: Sequence[Round], regular: Collection[Owner]) -> Breaks | None:
-    """What views of an extruded part leave out along the longer side of its outline; None if too little
-    could be. Holes that are `regular` need not be shown, because they repeat what is shown."""
+    """Breaks in views of an extruded part along the longer side of its outline; None if they would leave out
+    too little. Holes that are `regular` need not be shown, because they repeat others."""
     box = part.extrusion.outer.box
     sides = (box[2] - box[0], box[3] - box[1])
     axis = 0 if sides[0] > sides[1] else 1
@@ -49,7 +49,7 @@ def breaks_of(part: Part, holes: Sequence[Round], regular: Collection[Owner]) ->
 def _features(
     part: Part, holes: Sequence[Round], regular: Collection[Owner], axis: int
 ) -> list[tuple[float, float]]:
-    """From where to where along an axis there is more than edges parallel to it."""
+    """Ranges along an axis with more than edges parallel to it."""
     extents = []
     for owner, contour in contours(part):
         if contour.as_circle() and any(hole.owner == owner for hole in holes):
@@ -84,7 +84,7 @@ def broken(
 
 
 class _Squeezed:
-    """One view, shortened by what is left out."""
+    """One view, shortened by the breaks."""
 
     def __init__(self, whole: View, breaks: Breaks) -> None:
         self.whole, self.breaks = whole, breaks
@@ -138,7 +138,7 @@ class _Squeezed:
         return self.moved(chord[0]), self.moved(chord[1])
 
     def _bands(self) -> list[Box]:
-        """What is shown of the view's plane."""
+        """The shown parts of the view's plane."""
         if self.k is None:
             return [(-FAR, -FAR, FAR, FAR)]
         ends = [self.sign * end for gap in self.breaks.left_out for end in gap]
@@ -193,7 +193,7 @@ def _zigzag(at: float, k: int, low: float, high: float, z: float, w: float, past
 
 
 def _cut_off(loop: Sequence[Point], band: Box) -> tuple[Point, ...]:
-    """What of a closed polygon lies in a box (Sutherland and Hodgman); empty if nothing does."""
+    """The part of a closed polygon in a box (Sutherland and Hodgman); empty if there is none."""
     points = list(loop)
     for k, limit, way in ((0, band[0], 1), (0, band[2], -1), (1, band[1], 1), (1, band[3], -1)):
         kept: list[Point] = []
@@ -210,7 +210,7 @@ def _cut_off(loop: Sequence[Point], band: Box) -> tuple[Point, ...]:
 
 
 def windowed(curves: Sequence[Stroke | DrawnArc], window: Box) -> list[Curve]:
-    """What of the curves lies in the window, with break lines where it cuts through the material."""
+    """The part of the curves in the window, with break lines where it cuts through the material."""
     x0, y0, x1, y1 = window
     shown: list[Curve] = []
     ends: list[Point] = []  # of cut edges

@@ -1,4 +1,4 @@
-"""Dimensions of a plan: callouts, each with where its leader may point (equal holes together, pockets and
+"""Dimensions of a plan: callouts, each with its leader's possible targets (equal holes together, pockets and
 grooves, radii, and a disc's outside); and linear ones.
 
 Running dimensions go from one origin to edges, holes, corners and centres, each determining something new;
@@ -45,7 +45,7 @@ from .sketch import ALIKE, Coordinate, Sketch, edge_level
 from .tolerances import frames_of, letter_of, places
 
 LEAST_ROW = 6  # equal holes in a line that count as a regular row
-# What a hole's variables are called in characteristics.
+# Names of a hole's variables in characteristics.
 WORDS = {Quantity.DIAMETER: "diameter"}
 EVEN = 5e-6  # mm: steps of a row are equal within this; places are given to a nanometre
 HEIGHTS = {"axle": "axles over the underside"}
@@ -54,7 +54,7 @@ SIDES: tuple[Side, Side] = ("bottom", "left")  # of distances along x and along 
 
 @dataclass(frozen=True)
 class Group:
-    """Equal holes, the lines of their callout, and the dimensions that stand in the lines."""
+    """Equal holes, the lines of their callout, and the dimensions in the lines."""
 
     holes: tuple[Round, ...]
     lines: tuple[str, ...]
@@ -118,7 +118,7 @@ def _group(
         return Dimension(f"{label} {WORDS.get(what, what)}", rows, sign, counted=counted)
 
     fit = remark = words = ""
-    try:  # limits: the model is made at the middle of them
+    try:  # limits: the model is made at their middle
         upper, _, lower = h.tolerance.partition("/")
         limits = (float(upper), float(lower))
         modelled = round(sum(limits) / 2, 9)
@@ -128,7 +128,7 @@ def _group(
     if fit:
         # it belongs to the nominal size; the model is made within its field, hundredths of a millimetre away
         modelled = round(h.diameter - round(h.diameter, 1), 9)
-    # the count of a thread stands before the thread, or before the counterbore that it is entered by
+    # the count of a thread is before the thread, or before its counterbore
     bore = dimension(Quantity.DIAMETER, "⌀", counted=not h.thread)
     bore = replace(bore, limits=limits, modelled=modelled, fit=fit)
     if c := own.get(bore.name):  # it is modelled between its limits
@@ -206,13 +206,13 @@ def hole_callout(sketch: Sketch, view: View, g: Group) -> Callout:
 
 
 def _to_outside(view: View, p: Point) -> float:
-    """From a point of the view to the nearest side of its box, mm; leaders are shortest where it is small."""
+    """From a point of the view to the nearest side of its box, mm; leaders are shortest if it is small."""
     u0, v0, u1, v1 = view.box
     return round(min(p[0] - u0, u1 - p[0], p[1] - v0, v1 - p[1]), 6)
 
 
 def pocket_callouts(sketch: Sketch, view: View, part: Part) -> list[Callout]:
-    """Depth of every pocket, with the diameters of what is round, at its edge."""
+    """Depth of every pocket, with diameters of round ones, at its edge."""
     callouts = []
     for k, f in enumerate(part.features):
         if not isinstance(f, Pocket):
@@ -253,7 +253,7 @@ def pocket_callouts(sketch: Sketch, view: View, part: Part) -> list[Callout]:
 def _regular(sketch: Sketch, part: Part, k: int, contour: Contour) -> Dimension | None:
     """Width across flats of a regular polygon in the middle of the outline; None for any other contour.
 
-    What is drawn as regular counts as such: equal angles, equal distances from the outline's middle.
+    A polygon drawn as regular counts as such: equal angles, equal distances from the outline's middle.
     """
     sides = [i for i, s in enumerate(contour) if isinstance(s, Line)]
     if len(sides) < 6 or len(sides) % 2:
@@ -331,13 +331,13 @@ def running_along(sketch: Sketch, view: View, side: Side, k: int, points: Sequen
         return Running(side, ())
     features = [c for c in points if not c.corner]
     edges = [c for c in features if c.contour == OUTER]
-    # the first datum, where one of the points is at it
+    # the first datum, if one of the points is at it
     data = [variable for d in sketch.part.datums for _, variable in places(sketch.part, (d.feature,))]
     first = next((c for variable in data for c in points if c.variable == variable and not c.corner), None)
     origin = first or min(edges or features, key=lambda c: _right_or_up(view, k) * c.at[k])
     sketch.known[k].append(origin)
     way = _way(sketch, view, k)
-    # the outline first: what is centred on it follows from it
+    # the outline first: centred features follow from it
     features.sort(key=lambda c: (c not in edges, round(way * c.at[k], 6), str(c.variable)))
     start = _foot(view, side, origin)
     return _with_stops(Running(side, ((None, start),)), sketch, view, k, way, features)
@@ -379,7 +379,7 @@ def depth_running(sketch: Sketch, view: View, part: Part, side: Side, called: Se
     holes = sorted((r for g in called for r in g.holes), key=lambda r: (way * r.at[2], str(r.owner)))
     heights = [(r, HEIGHTS.get(r.label, "")) for r in holes]
     points = [Coordinate(f"{r.label} z", r.owner.place(2), r.at, states=states) for r, states in heights]
-    # the origin may be the upper edge of the view: the numbers still count from it
+    # the origin may be the upper edge of the view: the numbers still count from there
     bare = Running(side, ((None, seen(view, origin.at)),))
     return _with_stops(bare, sketch, view, 2, way, [*points, *faces.values()])
 
@@ -419,14 +419,14 @@ def _with_stops(
 
 
 def _foot(view: View, side: Side, c: Coordinate) -> Point:
-    """Where the extension line starts: at the feature's end that is nearer to the side."""
+    """Start of the extension line: the feature's end nearer to the side."""
     (u, v), ends = OUTWARDS[side], [seen(view, p) for p in (c.at, c.other) if p]
     return max(ends, key=lambda p: p[0] * u + p[1] * v)
 
 
 @dataclass(frozen=True)
 class EdgeStand:
-    """Where a dimension stands on an outline's edge: its level along an axis, and a point of it, mm."""
+    """A dimension's reference on an outline's edge: its level along an axis, and a point of the edge, mm."""
 
     level: Level
     value: float
@@ -450,7 +450,7 @@ def edge_spans(sketch: Sketch, view: View, part: Part) -> list[Linear]:
 
 
 def _stands(part: Part, name: str, k: int) -> Iterator[EdgeStand]:
-    """Where edges of that name stand along axis k: lines square to it; of a full round its summit."""
+    """Levels of the edges of that name along axis k: lines square to it; of a full round its summit."""
     for i, s in enumerate(part.extrusion.outer):
         if s.name != name:
             continue

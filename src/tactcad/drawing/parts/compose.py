@@ -48,12 +48,12 @@ from .sheet_plan import OUTWARDS, Callout, SheetPlan, View, seen
 
 MARGIN = 4.0  # distance of anything from the frame
 APART = 12.0  # between views, their dimensions included
-NARROWEST = 100.0  # column of notes beside the title block
+NARROWEST = 100.0  # column of notes next to the title block
 LABEL = 3.5  # height of views' letters
-PLANE = 3.0  # more between a view and its dimensions where a cutting plane ends
-DATUM = 3.0  # and where a datum's symbol stands between them
+PLANE = 3.0  # more between a view and its dimensions at the end of a cutting plane
+DATUM = 3.0  # and at a datum's symbol between them
 LARGEST = 200.0  # mm of paper, on A4 and A3: a view is not enlarged beyond
-# Shares of the room that details may take, tried in turn.
+# Shares of the room for details, tried one after another.
 SHRUNK = (1.0, 0.6, 0.35)
 
 
@@ -84,7 +84,7 @@ def compose(
     """The sheet of a plan at the largest preferred scale, and on the first paper, with a clean layout.
 
     `curves` are each view's by its name, mm of the part; the title block's scale is filled in; papers and
-    scales are tried in turn. Raises NoPlace where no scale fits, or none leaves a clean layout.
+    scales are tried one after another. Raises NoPlace if no scale fits, or none gives a clean layout.
     """
     x0, y0, x1, y1 = plan.views[0].box
     wide, high = x1 - x0, y1 - y0
@@ -124,7 +124,7 @@ def _attempt(
     board.add(title_block(paper, replace(block, scale=shown(scale))))
     x0, y0, x1, y1 = paper.area
     board.kept.append((x1 - WIDTH, y0, x1, y0 + HEIGHT))
-    # notes stand left of the title block, or above it
+    # notes are left of the title block, or above it
     room = (x1 - x0 - WIDTH if beside else WIDTH) - 2 * MARGIN
     left = x0 if beside else x1 - WIDTH
     items, height = notes((0, 0), plan.notes, room)
@@ -134,7 +134,7 @@ def _attempt(
     spread = {"top" if v.section.axis == 0 else "right": PLANE for v in plan.views if v.section}
     drawn = []
     for n, v in enumerate(plan.views):
-        # running dimensions stand further off where a datum's symbol has to fit between them and its edge
+        # running dimensions are further off if a datum's symbol has to fit between them and its edge
         edges = {d.away for d in v.datums}
         off = {} if n else dict(spread)
         off |= {r.side: off.get(r.side, 0.0) + DATUM for r in v.runnings if OUTWARDS[r.side] in edges}
@@ -168,7 +168,7 @@ def _attempt(
     lettered: dict[str, bool] = {}
     edged = [(edge, factor(d.scale), places[d.view.name]) for d in drawn for edge in d.view.datums]
     for edge, f, place in edged:
-        # a letter that several views offer stands on the first of them that has room
+        # a letter offered by several views is on the first with room
         if not lettered.get(edge.letter):
             lettered[edge.letter] = board.datum(edge, f, place)
     for edge, f, place in edged:
@@ -195,7 +195,7 @@ def _attempt(
 def _drawn(
     view: View, curves: Sequence[Curve], scale: Scale, values: Values, spread: Mapping[str, float]
 ) -> _Drawn:
-    """The view at its scale; dimensions on a side stand `spread` mm further off."""
+    """The view at its scale; dimensions on a side are `spread` mm further off."""
     f = factor(scale)
     if view.window:
         curves = windowed([c for c in curves if not isinstance(c, Hatch)], view.window)
@@ -238,7 +238,7 @@ def _detail_scale(view: View, window: Box, shrunk: float) -> Scale:
 
 
 def _arranged(drawn: Sequence[_Drawn], board: Board, views: int) -> dict[str, Point] | None:
-    """First-angle places: the first view, `right` beside it, `below` and `above` it; or None."""
+    """First-angle places: the first view, with others to its `right`, `below` and `above`; or None."""
     boxes = {d.view.name: d.box for d in drawn}
     front = drawn[0].view.name
     shifts: dict[str, Point] = {front: (0.0, 0.0)}
@@ -269,7 +269,7 @@ def _arranged(drawn: Sequence[_Drawn], board: Board, views: int) -> dict[str, Po
 
 
 def _view_box(d: _Drawn) -> Box:
-    """The part's own outline in a view, on which no callout may stand."""
+    """The part's own outline in a view, kept free of callouts."""
     return grown(scaled(d.view.window or d.view.box, factor(d.scale)), 1.0)
 
 
@@ -290,7 +290,7 @@ def _free_spot(board: Board, wanted: Box) -> Point | None:
 
 
 def _mark_window(board: Board, window: Box, label: str) -> bool:
-    """A thin frame around what a detail shows (mm of paper), and its letter beside it."""
+    """A thin frame around a detail's area (mm of paper), and its letter."""
     x0, y0, x1, y1 = window
     board.add([rectangle(x0, y0, x1 - x0, y1 - y0, THIN, "symbol")])
     w = width(label, LABEL)

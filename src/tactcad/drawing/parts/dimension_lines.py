@@ -33,10 +33,10 @@ ARROW = 2.5  # length of an arrow head: 10 line widths
 GAP = 1.0  # between a feature and its extension line
 OVERSHOOT = 2.0  # of the extension line beyond the dimension line: 8 line widths
 FIRST, PITCH, PITCH_BOXED = 10.0, 8.0, 10.0  # dimension lines from the outline and from each other
-TAIL = 6.0  # of a dimension line whose arrows point inwards
+TAIL = 6.0  # of a dimension line with arrows pointing inwards
 BEYOND = 12.0  # from the part to the text of a dimension across a web
 ABOVE = 1.0  # from the dimension line to the text
-CLEAR_OF_ARROW = 0.65  # from the dimension line to a text's ink: half an arrow head, and white beside a line
+CLEAR_OF_ARROW = 0.65  # from the dimension line to a text's ink: half an arrow head, and white along a line
 PAD = 1.1  # around the text of a key characteristic
 BASIC = 0.8  # around that of a theoretically exact dimension
 LABELS = 4.4  # least distance of running dimensions' texts, without their frames
@@ -102,8 +102,7 @@ def stacked(
         text, key, basic = d.text(values), d.key, d.basic
         length = width(text, LETTERS) + (width(f"K{key}", LETTERS) + 4 * PAD if key else 0.0)
         length += 2 * BASIC if basic else 0.0
-        # extension lines that pass this dimension on their way out: its own, and those of what stands outside
-        # it
+        # extension lines that pass this dimension on their way out: its own, and those of outer dimensions
         feet = [s for spot in spots[n:] for s in spot[1:3]]
         sides = (box[1], box[3]) if upright else (box[0], box[2])
         number, (t0, inside) = _first_free(tracks, a, b, _text_places(a, b, length, feet, sides), length)
@@ -136,7 +135,7 @@ def stacked(
 
 @dataclass(frozen=True)
 class _Track:
-    """A line on which dimensions stand beside each other, and what of it is taken."""
+    """A line of dimensions next to each other, and its occupied parts."""
 
     offset: float
     taken: list[tuple[float, float]]
@@ -151,8 +150,8 @@ def _interval(a: float, b: float, t0: float, length: float, inside: bool) -> tup
 def _first_free(
     tracks: list[_Track], a: float, b: float, choices: list[tuple[float, bool]], length: float
 ) -> tuple[int, tuple[float, bool]]:
-    """The innermost track where a place for the text is free; a new one if none is."""
-    # a dimension stands outside every one that it spans
+    """The innermost track with a free place for the text; a new one if there is none."""
+    # a dimension is outside every one that it spans
     least = max(
         (n + 1 for n, t in enumerate(tracks) if any(a - 0.5 < (lo + hi) / 2 < b + 0.5 for lo, hi in t.taken)),
         default=0,
@@ -168,8 +167,8 @@ def _first_free(
 def _text_places(
     a: float, b: float, length: float, feet: Sequence[float], ends: tuple[float, float]
 ) -> list[tuple[float, bool]]:
-    """Where the text may start, and whether the arrows stand inside; the best first: between the extension
-    lines, then beside them within the `ends` of the view, where no other side's dimensions stand, then
+    """Possible starts of the text, and whether the arrows are inside; the best first: between the extension
+    lines, then outside them within the `ends` of the view, where no other side's dimensions are, then
     anywhere."""
     room = b - a
     inside = room >= 2 * ARROW + 1.5
@@ -208,7 +207,7 @@ def running(r: Running, box: Box, scale: float, values: Values, o: float = FIRST
         if abs(s - origin) < 1e-9:
             items.append(DrawnArc(on_line, 1.0, line=THIN, role="symbol"))
         elif abs(s - (inner := stops[n - 1 if s > origin else n + 1][0])) < ARROW + 1.2:
-            # a dot where the neighbour leaves no room for an arrow
+            # a dot if the neighbour leaves no room for an arrow
             items.append(Fill(tuple(polar(on_line, 0.6, a) for a in range(0, 360, 30))))
         else:
             items.append(arrow(on_line, on_paper(inner, o), ARROW))
@@ -241,7 +240,7 @@ def _spread(wanted: Sequence[float], least: float) -> list[float]:
 
 
 def across(a: Across, scale: float, values: Values) -> list[Item]:
-    """A dimension line through a web: arrows point at it from both sides, the text stands beyond q."""
+    """A dimension line through a web: arrows point at it from both sides, the text is beyond q."""
     p, q = ((x * scale, y * scale) for x, y in (a.p, a.q))
     size = ((q[0] - p[0]) ** 2 + (q[1] - p[1]) ** 2) ** 0.5
     ux, uy = (q[0] - p[0]) / size, (q[1] - p[1]) / size
@@ -257,7 +256,7 @@ def across(a: Across, scale: float, values: Values) -> list[Item]:
 
 
 def centre_lines(centre: Point, diameter: float, scale: float) -> list[Item]:
-    """A cross that stands out of its circle by 2 mm; continuous where too small for dashes."""
+    """A cross that extends 2 mm beyond its circle; continuous if too small for dashes."""
     x, y = centre[0] * scale, centre[1] * scale
     r = diameter / 2 * scale + min(2.0, 0.8 + diameter * scale / 4)
     line = CENTRE if r > 5.0 else THIN

@@ -46,7 +46,7 @@ ARM_ROOM = (190.0, 75.0)
 
 @dataclass(frozen=True)
 class OutlineCorner:
-    """A sharp corner of the outline: its levels, and where it is."""
+    """A sharp corner of the outline: its levels and place."""
 
     x: Level
     y: Level
@@ -54,7 +54,7 @@ class OutlineCorner:
 
 
 class Outline:
-    """The outline's segments by name, and the levels that they stand on."""
+    """The outline's segments by name, and their levels."""
 
     def __init__(self, contour: Contour) -> None:
         self.contour = contour
@@ -95,8 +95,8 @@ def _line(sketch: Sketch, name: str, a: Level, b: Level, side: Side, p: Point, q
 
 
 def element_plan(part: Part, notes: Sequence[str], tall: bool = False) -> SheetPlan:
-    """The sheet of an element; of a `tall` one the hinge alone is enlarged, and the heights beside it stand
-    with the arm.
+    """The sheet of an element; of a `tall` one only the hinge is enlarged, and the heights at its sides are
+    shown with the arm.
 
     Raises CheckFailure if a dimension is missing or given twice.
     """
@@ -170,7 +170,7 @@ def _slot(o: Outline) -> tuple[OutlineCorner, OutlineCorner]:
 def _hinge_view(
     sketch: Sketch, part: Part, o: Outline, tall: bool
 ) -> tuple[View, tuple[list[Linear], list[Callout]]]:
-    """The hinge: thickness, slot, fillets, and the heights beside it.
+    """The hinge: thickness, slot, fillets, and the heights at its sides.
 
     For a tall element the view shows the thickness alone; the other dimensions and callouts are returned, for
     the arm's view.
@@ -221,7 +221,7 @@ def _arc(o: Outline, names: Sequence[str]) -> Arc:
 def _heights(
     sketch: Sketch, o: Outline, arm: OutlineCorner, body: OutlineCorner, near: Level
 ) -> list[Linear]:
-    """Heights beside the slot: arm and, the lower slot's on the left, the body's on the right."""
+    """Heights at the slot's sides: arm and lower slot on the left, the body on the right."""
     flat = o.start("flat_face")
     height = _line(sketch, "arm height", o.y("flat_face"), arm.y, "left", flat, arm.at)
     one = "body_face" not in o
@@ -256,7 +256,8 @@ def _floor(o: Outline, face: str, slot: str) -> tuple[Level, float]:
 
 
 def _arm_view(sketch: Sketch, o: Outline, more: Sequence[Linear], called: Sequence[Callout]) -> View:
-    """The arm: its length to the hinge's middle, pad, stop land, and what the hinge's view leaves to it."""
+    """The arm: its length to the hinge's middle, pad, stop land, and the dimensions missing in the hinge's
+    view."""
     slot, body = _slot(o)
     (xa, back), (xb, ledge) = slot.at, body.at
     tip, pad = o.start("tip"), o.start("pad_face")

@@ -25,7 +25,7 @@ from tactcad.parts.language.description import Extrusion, Hole, Part, Pocket, Re
 
 
 class Quantity(StrEnum):
-    """What a variable measures, mm."""
+    """A variable's quantity, mm."""
 
     X = "x"
     Y = "y"
@@ -62,7 +62,7 @@ class Owner:
 
 @dataclass(frozen=True)
 class Spot:
-    """A point of a contour: where a segment starts, or the centre of its arc."""
+    """A point of a contour: a segment's start, or the centre of its arc."""
 
     contour: Owner
     segment: int
@@ -88,7 +88,7 @@ class Variable:
 
     @property
     def contour(self) -> Owner:
-        """What it belongs to in the end."""
+        """Its outermost owner."""
         return self.of.contour if isinstance(self.of, Spot) else self.of
 
 
@@ -98,7 +98,7 @@ Values = Mapping[Variable, float]
 
 
 def contours(part: Part) -> list[tuple[Owner, Contour]]:
-    """Every contour of the part by what its variables belong to; of a turned part its profile (radius, z)."""
+    """Every contour of the part by its variables' owner; of a turned part its profile (radius, z)."""
     if isinstance(part.body, Revolution):
         return [(PROFILE, part.body.profile)]
     body = part.extrusion
@@ -126,7 +126,7 @@ def in_part(pocket: Pocket, contour: Contour) -> Contour:
     vx, vy = -uy * sign, ux * sign  # y_axis = axis x x_axis
 
     def at(p: tuple[float, float]) -> tuple[float, float]:
-        # rounded to a picometre: turning may leave 1e-17 where a coordinate is 0
+        # rounded to a picometre: rotation may leave 1e-17 for a coordinate of 0
         x, y, _ = pocket.at
         return (round(x + p[0] * ux + p[1] * vx, 12), round(y + p[0] * uy + p[1] * vy, 12))
 
@@ -175,7 +175,7 @@ def variables(part: Part) -> dict[Variable, float]:
 
 @dataclass(frozen=True)
 class Round:
-    """One round hole: what its variables belong to, middle on its face, direction, and what is made there."""
+    """One round hole: its variables' owner, middle on its face, direction, and feature."""
 
     owner: Owner
     label: str
@@ -212,7 +212,7 @@ INDEPENDENT = 1e-6  # a row is independent where more than this share of its len
 
 
 class OfVariables:
-    """What is measured on variables: those that its fields name, points by x and y."""
+    """A quantity on variables: those named by its fields, points by x and y."""
 
     @property
     def names(self) -> tuple[Variable, ...]:
@@ -251,7 +251,7 @@ def halfway(a: Level, b: Level) -> Level:
 
 @dataclass(frozen=True)
 class Span(OfVariables):
-    """From one level to another, mm, positive where the second is larger; without a first level a size."""
+    """From one level to another, mm, positive if the second is larger; without a first level a size."""
 
     a: Level
     b: Level
@@ -370,7 +370,7 @@ Measure = Given | Span | Offset | Width | Radius | Slope | Distance | MeasureDif
 
 
 def conventions(owner: Owner, contour: Contour) -> list[Measure]:
-    """What a drawn contour implies: level and upright lines, circular arcs, tangent joints."""
+    """Conventions implied by a drawn contour: level and upright lines, circular arcs, tangent joints."""
     if contour.as_circle():
         return []
     count = len(contour)
@@ -387,7 +387,7 @@ def conventions(owner: Owner, contour: Contour) -> list[Measure]:
 
 
 def _tangent(owner: Owner, contour: Contour, i: int) -> Measure | None:
-    """The convention that segment i is tangent to the one before it, where it is."""
+    """The convention that segment i is tangent to the previous one, if it is."""
     before, after = contour.segments[i - 1], contour.segments[i]
     (ux, uy), (vx, vy) = direction(before, before.end), direction(after, after.start)
     both_straight = isinstance(before, Line) and isinstance(after, Line)
@@ -418,7 +418,7 @@ class Determined:
         return len(self.basis)
 
     def takes(self, row: Measure) -> bool:
-        """Add a row where it is independent of those before; returns whether it is."""
+        """Add a row if it is independent of the earlier ones; returns whether it is."""
         new = gradient(row, self.values, self.columns)
         whole = np.linalg.norm(new)
         for _ in range(2):  # done twice, the rows are orthogonal to rounding

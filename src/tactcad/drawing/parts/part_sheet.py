@@ -63,7 +63,7 @@ class Order:
 def part_plan(
     part: Part, files: Sequence[MadeFrom], plans: Plans, spare: bool = False, shortened: bool = False
 ) -> SheetPlan | None:
-    """What a part's sheet shows, and the files that it is made from; `plans` are its family's own, by kind.
+    """The plan of a part's sheet, and its files; `plans` are its family's own, by kind.
 
     `spare` asks for less: of an element as of a tall one, of any other part without section. `shortened` asks
     for broken views; None if these would leave out too little. Raises CheckFailure if the part cannot
@@ -108,7 +108,7 @@ def part_sheet(order: Order) -> DrawnSheet:
 
 
 def _attempts(order: Order) -> Iterator[tuple[SheetPlan, Sequence[Paper], Sequence[Scale]]]:
-    """Plans to try in turn, each with its papers and scales.
+    """Plans to try one after another, each with its papers and scales.
 
     Small sheets first; whole views on them down to 1:2 before broken ones, and smaller scales only after
     these.
@@ -165,7 +165,7 @@ def notes_of(part: Part, files: Sequence[MadeFrom]) -> tuple[str, ...]:
         cut = "Cut by"
         if stock and stock.face:
             lines.append(f"From {stock.thickness:g} plate: both faces ground before it is cut")
-        # drawn where neighbours touch it: the model stands at its nominal size, outside its limits
+        # drawn where neighbours touch it: the model has its nominal size, outside its limits
         off = [c.name for c in part.characteristics if not c.lower <= c.nominal <= c.upper]
         but = f", but for the {' and the '.join(off)}: these as dimensioned" if off else ""
         lines.append(
@@ -189,7 +189,7 @@ def notes_of(part: Part, files: Sequence[MadeFrom]) -> tuple[str, ...]:
 
 
 def drawing_faults(data: bytes, sheet: DrawnSheet, part: Part, revision: str) -> list[str]:
-    """What is wrong with a part's PDF: pages, number and revision, layout, or a key characteristic."""
+    """Faults of a part's PDF: pages, number and revision, layout, or a key characteristic."""
     pages = pdf_runs(data)
     if len(pages) != 1:
         return [f"{len(pages)} pages instead of 1"]
@@ -206,11 +206,11 @@ def drawing_faults(data: bytes, sheet: DrawnSheet, part: Part, revision: str) ->
 
 
 def geometric_faults(runs: Sequence[str], part: Part, elsewhere: Mapping[str, int]) -> list[str]:
-    """Tolerance frames and datum letters that stand on a sheet more often or less than at each of the part's
-    features once.
+    """Tolerance frames and datum letters that are not on a sheet exactly once for each of the part's
+    features.
 
-    `runs` are the page's texts in the order in which they were drawn, `elsewhere` how often a text stands
-    outside of frames and datum symbols, as letters of the paper's zones do.
+    `runs` are the page's texts in the order in which they were drawn, `elsewhere` the number of a text
+    outside of frames and datum symbols, such as the letters of the paper's zones.
     """
     frames = Counter(frame_of(part, g).cells for g in part.geometric for _ in range(times(part, g)))
     wrong = []
@@ -231,8 +231,8 @@ def geometric_faults(runs: Sequence[str], part: Part, elsewhere: Mapping[str, in
 
 
 def key_faults(runs: Sequence[str], keys: Sequence[Characteristic]) -> list[str]:
-    """Key characteristics, in the part's order, that do not stand exactly once on a sheet (its texts in the
-    order in which they were drawn), framed with their number, or not with the model's value."""
+    """Key characteristics, in the part's order, that are not exactly once on a sheet (its texts in the order
+    in which they were drawn), framed with their number, or that differ from the model's value."""
     wrong, shown = [], []
     for n, c in enumerate(keys, start=1):
         at = [i for i, run in enumerate(runs) if run == f"K{n}"]

@@ -60,10 +60,11 @@ BACK = ((0.0, 0.0, -1.0), (0.0, 1.0, 0.0))
 def prism_plan(
     part: Part, notes: Sequence[str], cut: bool = True, shortened: bool = False
 ) -> SheetPlan | None:
-    """The plan of any extruded part, `cut` with a section where it is of use; `shortened` with broken views
-    and regular rows of holes by their ends and their number; None if too little could be left out.
+    """The plan of any extruded part, `cut` with a section if useful; `shortened` with broken views and
+    regular rows of holes by their ends and their number; None if too little could be left out.
 
-    Raises CheckFailure if a variable or a limit of the part does not stand on the sheet, or a limit twice.
+    Raises CheckFailure if a variable or a limit of the part is missing on the sheet, or a limit is there
+    twice.
     """
     body = part.extrusion
     sketch = Sketch(part)
@@ -76,7 +77,7 @@ def prism_plan(
     sunk = [r.axis[2] for r in holes] + pockets * (len(holes) + 1)
     eye, up = BACK if sum(z > 0 for z in sunk) > sum(z < 0 for z in sunk) else FRONT
     right = View("", eye, up, (0, 0, 0, 0)).right
-    # where holes are sunk into the y faces: the eye that sees more of them, the upper face first
+    # if holes are sunk into the y faces: the eye that sees more of them, the upper face first
     upper, lower = sum(r.axis[1] < 0 for r in holes), sum(r.axis[1] > 0 for r in holes)
     below = None if not upper + lower else up if upper >= lower else opposite(up)
     eyes = {2: eye, 1: below or up, 0: opposite(right)}
@@ -149,13 +150,13 @@ def _front_view(
     )
 
 
-SMALL, DETAIL_ROOM = 1.0, (60.0, 50.0)  # mm: what is less has a detail; of paper that the detail may take
+SMALL, DETAIL_ROOM = 1.0, (60.0, 50.0)  # mm: smaller sizes have a detail; share of paper for the detail
 AROUND_SMALL = 0.8  # of their extent that a detail shows around them
 
 
 def _with_detail(front: View, sketch: Sketch) -> list[View]:
-    """The front view, and a detail of what is limited there and hardly to be seen: small distances and radii
-    that state a characteristic, and the radii among them."""
+    """The front view, and a detail of its small toleranced sizes: distances and radii that state a
+    characteristic, and the radii among them."""
 
     def limited(d: Dimension) -> bool:
         return d.characteristic is not None and abs(d.value(sketch.values)) <= SMALL
@@ -204,7 +205,7 @@ def _spaces(sketch: Sketch, view: View, rows: Sequence[Sequence[Round]], k: int)
         name, sign = f"{row[0].label} spaces", f"{count} equal spaces "
         space = Dimension(name, (Span(*ends),), sign=sign, auxiliary=True)
         p, q = (seen(view, r.at) for r in (row[0], row[-1]))
-        # rows beside each other that are spaced alike say it once
+        # neighbouring rows of equal spacing state it once
         key = (count, round(row[0].at[k], 6), round(row[-1].at[k], 6))
         shown.setdefault(key, Linear(space, "bottom" if k == 0 else "left", p, q))
     return list(shown.values())
@@ -231,7 +232,7 @@ def _coordinates(owner: Owner, contour: Contour) -> list[Coordinate]:
 
 
 def _lands(sketch: Sketch, view: View, part: Part) -> list[Linear]:
-    """Length and width of a rectangular land left standing in the middle of a disc, on its centre lines."""
+    """Length and width of a rectangular land in the middle of a disc, on its centre lines."""
     linears = []
     for owner, contour in contours(part):
         if owner.kind != "island" or len(contour) != 4 or contour.as_circle():
@@ -275,7 +276,7 @@ def _threads(view: View, called: Sequence[Group]) -> tuple[tuple[Point, float], 
 
 
 def side_view(sketch: Sketch, part: Part, front: View, thickness: Dimension | None = None) -> View:
-    """The view from the left, beside the front view, with the thickness."""
+    """The view from the left, next to the front view, with the thickness."""
     view = view_of(part, "right", opposite(front.right), front.up)
     d = sketch.must(thickness or sketch.stating("thickness", (size(THICKNESS),)))
     x0, y0, x1, y1 = view.box

@@ -1,10 +1,10 @@
-"""Sections: whether a part is shown in one, and where, decided by its features, not by its name; and what a
-section has beside its curves (ISO 128-3, ISO 6410-1).
+"""Sections: whether and where a part has one, decided by its features, not by its name; and a section's
+symbols besides its curves (ISO 128-3, ISO 6410-1).
 
-A section is cut where a depth would otherwise be seen in hidden lines only: a pocket, a groove, a blind
-hole, a counterbore. Its plane stands upright on the front view's paper, through axes of such features: x =
-constant, seen from the left, so that it stands to the right of the front view (first angle); or, where no
-such plane is possible, y = constant, seen from the side whose place above or below the front view is free.
+A section is cut if a depth would otherwise be in hidden lines only: a pocket, a groove, a blind hole, a
+counterbore. Its plane is upright on the front view's paper, through axes of such features: x = constant, seen
+from the left, so that it is to the right of the front view (first angle); or, if no such plane is possible, y
+= constant, seen from the side with free space above or below the front view.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ def section_of(part: Part, holes: Sequence[Round], front: View, below: Vector | 
     the middle.
 
     None if no feature is sunk, or every plane through an axis would cut another hole off its axis or run
-    along a wall. `below` is the eye of a view onto a y face, whose place on the sheet is taken.
+    along a wall. `below` is the eye of a view onto a y face, which occupies that place on the sheet.
     """
     # Whether a feature ends or changes inside the part.
     sunk = [f for f in part.features if (isinstance(f, Pocket) or not f.through or bool(f.counterbore))]
@@ -86,7 +86,7 @@ def _best(part: Part, sunk: Sequence[Feature], holes: Sequence[Round], k: int, w
         off_middle = round(abs(v - (low + high) / 2), 6)
         return (len(set(map(_kind, shown))), max(map(_depth, shown)), len(shown), -off_middle, -way * v)
 
-    # nor a plane that would show a hole narrower than it is
+    # no plane that would show a hole too narrow
     across = [(r.at[k], max(widest(r.hole), r.hole.thread_diameter) / 2) for r in holes if not r.hole.axis[k]]
     clean = [
         v

@@ -24,11 +24,11 @@ OUTWARDS: dict[Side, Point] = {
 class Dimension:
     """One authored dimension: its value is the common value of its rows.
 
-    `sign` stands before the number, `unit` after it. `limits` are upper and lower deviation from the number
+    `sign` is before the number, `unit` after it. `limits` are upper and lower deviation from the number
     shown, of a part modelled at `modelled` (deviation of the model from that number). `key` is the number of
-    the key characteristic that it states, 0 for none. An `auxiliary` one follows from others and stands in
+    the key characteristic that it states, 0 for none. An `auxiliary` one follows from others and is in
     parentheses, for information. `characteristic` is the part's own that it states. A `basic` one
-    (theoretically exact, ISO 1101) locates the zone of a position tolerance, and stands in a frame.
+    (theoretically exact, ISO 1101) locates the zone of a position tolerance, and is framed.
     """
 
     name: str
@@ -52,7 +52,7 @@ class Dimension:
         return round(measured[0] - self.modelled, 9)
 
     def text(self, values: Values) -> str:
-        """As it stands on the sheet: "4× ⌀3.4", "0.25 ±0.005", "⌀3.012 +0.006/0"."""
+        """Its text on the sheet: "4× ⌀3.4", "0.25 ±0.005", "⌀3.012 +0.006/0"."""
         count = f"{len(self.rows)}× " if len(self.rows) > 1 and self.counted else ""
         exact = self.limits is not None
         shown = number(self.value(values), exact)
@@ -75,7 +75,7 @@ ENVELOPE = " Ⓔ"  # ISO 14405-1: a diameter with limits holds over its length, 
 
 
 def number(value: float, exact: bool = False) -> str:
-    """Shortest text: up to four decimals as they are (nine where exact), otherwise rounded to three."""
+    """Shortest text: up to four decimals as they are (nine if exact), otherwise rounded to three."""
     shown = round(value, 9)
     if not exact:
         shown = round(shown, 4) if abs(shown - round(shown, 4)) < 1e-6 else round(shown, 3)
@@ -104,7 +104,7 @@ class Across:
     dimension: Dimension
     p: Point
     q: Point
-    past: float = 0.0  # mm of the part from q that the line runs before the text may stand
+    past: float = 0.0  # mm of the part from q to the text's earliest place on the line
 
 
 @dataclass(frozen=True)
@@ -134,7 +134,7 @@ class Frame:
 class Callout:
     """Texts at the end of a leader that points at one of the targets: circles, or points (radius 0), or arcs
     that are entered from their centre (`inside`). `dimensions` are those that the lines state; tolerance
-    frames stand below the lines, and the symbol of the datum that the feature is below these."""
+    frames are below the lines, and the symbol of the feature's datum below these."""
 
     lines: tuple[str, ...]
     targets: tuple[tuple[Point, float], ...]
@@ -183,7 +183,7 @@ class SectionPlane:
 
 @dataclass(frozen=True)
 class View:
-    """One view: eye and up in the part's frame, its box in the view's own mm, and what is written on it.
+    """One view: eye and up in the part's frame, its box in the view's own mm, and its annotations.
 
     A `window` is the area that a detail shows; the detail's letter is the view's `label`, and it is drawn as
     large as fits `room` (mm of paper), at least at `least` : 1. For a `section` everything before its plane
@@ -254,7 +254,7 @@ class Breaks:
 
 @dataclass(frozen=True)
 class SheetPlan:
-    """The whole sheet: views, notes, and what drawing conventions say beside the dimensions."""
+    """The whole sheet: views, notes, and the drawing conventions that complete the dimensions."""
 
     part: Part
     values: dict[Variable, float]

@@ -23,7 +23,7 @@ ALIKE = 1e-6  # mm: coordinates nearer than this are one
 class Coordinate:
     """A feature's coordinate along one axis of the part, a point of it in the part (x, y, z), and an edge's
     other end; whether it is a mere corner between edges. None is the coordinate 0. `states` names the part's
-    characteristic that it is."""
+    characteristic for it."""
 
     name: str
     variable: Variable | None
@@ -34,7 +34,7 @@ class Coordinate:
 
     @property
     def contour(self) -> Owner | None:
-        """What it belongs to."""
+        """Its owner."""
         return self.variable.contour if self.variable else None
 
     @property

@@ -28,15 +28,15 @@ from .sheet_plan import SectionPlane, View, seen
 
 CHORD = 0.001  # mm of the part: other curves than lines and circles are drawn as chords this close
 SAME = 1e-4  # mm: edges nearer than this are one
-BEYOND = 1.0  # mm: the box that is kept stands out of the part
+BEYOND = 1.0  # mm: overhang of the kept box beyond the part
 KERNEL_TOLERANCE = 1e-7  # mm: the kernel's own tolerance
 
 
 def projected(
     shape: TopoDS_Shape, eye: Vector, right: Vector, hidden: bool = True
 ) -> list[Stroke | DrawnArc]:
-    """Edges in the view's plane (mm of the part), sorted: visible ones, then, where asked for, hidden ones
-    that no visible one covers.
+    """Edges in the view's plane (mm of the part), sorted: visible ones, then, if asked for, hidden ones that
+    no visible one covers.
 
     Edges between tangent faces are left out, as ISO 128-3 allows.
     """

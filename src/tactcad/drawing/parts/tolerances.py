@@ -1,5 +1,5 @@
-"""Datums and geometric tolerances: where they stand (below the callout of their hole, or on the edge or face
-of their name), and their frames (ISO 1101:2017) and symbols (ISO 5459:2011) on paper.
+"""Datums and geometric tolerances: their places (below the callout of their hole, or on the edge or face of
+their name), and their frames (ISO 1101:2017) and symbols (ISO 5459:2011) on paper.
 
 The symbols of characteristics are drawn as strokes (proportions of ISO 7083): no font need have them.
 """
@@ -19,12 +19,12 @@ from ..engine.ink import LETTERS, THIN, DrawnArc, Fill, Item, Stroke, Text, rect
 from .measures import OUTER, Spot, Variable, rounds
 from .sheet_plan import Callout, Datum, Frame, View, seen
 
-# Where along an edge a frame's leader may end; so near to its ends broken views show it, too.
+# Possible ends of a frame's leader along an edge; near the edge's ends, so that broken views also show them.
 SHARES = (0.5, 0.25, 0.75, 0.1, 0.9, 0.05, 0.95)
 LONG, LONG_SHARES = 600.0, (0.01, 0.99)  # mm: so long an edge is broken off, and this is no corner yet
 ASIDE = 60.0  # degrees from the normal that its leader may lie
 FRAME = 2 * LETTERS  # height of a frame, and least width of its cells
-PAD = 1.0  # beside the text of a cell
+PAD = 1.0  # on either side of a cell's text
 STEM = 8.0  # from a datum's feature to the middle of its letter: shortest
 
 
@@ -38,7 +38,7 @@ def frame_of(part: Part, g: Geometric) -> Frame:
 
 
 def times(part: Part, g: Geometric) -> int:
-    """How often a tolerance's frame stands on the sheet: for all its holes once, at each edge and face."""
+    """Number of a tolerance's frames on the sheet: one for all its holes, one at each edge and face."""
     holes = _holes(part, g)
     return bool(holes) + len({*g.features} - {*holes})
 
@@ -48,7 +48,7 @@ def _holes(part: Part, g: Geometric) -> list[str]:
 
 
 def letter_of(part: Part, names: Sequence[str]) -> str:
-    """Of the datum that stands on one of these features; none: ""."""
+    """Letter of the datum on one of these features; "" if none."""
     return next((d.letter for d in part.datums if d.feature in names), "")
 
 
@@ -61,7 +61,7 @@ def with_marks(part: Part, views: Sequence[View]) -> tuple[View, ...]:
             Datum(d.letter, *line, away) for d in part.datums for line, away in _lines(part, view, d.feature)
         )
         callouts = []
-        # a view that shows all of the part's edge, not a detail of it
+        # a view that shows all of the part's edge, not a detail
         names = [n for g in part.geometric for n in g.features if n not in framed and view.window is None]
         for name in dict.fromkeys(names):
             for (start, end), away in _lines(part, view, name):
@@ -77,9 +77,9 @@ def with_marks(part: Part, views: Sequence[View]) -> tuple[View, ...]:
 
 
 def _lines(part: Part, view: View, feature: str) -> Iterator[tuple[Chord, Point]]:
-    """The lines as which a view shows a straight edge, or a face seen along it; and the way out of it."""
+    """A view's lines for a straight edge, or for a face seen edge-on; and the outward direction."""
     if feature in FACES and not view.eye[2]:
-        # where the face lies along the view's own axes
+        # if the face lies along the view's own axes
         k = 0 if view.right[2] else 1
         z = part.extrusion.thickness if feature == FACES[1] else 0.0
         way = (view.right, view.up)[k][2]
@@ -100,7 +100,7 @@ def _lines(part: Part, view: View, feature: str) -> Iterator[tuple[Chord, Point]
 
 
 def places(part: Part, features: Sequence[str]) -> Iterator[tuple[int, Variable]]:
-    """Coordinates (axis, variable) that features stand at: of holes across their axis, of level edges."""
+    """Coordinates (axis, variable) of features: of holes across their axis, of level edges."""
     for r in rounds(part):
         if r.hole.name in features:
             yield from ((k, r.owner.place(k)) for k in range(3) if not r.axis[k])

@@ -19,7 +19,7 @@ EYE, UP = (0.0, 1.0, 0.0), (1.0, 0.0, 0.0)  # z to the right
 
 
 def turned_plan(part: Part, notes: Sequence[str]) -> SheetPlan:
-    """The sheet of a part that is turned about z: limits between two of its faces first, then what is left.
+    """The sheet of a part that is turned about z: limits between two of its faces first, then the rest.
 
     Raises CheckFailure if it has holes or pockets, or a dimension is missing or given twice.
     """
@@ -76,7 +76,7 @@ def turned_plan(part: Part, notes: Sequence[str]) -> SheetPlan:
 
 
 def _lengths(sketch: Sketch, part: Part, levels: Sequence[tuple[float, Level]], r: float) -> list[Linear]:
-    """Limits between faces above the view, what is left below it."""
+    """Limits between faces above the view, the rest below it."""
     assert isinstance(part.body, Revolution)
     profile = part.body.profile
     at = {

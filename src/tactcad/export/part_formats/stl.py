@@ -1,4 +1,4 @@
-"""A part's mesh as binary STL, read back: closed, and its volume the solid's within what is promised."""
+"""A part's mesh as binary STL, read back: closed, and of the solid's volume within the promised error."""
 
 from __future__ import annotations
 
@@ -29,12 +29,12 @@ def part_stl(part_no: str, shape: TopoDS_Shape, meshing: Meshing) -> bytes:
     shape
         In mm.
     meshing
-        Turn between facets, and the relative error of the volume that is promised.
+        Turn between facets, and the promised relative error of the volume.
 
     Raises
     ------
     CheckFailure
-        Where the file read back is no closed surface, or its volume is further off the solid's.
+        If the file read back is no closed surface, or its volume is further off the solid's.
     """
     import trimesh
     from trimesh.exchange.stl import export_stl
@@ -52,8 +52,8 @@ def part_stl(part_no: str, shape: TopoDS_Shape, meshing: Meshing) -> bytes:
 
 
 def check_stl(part_no: str, data: bytes, volume: float, allowed: float | None) -> None:
-    """Raises CheckFailure if a file is no closed surface, or further off that volume (mm3) than allowed
-    (relative; None: by any amount)."""
+    """Raises CheckFailure if a file is no closed surface, or its volume differs from that one (mm3) by more
+    than allowed (relative; None: any)."""
     import trimesh
 
     mesh = trimesh.load_mesh(BytesIO(data), file_type="stl")

@@ -72,7 +72,7 @@ DXF = PartFormat(
     "milled and ground plates the blank, larger on every edge and without holes. Compensation for wire "
     "and spark gap is "
     "yours.",
-    ordered=2,  # a shop cuts from it, and makes the rest from the STEP file
+    ordered=2,  # a shop cuts by it, and makes the rest by the STEP file
 )
 PICTURE = PartFormat(
     kind="picture",

@@ -277,7 +277,7 @@ def _level(sketch: Sketch, owner: Owner, contour: Contour, k: int, value: float)
     for i, s in enumerate(contour):
         if isinstance(s, Line) and max(abs(p[k] - value) for p in (s.start, s.end)) < ALIKE:
             return level(Spot(owner, i).place(k))
-    raise CheckFailure(f"drawings: {sketch.part.part_no}: no edge stands at {'xy'[k]} = {value:g}")
+    raise CheckFailure(f"drawings: {sketch.part.part_no}: there is no edge at {'xy'[k]} = {value:g}")
 
 
 def _beams(sketch: Sketch, shown: Part, cell: SheetCell, owners: Sequence[Owner]) -> list[Linear]:

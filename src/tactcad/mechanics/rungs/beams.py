@@ -1,4 +1,4 @@
-"""Rungs short, beam and section: what beam theory alone says about tip compliance (mm/N)."""
+"""Rungs short, beam and section: tip compliance (mm/N) by beam theory alone."""
 
 from __future__ import annotations
 
@@ -115,7 +115,7 @@ def _by_quadrature(depth: Array) -> tuple[Array, Array, Array]:
 
 
 def _in_closed_form(depth: Array) -> tuple[Array, Array, Array]:
-    """The same for thin notches, where the integrand peaks: with c = 1 + 1/depth.
+    """The same for thin notches, whose integrand peaks: with c = 1 + 1/depth.
 
     A1 = int dphi/(c - cos phi) = 2 psi/sqrt(c^2 - 1), tan psi = 1/kappa, kappa^2 = (c - 1)/(c + 1);
     A2 = -dA1/dc = (c A1 + 1/c)/(c^2 - 1). i0 by tan(phi/2) = kappa tan psi; i2 by parts.

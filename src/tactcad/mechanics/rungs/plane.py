@@ -1,7 +1,7 @@
 """Rung plane: the leaf between two elastic roots, arm and body, in plane stress.
 
-With rho = r/t, kappa = Lb/Hb, s = L - l/2 and p = L + l/2 the lever arms where the slot meets arm and body,
-lc = l - 2 r, and n the number of slotted faces, E b C is the sum of::
+With rho = r/t, kappa = Lb/Hb, s = L - l/2 and p = L + l/2 the lever arms at the slot's junctions with arm and
+body, lc = l - 2 r, and n the number of slotted faces, E b C is the sum of::
 
     hinge  12/t^3 [lc L^2 + t g (L - lc/2 - g t/2)^2 + t g (L + lc/2 + g t/2)^2]
            g = sqrt(A rho + p0 - p1/(1 + p2 rho)) - (p6 + p7 rho) exp(-p8 l/t)
@@ -52,7 +52,7 @@ Constants = Mapping[str, Array | float]
 
 @dataclass(frozen=True)
 class Parts:
-    """Tip compliance in plane stress by where the deformation is, mm/N.
+    """Tip compliance in plane stress by place of deformation, mm/N.
 
     Bending of the leaf with its roots under the mean moment; of the leaf under the moment's `slope`; of the
     arm; of the body; and all shear.

@@ -6,9 +6,9 @@
 
 with x = lc/b, y = t/b, z = r/b, and hinge, slope, arm, body, shear as in `plane`. A sheet that is
 narrow for the length that bends curls freely across (plane stress); a wide one cannot (plane strain,
-1 - nu^2). The arm's ends are free across, so it curls however wide it is, and where it is low the hinge
-curls with it (ch). As no constant but a is negative, C3D never exceeds that of plane stress, and K3D/b never
-falls with b, whatever the constants' values are.
+1 - nu^2). The arm's ends are free across, so it curls at any width, and the hinge of a low arm curls with it
+(ch). As no constant but a is negative, C3D never exceeds that of plane stress, and K3D/b never falls with b,
+for any values of the constants.
 """
 
 from __future__ import annotations

@@ -1,1 +1,1 @@
-"""The array: where everything stands, its parts, what bends, and what it is read with."""
+"""The array: its layout, parts, deflections, and read-out."""

@@ -1,4 +1,4 @@
-"""A read-out board as what carries it sees it: outline, holes, where the leads come in, how high it is.
+"""The mechanical interface of a read-out board: outline, holes, lead connector, heights.
 
   W = width
 +-------------------------------+  y = height
@@ -36,8 +36,8 @@ class BoardOutline:
     """mm, from the lower left corner of the component side; `thickness` of the bare board.
 
     holes: x, y, diameter. connector: the middle of the lead connector's row of pins, `connector_width` long;
-    leads leave along `connector_direction` in the board's plane. highest: of the parts above the board, no
-    plug in it; lowest: what stands out below it.
+    leads leave along `connector_direction` in the board's plane. highest: of the parts above the board,
+    without plugs; lowest: of the parts below it.
     """
 
     width: float
@@ -71,7 +71,7 @@ def card_pins(layout: Layout) -> int:
 
 
 def board_outline(layout: Layout) -> BoardOutline:
-    """Of each board that reads the array; all are alike."""
+    """Of each board that reads the array; all are equal."""
     at = AT_CORNER
     holes = tuple((x, y, HOLE) for y in (at, HEIGHT - at) for x in (at, WIDTH - at))
     return BoardOutline(

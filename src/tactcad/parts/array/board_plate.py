@@ -1,5 +1,5 @@
-"""What carries a read-out board: a plate with stand-offs, and a clamp that takes the pull off the leads
-before they reach the board's connector.
+"""The carrier of a read-out board: a plate with stand-offs, and a clamp that relieves the leads before the
+board's connector.
 
     :::::::  socket on the board's header
   ===========  board             leads
@@ -22,9 +22,9 @@ from ..language.part_materials import BRASS
 from ..language.plate import BREAK_EDGES, PLACE, plate
 from .board_outline import HEIGHT, LEADS_FROM_EDGE, PITCH, THICKNESS, WIDTH, BoardOutline
 
-THREAD = "M3"  # of every screw here: the board's holes are for it
+THREAD = "M3"  # of every screw here, to fit the board's holes
 PLATE = 8.0  # mm; chosen: a thickness sold, with 1.5 d of thread and the stand-offs' studs inside it
-EDGE = 4.0  # mm of plate beyond the board's other three edges; chosen: no board stands out where one grips
+EDGE = 4.0  # mm of plate beyond the board's other three edges; chosen: no board protrudes at a grip
 STAND_OFF, STUD, FLATS = 10.0, 6.0, 5.5  # mm; chosen: clear of soldered pins, as sold, across flats
 STAND_OFF_THREAD = 7.0  # mm of inner thread; chosen: the screw's 4.4 and run-out
 BOARD_SCREW = 6.0  # mm: through the board, 4.4 in the stand-off
@@ -43,7 +43,7 @@ PLASTIC = Material("PBT", 1300)  # kg/m3, usual
 
 
 def socket_top() -> float:
-    """Of a plugged socket, where the leads are soldered, mm over the plate's underside."""
+    """Solder level of a plugged socket, mm over the plate's underside."""
     return PLATE + STAND_OFF + THICKNESS + INSULATOR + SOCKET
 
 
@@ -151,7 +151,7 @@ def stand_off() -> Part:
 
 
 def fitted_board(design: Design, outline: BoardOutline) -> Part:
-    """The board with its parts on, as a bare board: what stands on it is in its own STEP file."""
+    """The fitted board, modelled as a bare board: its components are in its own STEP file."""
     holes = tuple(
         Hole("screw", (x, y, outline.thickness), (0, 0, -1), d, outline.thickness, True)
         for x, y, d in outline.holes

@@ -125,8 +125,8 @@ def drift(layout: Layout) -> float:
 
     Root of the sum of squares of: the gauge's thermal output, the completion's three arms, the amplifier's
     offset, the bridges' supply over their largest imbalance, the leads' warmth (`zero_drift`; of two wires
-    also their whole resistance in the gauge's arm). Self-heating is alike in all readings of a settled
-    cycle, and so in the zero, but for the instant of the samples (`instant_error`).
+    also their whole resistance in the gauge's arm). Self-heating is equal in all readings of a settled cycle,
+    and so cancels with the zero, except for jitter of the samples (`instant_error`).
     """
     d = layout.design
     r, span = d.readout, d.readout.temperature_span
@@ -192,8 +192,8 @@ def instant_error(layout: Layout) -> float:
 
 
 def hum_left(design: Design) -> float:
-    """Rms of the mains that the mean of a reading's samples keeps, V: over a whole period what the mains'
-    frequency is off by, else about all of it."""
+    """Rms of the mains left in the mean of a reading's samples, V: over whole periods by the deviation of the
+    mains' frequency only, else nearly all."""
     r, at = design.readout, instants(design)
     about = (r.mains or MAINS) * (1 + MAINS_OFF * np.array([-1.0, 1.0]))
     return r.hum * float(np.abs(np.exp(2j * pi * about[:, None] * at).mean(1)).max())

@@ -36,9 +36,9 @@ LEAST_GRIP = 3.0
 LEAST_UNDER_CARRIER_HEAD = 2.0
 
 
-# mm, plus and minus: spacers are as thick as the pitch leaves beside the measured sheet, so that the stack is
-# as long as drawn within STACK. Chosen: 0.01 by picking from rolled sheet or by grinding; 0.2 is what the
-# carrier's holes take, where six such spacers and five sheets measured to 0.01 are 0.11 off.
+# mm, plus and minus: spacers are as thick as pitch less measured sheet, so that the stack is as long as drawn
+# within STACK. Chosen: 0.01 by picking from rolled sheet or by grinding; 0.2 is what the carrier's holes
+# take, where six such spacers and five sheets measured to 0.01 are 0.11 off.
 SPACER_TOLERANCE, STACK = 0.01, 0.2
 
 
@@ -68,8 +68,8 @@ def clamping(layout: Layout) -> Clamping:
     plate, stack = d.end_plate_thickness, layout.stack
     dowel = _dowel(layout)
     for length in CAP_SCREW_LENGTHS[d.screw]:
-        # as deep in the tapped plate as 2/3 of it, which leaves the screw's end inside, and no deeper than
-        # its thread
+        # engaged in the tapped plate over 2/3 of its thickness, so that the screw ends inside, and no deeper
+        # than its thread
         engaged = max(engagement(d.screw), min(round(2 / 3 * plate, 1), TAP_REACH * METRIC[d.screw].d))
         web = round(length - stack - engaged, 9)
         if plate > web > plate - METRIC[d.screw].head_height - SUNK:  # a counterbore sinks the whole head
@@ -86,7 +86,7 @@ def clamping(layout: Layout) -> Clamping:
 
 
 def array_width(layout: Layout) -> float:
-    """Along y, mm: the carrier, and what of tie rods or of a screw's head stands out beyond it."""
+    """Along y, mm: the carrier, and the protrusion of tie rods or of a screw's head."""
     c, d, half = clamping(layout), layout.design.clamp, layout.carrier_width / 2
     if c.rod:
         return max(2 * half, c.screw)
@@ -112,7 +112,7 @@ def _dowel(layout: Layout) -> float:
 
 
 def dowel_depth(layout: Layout) -> float:
-    """How deep a dowel stands in each end plate, from the inner face, mm."""
+    """Depth of a dowel in each end plate, from the inner face, mm."""
     return round((clamping(layout).dowel - layout.stack) / 2, 9)
 
 
@@ -226,7 +226,7 @@ HEAD_TOLERANCE = 0.03  # mm, of the head plate's dowel holes; chosen: reamed or 
 # mm that a pin is bent at its end by hand while a plate goes on; chosen: 1 N on 3 mm of steel, 29 mm out.
 BENT = 0.01
 INNER = FACES[1]
-# Zones in mm; chosen: what a jig borer or wire holds in one clamping.
+# Zones in mm; chosen: achievable by a jig borer or wire in one clamping.
 HOLES, PAIR, SQUARE = 0.03, 0.01, 0.003
 OVER_EDGE = "dowel holes over the lower edge"  # by which the setting fixture holds the plates' height
 
@@ -341,9 +341,8 @@ def carrier(layout: Layout) -> Part:
 def carrier_clearance(layout: Layout) -> float:
     """Diameter of the holes for the end plates' screws, mm.
 
-    They let the end plates stand as far apart as the stack makes them, and their threads where their zones
-    allow, be they as small as general tolerances allow; but no wider than leaves LEAST_RING of every head's
-    face on the carrier.
+    They allow for the end plates' distance by the stack and for the threads' zones, even if the holes are as
+    small as general tolerances allow; but they leave LEAST_RING of every head's face on the carrier.
     """
     m = METRIC[layout.design.clamp.screw]
     wanted = m.d + STACK + 2 * PLACE + general(m.clearance)
@@ -352,7 +351,7 @@ def carrier_clearance(layout: Layout) -> float:
     return max(m.clearance, min(floor(10 * widest + 1e-6), ceil(10 * wanted - 1e-6)) / 10)
 
 
-# Least of a head's face beside a hole, on the side where it is least, mm; chosen.
+# Least width of a head's face around a hole, at its narrowest, mm; chosen.
 LEAST_RING = 0.25
 HEAD_LESS = 0.2  # mm: least head diameter under the largest (ISO 4762, table 1, rounded up)
 

@@ -1,5 +1,5 @@
-"""What is cut from sheet and stacked: sensing element, blank in an empty place, and spacer between them; and
-the element as it stands while its pad is pushed.
+"""The stacked sheet parts: sensing element, blank for an empty place, and spacer; and the element with its
+pad pushed.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ BARE_METAL = "#c3c8ce"
 
 
 def element(layout: Layout, place: ElementPlace, gap: float | None = None) -> Part:
-    r"""The element that stands at a place; equal elements give equal parts with one part number.
+    r"""The element at a place; equal elements give equal parts with one part number.
 
     stop land                                      +-------------------------+ rear_height
       ___                          ledge           |  o        O        o    |
@@ -78,7 +78,7 @@ def element(layout: Layout, place: ElementPlace, gap: float | None = None) -> Pa
 
 
 def screw_places(*datums: str) -> Geometric:
-    """Zone of the clamping screws' holes in what is stacked: cut in one contour with the dowel holes."""
+    """Zone of the clamping screws' holes in stacked parts: cut in one contour with the dowel holes."""
     return Geometric("screw holes", "position", PLACE, ("screw_hole",), datums, True)
 
 
@@ -91,8 +91,8 @@ DOWEL_HOLE, SEAT_LEAN = "dowel hole diameter", "pad's and ledge's lean"
 STOP_GAP, SLOT, ARM_LENGTH, PAD_LENGTH = "stop gap", "slot length", "arm length", "pad length"
 TIP_PLACE, HINGE_THICKNESS = "tip from dowel hole", "hinge thickness"
 ARM_HEIGHT, FILLET = "arm height", "fillet radius"
-# How each size grows where the wire leaves every face so much further out, mm a mm: one offset of the wire
-# moves all faces of a piece. Between faces that look the same way nothing changes.
+# Growth of each size by the wire's offset, mm a mm: one offset moves all faces of a piece outward. Between
+# faces of equal direction nothing changes.
 WIRE: dict[str, int] = {
     HINGE_THICKNESS: 2,
     PAD_HEIGHT: 1,
@@ -138,7 +138,7 @@ def _limits(
     return tuple(replace(c, between=tuple(_standing(f, edges) for f in c.between)) for c in stated)
 
 
-# A fillet that has used up its edge touches where the edge was.
+# A fillet that has used up its edge is tangent at the edge's former place.
 USED_UP = {
     "slot_floor": ("slot_body_fillet", "slot_arm_fillet"),
     "hinge_face": ("front_slot_arm_fillet",),
@@ -151,7 +151,7 @@ USED_UP = {
 
 
 def _standing(feature: str, edges: Collection[str]) -> str:
-    """The feature, or what stands for it where the outline has lost it."""
+    """The feature, or its substitute if the outline has lost it."""
     return next((f for f in (feature, *USED_UP.get(feature, ())) if f in edges), feature)
 
 
@@ -295,8 +295,8 @@ def blank_ledge_zone(design: Design) -> float:
 
 
 def blank(layout: Layout) -> Part:
-    r"""An element without arm: fills the shorter row, and stands in for the missing one, so that both
-    rows are clamped alike and the stop plate has two ledges to sit on.
+    r"""An element without arm: fills the shorter row, or an empty one, so that both rows are clamped equally
+    and the stop plate has two ledges.
 
                     +-------------------------+
             ledge   |  o        O        o    |
@@ -347,14 +347,14 @@ def deflected_element(layout: Layout, place: ElementPlace, deflection: float, ro
     layout, place
         The array, and the element in it.
     deflection
-        Way of the roller since it touched the pad, mm.
+        Travel of the roller since it touched the pad, mm.
     roller
         Its radius, mm; its axis is under the pad's middle.
 
     Raises
     ------
     InputError
-        Where the arm cannot turn so far.
+        If the arm cannot turn so far.
     """
     part = element(layout, place)
     z, w = _heights(layout, place, roller)
@@ -389,7 +389,7 @@ def deflection_at_pad_edge(layout: Layout, place: ElementPlace, roller: float) -
 
     Seen from the turned arm the roller's centre comes nearer to the hinge: to A' with A'^2 + w^2 = A^2 + (w +
     d)^2. It is on the pad while A - A' is at most half the pad's length p, so d^2 + 2 w d + A p - p^2/4 = 0.
-    Infinite where no deflection moves it that far.
+    Infinite if no deflection moves it that far.
     """
     _, w = _heights(layout, place, roller)
     half = layout.design.element.pad_length / 2
@@ -407,7 +407,7 @@ def _heights(layout: Layout, place: ElementPlace, roller: float) -> tuple[float,
 def _bent(contour: Contour, hinge: Point, angle: float) -> Contour:
     """The contour with everything left of the hinge's centre turned about it.
 
-    Where the contour passes the hinge, a stretch slightly longer than the rotation shortens becomes a chord.
+    Along the hinge, a stretch slightly longer than the rotation shortens becomes a chord.
     """
     pieces: list[Segment] = []
     for s in contour:
@@ -452,8 +452,8 @@ def least_passes(tolerance: float) -> str:
     return next((words for words, key in _ENOUGH if tolerance >= WIRE_TOLERANCE[key]), "four passes")
 
 
-MEASURED = "measured:"  # begins the origin of a value that follows from an inspection sheet
-# Spacer's dowel hole over the dowel, mm; chosen: nothing stands by it, and one pass of the wire holds it.
+MEASURED = "measured:"  # first words of the origin of a value that follows from an inspection sheet
+# Spacer's dowel hole over the dowel, mm; chosen: it positions nothing, and one pass of the wire suffices.
 LOOSE = 0.1
 
 

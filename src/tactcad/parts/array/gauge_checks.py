@@ -17,9 +17,8 @@ from .bridge_figures import zero_drift
 from .hinge_section import design_gauge, design_readout, hinge_section
 from .layout import Layout
 
-# Relative change of resistance by bonding that says that the grid is hurt, where the gauge's own tolerance is
-# less; chosen: with a gauge factor near 2
-# it is as much as 2500 microstrain, more than curing strains a foil.
+# Relative change of resistance by bonding that shows a damaged grid, if the gauge's own tolerance is less;
+# chosen: with a gauge factor near 2 it is as much as 2500 microstrain, more than curing strains a foil.
 HURT = 0.005
 # ohm: least insulation of a fresh installation under laboratory conditions (Micro-Measurements, Gage
 # Installation Tester 1300).
@@ -32,7 +31,7 @@ PUSH = 0.2  # N on the pad for sign and size of the signal, or rating.force; cho
 class GaugeChecks:
     """Limits of one gauge.
 
-    hurt         relative change of resistance by bonding that says that the grid is hurt
+    hurt         relative change of resistance by bonding that shows a damaged grid
     resistance   ohm, least and most after bonding
     insulation   ohm, least when fresh; leak: below this in use, the leak alone reads as the bridge's drift
     zero         dR/R, most of the bonded gauge against its bridge, so that no reading leaves amplifier or
@@ -65,7 +64,7 @@ def gauge_checks(layout: Layout) -> GaugeChecks:
     leak = zero_drift(layout)
     try:
         per_newton = gauge_signal.foil_strain_per_force(s, gauge)
-    except CheckFailure:  # out of the rung's range; beam theory says up to a fifth more
+    except CheckFailure:  # out of the rung's range; beam theory gives up to a fifth more
         per_newton = strain.nominal(s, 1.0) * gauge_signal.composite(s, gauge).reading
     signal = factor * per_newton * d.rating.force
     # as 4 V/(U G) of what the output may span less the signal: the bridge's slope at zero

@@ -95,7 +95,7 @@ def design_alloy(design: Design) -> Alloy:
 
 
 def design_gauge(design: Design) -> Gauge:
-    """The design's strain gauge, alike on all elements."""
+    """The design's strain gauge, the same on all elements."""
     return _filled(Gauge, design.gauge)
 
 
@@ -142,7 +142,7 @@ def _filled(kind: Callable[..., T], table: object) -> T:
     return kind(**{name: getattr(table, name) for name in inspect.signature(kind).parameters})
 
 
-# Where a section's parameter stands in the design file; the first four an element may override.
+# A section's parameters and their fields in the design file; an element may override the first four.
 PATHS = {
     "hinge_thickness": "element.hinge_thickness",
     "hinge_length": "element.hinge_length",
@@ -160,8 +160,8 @@ PATHS = {
 
 
 def in_design(why: Reason | None, layout: Layout, place: ElementPlace) -> str:
-    """Why the estimator refuses an element, with the design's own fields and what they give for it:
-    "... (array.row_arms: load_arm 30, element.body_height: 4)". "" for None.
+    """Why the estimator refuses an element, with the design's own fields and their values: "...
+    (array.row_arms: load_arm 30, element.body_height: 4)". "" for None.
     """
     if why is None:
         return ""

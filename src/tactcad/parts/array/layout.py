@@ -1,11 +1,11 @@
-"""Where everything of the array stands, derived once from the design.
+"""The places of all parts of the array, derived once from the design.
 
 Frame (mm): x from the middle line between the rows along row one's arms, y along the row, z = 0 on
 the elements' flat (gauge) face, + away from the object. Row two is row one's kind of row turned by
 180 degrees about z, so every x below is a distance from the middle line and holds for both.
 
-What stands along x takes arrays in place of the design's numbers too (sweep's `with_value`, a synthesis's
-candidates): then it is that of many designs at once.
+Dimensions along x also accept arrays in place of the design's numbers (sweep's `with_value`, a synthesis's
+candidates): then they are those of many designs at once.
 """
 
 from __future__ import annotations
@@ -26,14 +26,14 @@ LEAST_GAP = 0.1
 END_PLATE_WEB = 1.0
 # Set screws end this far below the carrier's top, so that the axis's plate lies flat on it.
 SUNK = 1.0
-# Set screws stand this far from rear bodies and end plates; chosen: more than their threads' play in the
+# Distance of set screws from rear bodies and end plates; chosen: more than their threads' play in the
 # carrier.
 BESIDE_SET_SCREW = 0.3
 # Least material between holes of a plate: feasible in metal, where 0.8 is advised and less is flagged
 # (vendors' guides, see checks/data/shop.toml).
 HOLE_WEB = 0.5
-# Least lever of what sets a turn, over half the body's diagonal across its axis; of a way, as much is left
-# beside turns that come with it. Chosen: a foot of a tenth of its height rocks.
+# Least lever of contacts that fix a rotation, over half the body's diagonal across its axis; for a
+# translation, the share left besides coupled rotations. Chosen: a foot of a tenth of its height rocks.
 LEVER = 0.1
 # Least material to the carrier's edge; chosen: as END_PLATE_WEB.
 CARRIER_EDGE = 1.0
@@ -182,13 +182,13 @@ class Layout:
         return tuple(round(self.clamp_edge + offset, 6) for offset in self.design.holes.dowel_offsets)
 
     def body_bottom(self, hinge: HingeShape) -> float:
-        """z of the front body's lower face: 0, or below it where a two-sided body is thicker than its arm."""
+        """z of the front body's lower face: 0, or below if a two-sided body is thicker than its arm."""
         if self.design.element.sides == "one":
             return 0.0
         return round((hinge.h - self.design.element.body_height) / 2, 9)
 
     def ledge_of(self, hinge: HingeShape) -> float:
-        """z of the front body's upper face, where the stop plate sits."""
+        """z of the front body's upper face, on which the stop plate sits."""
         return round(self.body_bottom(hinge) + self.design.element.body_height, 9)
 
     @property
@@ -293,7 +293,7 @@ class Layout:
 
     @property
     def hold_down_x(self) -> float:
-        """x of the set screws: as near the clamp edge as the rear bodies beside them allow, over every
+        """x of the set screws: as near the clamp edge as the neighbouring rear bodies allow, over every
         ledge."""
         return round(self.clamp_edge - METRIC[self.design.clamp.screw].d / 2 - BESIDE_SET_SCREW, 6)
 
@@ -309,17 +309,17 @@ class Layout:
 
     @property
     def beyond_screws(self) -> float:
-        """How far the outermost elements' mid-planes stand beyond the last set screw, mm."""
+        """Distance of the outermost elements' mid-planes beyond the last set screw, mm."""
         return max(0.0, self.position_y(self.positions - 1) - self.hold_down_y[-1])
 
     @cached_property
     def stop_give(self) -> float:
-        """How far the stop plate gives way for each newton of one arm, mm/N."""
+        """Compliance of the stop plate under one arm, mm/N."""
         return self.stop_plate_beams().one
 
     def stop_plate_beams(self, pitch: float | None = None) -> StopPlate:
         """The stop plate between its set screws; `pitch` (mm) replaces the largest length along the row
-        without one: between two pairs, or twice what arms stand beyond the last."""
+        without one: between two pairs, or twice the arms' distance beyond the last."""
         if pitch is None:
             y = self.hold_down_y
             pitch = max([b - a for a, b in zip(y, y[1:])] + [2 * self.beyond_screws])

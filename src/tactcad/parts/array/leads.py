@@ -1,6 +1,6 @@
-"""Boards and leads: which element is read by which board, where that stands beside the array on its back, and
-the way of each element's leads: from the terminal on the floor of its wire recess to the rear end, to the tie
-around the leads of its board, to the clamp on the board's plate, to the board's socket.
+"""Boards and leads: the board of each element, its place next to the array on its back, and the path of each
+element's leads: from the terminal on the floor of its wire recess to the rear end, to the tie around the
+leads of its board, to the clamp on the board's plate, to the board's socket.
 
     gauge           recess                          rear end      tie       clamp   connector
     =====----.                                                    .---------[##]----[]
@@ -24,10 +24,10 @@ from .layout import ElementPlace, Layout
 # strain gauge practice; of two wires there is no white one.
 COLOURS = {"three-wire": ("RD", "WH", "BK"), "two-wire": ("RD", "BK")}
 AHEAD_OF_LEADS = 0.5  # terminals behind the recess's wall, mm; chosen: a tool to press them down
-WHOLE = 5.0  # leads are cut to whole steps of so many mm; chosen: what a rule is read to
+WHOLE = 5.0  # mm, step of the leads' lengths; chosen: the reading of a ruler
 BESIDE = 10.0  # mm between boards, and from the array to a plate; chosen: fingers
 LAST = hypot(CLAMP_AHEAD, socket_top() - PLATE)  # mm from the clamp to the socket's tails
-NEAR = 300.0  # mm; chosen: boards stand within a hand's reach, and what leads are longer hangs in a loop
+NEAR = 300.0  # mm; chosen: boards are within a hand's reach, and longer leads hang in a loop
 
 
 @dataclass(frozen=True)
@@ -55,8 +55,8 @@ def lead_routes(layout: Layout) -> tuple[LeadRoute, ...]:
 
 @dataclass(frozen=True)
 class BoardStand:
-    """Where a board's lead connector has its middle beside the array, mm in the array's frame: |x|, y; on the
-    side of row one (1) or row two (-1)."""
+    """The middle of a board's lead connector, mm in the array's frame: |x|, y; on the side of row one (1) or
+    row two (-1)."""
 
     side: float
     x: float
@@ -80,10 +80,45 @@ def stands(layout: Layout) -> tuple[BoardStand, ...]:
 
 
 def least_to_board(layout: Layout) -> float:
-    """mm: no board's plate stands over the array, and the tie is before it."""
+    """mm: no board's plate overlaps the array, and the tie is in front of the plate."""
     over = layout.carrier_length / 2 + BESIDE - layout.rear_end - layout.design.wiring.gather
     least = LAST + hypot(max(over, 0.0) + PLATE_AHEAD - CLAMP_AHEAD, _drop(layout))
     return ceil(10 * least - 1e-6) / 10
+
+
+@dataclass(frozen=True)
+class Bench:
+    """Boards on the bench beside a rig's base plate, the array over this: the longest level way from a tie to
+    its lead clamp, mm, and how high the board plates are raised so that wiring.to_board reaches."""
+
+    run: float
+    block: float
+
+    @property
+    def least(self) -> float:
+        """Of wiring.to_board, mm, with plates as high as the leads."""
+        return ceil(10 * (LAST + self.run) - 1e-6) / 10
+
+
+def on_bench(layout: Layout, edge: float, high: float, aside: tuple[float, float] = (0.0, 0.0)) -> Bench:
+    """Boards side by side as in `stands`, BESIDE off the base plate's ends, mm.
+
+    edge   of the base plate, from the array's middle along x
+    high   leads in their recess over the bench
+    aside  that the array is moved along x and y, at most
+    """
+    w, runs = layout.design.wiring, []
+    x = edge + BESIDE + PLATE_AHEAD - CLAMP_AHEAD - layout.rear_end - w.gather + aside[0]
+    for board, stand in zip(boards(layout), stands(layout)):
+        runs.append(hypot(x, abs(stand.y - _middle(board)) + aside[1]))
+    run = max(runs)
+    along = max(w.to_board - LAST, run)
+    return Bench(run, float(ceil(max(0.0, high - PLATE - sqrt(along**2 - run**2)))))
+
+
+def _middle(board: ReadBoard) -> float:
+    """y at which a board's leads are tied, mm."""
+    return (board.places[0].y + board.places[-1].y) / 2
 
 
 def _drop(layout: Layout) -> float:
@@ -99,7 +134,7 @@ def carrier_top(layout: Layout) -> float:
 def _route(layout: Layout, board: ReadBoard, stand: BoardStand, place: ElementPlace) -> LeadRoute:
     d, side = layout.design, stand.side
     terminal, recess = layout.recess_start + AHEAD_OF_LEADS, d.element.recess_depth
-    middle = (board.places[0].y + board.places[-1].y) / 2
+    middle = _middle(board)
     tie = layout.rear_end + d.wiring.gather
     points = (
         (side * terminal, place.y, recess),

@@ -1,6 +1,4 @@
-"""What is measured on every numbered element as cut: the part's own characteristics, and inputs of the
-estimator.
-"""
+"""Measurements on every numbered element as cut: the part's characteristics, and inputs of the estimator."""
 
 from __future__ import annotations
 
@@ -25,7 +23,7 @@ class Measurement:
     how: str
 
 
-# By name: the field of HingeSection, where the dimension is taken, and with what.
+# By name: the field of HingeSection, the place of measurement, and the instrument.
 MICROSCOPE = "measuring microscope, 0.001 or better"
 WAYS = {
     "hinge thickness": (
@@ -58,9 +56,9 @@ AS_DRAWN = ("", "as dimensioned on the part's drawing sheet", "as its tolerance 
 
 
 def measurements(layout: Layout) -> list[tuple[ElementPlace, str, tuple[Measurement, ...]]]:
-    """Every element by number: its place, its part number, and what to measure on it.
+    """Every element by number: its place, its part number, and its measurements.
 
-    That is its part's characteristics, and the load arm that follows from two of them.
+    These are its part's characteristics, and the load arm that follows from two of them.
     """
     known: dict[str, tuple[Measurement, ...]] = {}  # a long row has few kinds of element
     measured = []

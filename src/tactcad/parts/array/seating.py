@@ -1,6 +1,6 @@
 """How hard the set screws seat the stop plate; they bend stack and carrier apart between the end plates.
 
-A stop plate that only lies on its ledges, touched by its set screws, is held as well: seating takes up their
+A stop plate that only lies on its ledges, touched by its set screws, is also fixed: seating takes up their
 play.
 """
 
@@ -40,8 +40,8 @@ def carrier_beam(layout: Layout, length: float) -> Beam:
 
 
 def carrier_opens(layout: Layout, y: float) -> float:
-    """By how much the carrier, held in its middle, opens the gap of an arm at `y`: mm/N of stop force, < 0
-    closes it.
+    """Opening of the gap of an arm at `y` by the carrier, held in its middle: mm/N of stop force, < 0 closes
+    it.
 
     The stop pushes the carrier up at y, u of the half length h; the load, which is more, goes through the end
     plate to the carrier's end. The carrier rises at u by bending h^3 u^3/3EI, its end by h^3 u^2 (3 - u)/6EI,

@@ -1,8 +1,8 @@
 """Parts that are taken as rigid, and how much they bend: a line for each part and load, of the array and its
 rigs.
 
-Beams and round plates (mechanics.bending) on supports that let their ends turn, unless a line says
-otherwise; real parts mostly bend less. Bought parts are left out: their makers state their stiffness.
+Beams and round plates (mechanics.bending) on simple supports, unless a line states others; real parts mostly
+bend less. Bought parts are left out, since their makers state their stiffness.
 """
 
 from __future__ import annotations
@@ -31,13 +31,13 @@ ROUNDING = 1e-9
 class Deflection:
     """One part under one load.
 
-    scene       where it stands under this load
-    part, model what bends, and the model of it
+    scene       its scene with this load
+    part, model the bending part, and its model
     load        N, and `origin`, why so much
-    gives       um; negative where that closes a gap
+    gives       um; negative if that closes a gap
     allowed     um, and `why`
     fields      paths of the design's fields that make it bend less, the most useful first
-    severity    `flag`: the array works all the same, but whoever builds or holds it has to know
+    severity    `flag`: the array works, but its builder or user must know
     """
 
     scene: str
@@ -110,7 +110,7 @@ def array_lines(design: Design) -> Iterator[Deflection]:
 
 
 def _stop_lines(layout: Layout) -> Iterator[Deflection]:
-    """What bends between arm and stop, under the arm that has least room for it."""
+    """Deflections between arm and stop, for the arm with the least allowance."""
     from .stop_gap import stop_limit
 
     held = carrier_beam(layout, 2 * layout.end_plate_y).supported()
@@ -131,7 +131,7 @@ def _stop_lines(layout: Layout) -> Iterator[Deflection]:
         states = []
         for p in layout.elements:
             force = layout.design.rating.overload_force * p.load_arm / p.arm
-            gap = max(stop_limit(layout, p, give=0.0).gap, 1e-9)  # of none, any share is passed
+            gap = max(stop_limit(layout, p, give=0.0).gap, 1e-9)  # of a zero allowance, any share is passed
             allowed = 1e3 * SHARE * gap
             states.append((give(layout, p.y) * force * 1e3 / allowed, force, allowed))
         share, force, allowed = max(states)

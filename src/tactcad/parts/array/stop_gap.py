@@ -55,9 +55,9 @@ def stop_gap(layout: Layout, place: ElementPlace) -> float:
     Returns
     -------
     float
-        mm. The value of [stop.gaps] where it lists the arm; else, rounded down to a step, the widest that
-        with its tolerance keeps the hinge within its rated deflection under the overload force
-        (`stop_limit`) and leaves a land under the ledge (`land_room`).
+        mm. The value of [stop.gaps] if it lists the arm; else, rounded down to a step, the widest that with
+        its tolerance keeps the hinge within its rated deflection under the overload force (`stop_limit`) and
+        leaves a land under the ledge (`land_room`).
     """
     stop = layout.design.stop
     if stop.gaps and place.arm in stop.gaps:
@@ -69,8 +69,8 @@ def stop_gap(layout: Layout, place: ElementPlace) -> float:
 
 
 def unrated_gap(layout: Layout, place: ElementPlace) -> tuple[str, ...]:
-    """A note for the element's sheet where its gap is not what the element is rated for: its row of
-    strength.csv is blank, since the estimator does not reach it. No note where [stop.gaps] lists the arm."""
+    """A note for the element's sheet if its gap does not follow from its rating: its row of strength.csv is
+    blank, since it is out of the estimator's range. No note if [stop.gaps] lists the arm."""
     if layout.design.stop.gaps and place.arm in layout.design.stop.gaps:
         return ()
     (why,) = validity.first_broken(hinge_section(layout, (place,)), ladder.DEFAULT_RUNG)
@@ -85,8 +85,8 @@ def unrated_gap(layout: Layout, place: ElementPlace) -> tuple[str, ...]:
 def seat(layout: Layout) -> float:
     """By how much the stop plate may lie above an element's own ledge at its land, mm.
 
-    Other ledges at their upper limit, this one at its lower; the plate's flatness; and pads that stand off
-    the surface plate, here and there, once their heights and the pins' lean use up their dowels' play.
+    Other ledges at their upper limit, this one at its lower; the plate's flatness; and gaps of some pads to
+    the surface plate, once their heights and the pins' lean use up the dowels' play.
     """
     d = layout.design
     t, h = d.tolerance, d.holes
@@ -254,7 +254,7 @@ def endurance(layout: Layout, states: Sequence[Overload]) -> str:
 
 
 def reach(states: Sequence[Overload]) -> str:
-    """Up to which force each element measures, where a stop may close below the rated one; "" if none may."""
+    """Measuring limit of each element whose stop may close below the rated force; "" if none may."""
     if not any(state.earliest < state.rated_force for state in states):
         return ""
     return "a stop may close below the rated force; measures up to " + by_force(

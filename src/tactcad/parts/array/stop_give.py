@@ -1,4 +1,4 @@
-"""Compliance of the stop plate where an arm presses it off its ledges, held down by set screws.
+"""Compliance of the stop plate, held down by set screws, under an arm that presses it off its ledges.
 
 Two beams in series, each on supports that let its ends turn. Across, from one row of set screws to the other,
 a strip carries the arm; it is as wide as a slab contributes to a single load (2.4 a (1 - a/span), in the
@@ -43,7 +43,7 @@ class StopPlate:
 
     @property
     def one(self) -> float:
-        """Compliance under a single arm, wherever it stands, mm/N."""
+        """Compliance under a single arm at any place, mm/N."""
         return self.across.supported() + self.along.supported() + self.screw
 
 

@@ -37,7 +37,7 @@ SPARES: dict[str, Callable[[float], int]] = {"": lambda _: 0, "bonded": bonded_s
 
 
 def supplies(group: str, counts: Mapping[str, float], **figures: object) -> Iterator[Supply]:
-    """The rows of a group: quantities from `counts` by what is counted, texts with these figures."""
+    """The rows of a group: quantities from `counts`, by the unit counted, and texts with these figures."""
     for row in (row for row in ROWS if row["group"] == group):
         said = {name: text.format(**figures) for name, text in row.items()}
         qty = counts[said["qty"]] if said["qty"] in counts else int(said["qty"])
@@ -61,9 +61,11 @@ def supplies(group: str, counts: Mapping[str, float], **figures: object) -> Iter
 
 
 def array_supplies(layout: Layout) -> tuple[Supply, ...]:
-    """Gauge and bonding supplies of the array, none of them verified in a maker's own data."""
+    """Gauge and bonding supplies of the array, none verified in a maker's own data."""
     g, material, bonding = layout.design.gauge, layout.design.material, layout.design.bonding
     metal = family(material.density) or material.alloy
+    if metal == "steel":  # of 11 or 16e-6/K, as its grade is
+        metal += f" {material.alloy}"
     longest = f", at most {bonding.terminal_length:g} mm long" if bonding else ""
     carrier = g.carrier_arm_side + g.carrier_body_side
     counts = {"elements": len(layout.elements)}
@@ -71,7 +73,7 @@ def array_supplies(layout: Layout) -> tuple[Supply, ...]:
 
 
 def electronic_supplies(layout: Layout) -> tuple[Supply, ...]:
-    """Of the three other arms of every bridge, the leads, the boards and what stands on them."""
+    """Supplies for the three other arms of every bridge, the leads, the boards and their components."""
     d, r = layout.design, layout.design.readout
     n, count = len(layout.elements), len(boards(layout))
     kind, tolerance, drift = COMPLETIONS[r.completion], completion_tolerance(d), completion_drift(d)
@@ -135,7 +137,7 @@ def electronic_supplies(layout: Layout) -> tuple[Supply, ...]:
 
 
 def wiring_supplies(layout: Layout) -> tuple[Supply, ...]:
-    """What the scene of the wiring uses up beside the leads: braid and wire as long as each board's."""
+    """Supplies of the wiring besides the leads: braid and wire as long as each board's."""
     d, count = layout.design, len(boards(layout))
     metres = ceil(10 * count * max(route.cut for route in lead_routes(layout)) * 1e-3) / 10
     outer = bundle(d, channels_of(layout) * leads(layout))

@@ -1,3 +1,1 @@
-"""What is bought: standard parts by rows of their tables, electronic parts, lines of the bill without a
-solid.
-"""
+"""Bought parts: standard parts by rows of their tables, electronic parts, bill lines without a solid."""

@@ -36,8 +36,8 @@ FILTER_RESISTOR, ANTI_ALIAS = "RESISTOR-10R", "CAPACITOR-100P"
 # In each input of the amplifier; chosen: with 100 pF between them, 8 MHz; their noise is 0.2 %.
 FILTER_OHM = 10.0
 ON_SUPPLIES = 5  # of decoupling capacitors: two at the amplifier, two at the multiplexer, one at the decoder
-CARD_SIGNALS = 8  # of the connector to the card beside the address: supplies, ground twice, enable, output
-CONTROLLER_SIGNALS = 9  # of that to a controller: EXC, ground twice, supply, four lines and one back
+CARD_SIGNALS = 8  # pins to the card besides the address: supplies, ground twice, enable, output
+CONTROLLER_SIGNALS = 9  # pins to a controller: EXC, ground twice, supply, four lines and one back
 
 
 def lead_part(colour: str) -> str:
@@ -51,7 +51,7 @@ def converter_of(design: Design) -> Converter | None:
 
 
 def parts_used(design: Design) -> dict[str, Bought]:
-    """The electronic parts whose figures decide rules and checks, by what they are."""
+    """The electronic parts whose figures decide rules and checks, by kind."""
     r, converter = design.readout, converter_of(design)
     both: dict[str, Bought] = {"completion": COMPLETIONS[r.completion], "foil": FOILS[design.gauge.foil]}
     if converter:
@@ -65,8 +65,8 @@ def parts_used(design: Design) -> dict[str, Bought]:
 
 
 def unread(design: Design, kinds: Iterable[str]) -> str:
-    """What a finding that stands on figures of these kinds of parts has to add: whose were not all read in
-    the maker's own sheet; "" if all were."""
+    """The remark for findings based on these kinds of parts: those whose figures were not all read in the
+    maker's own sheet; "" if all were."""
     used = parts_used(design)
     names = [used[kind].name for kind in kinds if kind in used and not used[kind].verified]
     return f"; unread: {', '.join(names)}" if names else ""
@@ -79,7 +79,7 @@ def completion_resistance(design: Design) -> float:
 
 
 def bridge_resistance(design: Design) -> float:
-    """Of a bridge, ohm: gauge and an arm beside it, parallel to two other arms."""
+    """Of a bridge, ohm: gauge and one arm in series, parallel to the two other arms."""
     gauge, arm = design.gauge.resistance, completion_resistance(design)
     return 1 / (1 / (gauge + arm) + 1 / (2 * arm))
 
@@ -112,7 +112,7 @@ def nearest_e192(ohm: float) -> float:
     """The value of the series E192 (IEC 60063) that is nearest by ratio."""
     decade = 10.0 ** floor(log10(ohm))
     series = [round(100 * 10 ** (i / 192)) for i in range(193)]
-    series[185] = 920  # IEC 60063 has 920 where the formula gives 919
+    series[185] = 920  # IEC 60063 has 920, the formula gives 919
     return min((decade * s / 100 for s in series), key=lambda r: abs(log10(r / ohm)))
 
 

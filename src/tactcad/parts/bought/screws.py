@@ -62,9 +62,9 @@ def cap_screw(thread: str, length: float) -> Part:
     Raises
     ------
     KeyError
-        Where the table has no such thread.
+        If the table has no such thread.
     ValueError
-        Where the standard has no such length.
+        If the standard has no such length.
     """
     m = METRIC[thread]
     if length not in CAP_SCREW_LENGTHS[thread]:

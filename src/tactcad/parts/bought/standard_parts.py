@@ -1,6 +1,5 @@
-"""Standard parts beside screws, from rows of their tables (mm): ISO 8734 pins and the ground rod where the
-standard's lengths end; ball bearings of ISO 15; O-rings of ISO 3601-1 in static face seals; linear stages as
-they are sold.
+"""Standard parts other than screws, from rows of their tables (mm): ISO 8734 pins, and ground rod beyond the
+standard's lengths; ball bearings of ISO 15; O-rings of ISO 3601-1 in static face seals; linear stages.
 """
 
 from __future__ import annotations
@@ -14,7 +13,7 @@ from ..language.description import Extrusion, Material, Part, Purchase, Revoluti
 from ..language.fits import deviations
 from ..language.tables import number, rows
 
-# Least diametral play of a sliding pin, mm; chosen: what a plug gauge tells from none.
+# Least diametral play of a sliding pin, mm; chosen: the least that a plug gauge shows.
 LEAST_PLAY = 0.002
 HARDENED = Material("hardened steel", 7850)
 
@@ -66,7 +65,7 @@ BEARING_STEEL = Material("bearing steel 100Cr6", 7850)
 class Bearing:
     """Bore d, outside diameter D, width B, and largest diameter that may press on the inner ring (mm).
 
-    Mass in g, None: the body's. data/bearings.csv says where each is from.
+    Mass in g, None: the body's. data/bearings.csv names each one's source.
     """
 
     d: float
@@ -152,7 +151,7 @@ def o_ring(code: str) -> Part:
 class Stage:
     """Two square plates of `size` and thickness `plate`, M4 at +-`hole`, moving +-`travel` (mm).
 
-    maker, part_no: where the row was read in the maker's own data (`verified`), else empty.
+    maker, part_no: if the row was read in the maker's own data (`verified`), else empty.
     """
 
     size: float

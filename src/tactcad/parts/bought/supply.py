@@ -1,5 +1,5 @@
-"""A line of the bill of materials that has no solid, and how many pieces beyond the array's are ordered, by
-what building it may cost.
+"""A line of the bill of materials that has no solid, and the number of spares to order, by the losses
+expected in building.
 """
 
 from __future__ import annotations
@@ -7,7 +7,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import ceil
 
-# What the bill's column `process` says of what is bought, and so who is asked for it.
+# The bill's column `process` for bought items, which decides the supplier.
 ELECTRONIC = "electronic"
 BARE_BOARD = "circuit board"
 MECHANICAL = "bought"
@@ -36,7 +36,7 @@ LOST_IN = 10  # the paper: of ten elements one, no. 5, did not work
 
 def spare_elements(count: int) -> int:
     """Spare elements of a kind of which the array has `count`: one of every ten, and one of every kind, since
-    none can stand in for another's arm."""
+    none can replace another arm."""
     return ceil(count / LOST_IN)
 
 

@@ -1,4 +1,4 @@
-"""What a part is, without a CAD kernel: one stock body, features cut into it, and how it is made.
+"""A part without a CAD kernel: one stock body, features cut into it, and its process.
 
 Solids, cut files, drawings, tool rules, volumes and the bill of materials are all read from this.
 Local frame: an extrusion's contour lies in x, y and its thickness along +z from 0; a revolution's
@@ -131,7 +131,7 @@ class Hole:
 
     @property
     def moment(self) -> Vector:
-        """Volume times centre of what is taken off, mm4."""
+        """Volume times centre of the removed material, mm4."""
         r = self.diameter / 2
         depth_moment = pi * r * r * self.depth**2 / 2
         if self.counterbore:
@@ -166,7 +166,7 @@ class Pocket:
 
     @property
     def moment(self) -> Vector:
-        """Volume times centre of what is taken off, mm4."""
+        """Volume times centre of the removed material, mm4."""
         sections = [(self.contour, 1.0), *((c, -1.0) for c in self.island)]
         mx, my = (sum(sign * c.area * c.centroid[i] for c, sign in sections) * self.depth for i in (0, 1))
         y_axis = _cross(self.axis, self.x_axis)
@@ -196,8 +196,8 @@ def drill_point_height(diameter: float) -> float:
 
 @dataclass(frozen=True)
 class Material:
-    """What a part is made of; density in kg/m3. `standard`: by which it is ordered. `magnetic`: whether a
-    magnet draws it, "yes", "weakly" or "no"; "" if that is not known."""
+    """A part's material; density in kg/m3. `standard`: for ordering. `magnetic`: whether a magnet attracts
+    it, "yes", "weakly" or "no"; "" if that is not known."""
 
     name: str
     density: float
@@ -243,7 +243,7 @@ class Part:
     part_no, name
         Equal parts share a number.
     process
-        How it is made; "bought"; "included" with another that is bought; "reference" for what is at hand.
+        Its process; "bought"; "included" with another bought part; "reference" for parts at hand.
     material
         With its density.
     body
@@ -255,7 +255,7 @@ class Part:
     finish, notes
         For the drawing.
     characteristics, geometric, datums
-        Toleranced dimensions, geometric tolerances, and the datums that these refer to.
+        Toleranced dimensions, geometric tolerances, and their datums.
     purchase
         How a bought part is ordered.
     mass_override
@@ -263,14 +263,14 @@ class Part:
     spares
         Pieces to order beyond the scene's.
     kind
-        What steps, notes and sheets treat it as; "" if they treat it as any other part.
+        Kind for steps, notes and sheets; "" for any other part.
     thread
         Metric thread of a screw or nut, "M3".
 
     Raises
     ------
     CheckFailure
-        Where its limits contradict each other, or stand on what the part does not have.
+        If its limits contradict each other, or refer to features that the part does not have.
     """
 
     part_no: str
@@ -298,8 +298,8 @@ class Part:
 
     @property
     def feature_names(self) -> frozenset[str]:
-        """Names of what limits and datums may stand on: contour edges, openings, holes, pockets and
-        their edges, faces."""
+        """Names of the features for limits and datums: contour edges, openings, holes, pockets and their
+        edges, faces."""
         names = {f.name for f in self.features}
         pockets = [f for f in self.features if isinstance(f, Pocket)]
         names |= {f"{p.name} {s.name}" for p in pockets for c in (p.contour, *p.island) for s in c if s.name}
@@ -367,7 +367,7 @@ DETAILS = ("full", "envelope")
 def envelope(part: Part) -> Part:
     """The part without holes, pockets and limits: a shape that contains the part. Its mass stays the part's.
 
-    It is a reference shape: no cut file or drawing is made of it.
+    It is a reference shape, without cut file or drawing.
     """
     if isinstance(part.body, ModelFile):
         return part

@@ -1,4 +1,4 @@
-"""What is wrong with a design, a part or a scene: one record for rules between fields and for checks."""
+"""A fault of a design, a part or a scene: one record for rules between fields and for checks."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ class Finding:
               look at
     place     where on the part, mm in its own frame; empty for the whole part
     value     in the unit that the message names
-    limit     likewise; of a rule, in words what is legal
-    message   what is wrong
+    limit     likewise; of a rule, the legal range in words
+    message   the fault
     part_no   of an element that `part` names by its designator, its number
     """
 
@@ -38,7 +38,7 @@ class Finding:
 
     @property
     def about(self) -> str:
-        """What it is about, as a reader sees it."""
+        """Its subject, in a reader's words."""
         return f"{self.part} ({self.part_no})" if self.part_no else self.part
 
     @property
@@ -49,7 +49,7 @@ class Finding:
 
     @property
     def broken(self) -> str:
-        """What is said of a rule that a design breaks: field, what is wrong, value found, what is legal."""
+        """Message of a broken rule: field, fault, value found, legal range."""
         return f"{self.part}: {self.message}; found {self.value}; legal: {self.limit}"
 
     def __str__(self) -> str:
@@ -63,7 +63,7 @@ class Finding:
 
 
 def grouped(findings: Iterable[Finding]) -> list[str]:
-    """What is said of each, those that say the same of several parts together."""
+    """The messages; equal ones on several parts are joined."""
     alike: dict[tuple[str, str], list[Finding]] = {}
     for finding in findings:
         alike.setdefault((finding.check, finding.message), []).append(finding)

@@ -34,7 +34,7 @@ def deviations(code: str, size: float) -> tuple[float, float]:
     Raises
     ------
     ValueError
-        Where the tables do not hold the code or the size.
+        If the tables do not have the code or the size.
     """
     match = _CODE.fullmatch(code)
     letter, grade = (match[1], match[2]) if match else ("", "")

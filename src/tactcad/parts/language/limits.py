@@ -23,9 +23,8 @@ class Characteristic:
     """A toleranced dimension: its value with limits (mm), and whether it is a key characteristic.
 
     Of a fit (ISO 286) the nominal size may lie outside its limits.
-    `between` names the two features that it lies between, or the one feature of size; of three,
-    it ends in the middle between the last two. `remark`: by what it is made if that is not
-    the drawn value.
+    `between` names the two features that it connects, or the one feature of size; with three, it ends midway
+    between the last two. `remark`: the value to make if that is not the drawn one.
     """
 
     name: str
@@ -39,7 +38,7 @@ class Characteristic:
 
 @dataclass(frozen=True)
 class DatumFeature:
-    """A datum letter, and the feature that it stands on."""
+    """A datum letter, and its feature."""
 
     letter: str
     feature: str
@@ -50,7 +49,7 @@ class Geometric:
     """A geometric tolerance (ISO 1101).
 
     symbol    what is controlled
-    zone      width of its zone, mm; its diameter where `round`
+    zone      width of its zone, mm; its diameter if `round`
     features  that it holds for, a pattern of several together
     datums    letters, in order of precedence
     """
@@ -76,27 +75,27 @@ def contradictions(
     datums: Collection[DatumFeature],
     features: Collection[str],
 ) -> Iterator[str]:
-    """What is wrong with a part's limits, a line each, with what is legal.
+    """Faults in a part's limits, a line each, with the legal values.
 
     Parameters
     ----------
     characteristics, geometric, datums
         As the part states them.
     features
-        Names of the part's features; datums and geometric tolerances may stand on these alone.
+        Names of the part's features; datums and geometric tolerances may refer to these only.
     """
     known = ", ".join(sorted(set(features) - {""}))
     for c in characteristics:
         if c.lower > c.upper:
             yield f"{c.name}: lower limit {c.lower:g} above the upper one, {c.upper:g}; legal: lower <= upper"
         if not c.between:
-            yield f"{c.name}: stands on no feature; legal: {known}"
+            yield f"{c.name}: refers to no feature; legal: {known}"
         for feature in (f for f in c.between if f not in features):
             yield f"{c.name}: the part has no feature {feature!r}; legal: {known}"
     letters = [d.letter for d in datums]
     for d in datums:
         if letters.count(d.letter) > 1:
-            yield f"datum {d.letter} stands on several features; legal: one feature a letter"
+            yield f"datum {d.letter} refers to several features; legal: one feature a letter"
         if d.feature not in features:
             yield f"datum {d.letter}: the part has no feature {d.feature!r}; legal: {known}"
     for g in geometric:

@@ -56,8 +56,8 @@ def tapped_depth(thread: str) -> float:
 
 
 def blind_thread(thread: str) -> float:
-    """Full thread of a blind hole, mm: the engaged length, and 1.5 mm in which the screw's end stays free, be
-    its length as js15 allows (0.29 mm of an M3x8) and the plate under its head as thin as it may be."""
+    """Full thread of a blind hole, mm: the engaged length, and 1.5 mm so that the screw's end stays free for
+    any length by js15 (0.29 mm of an M3x8) and the thinnest plate under its head."""
     return engagement(thread) + 1.5
 
 
@@ -76,7 +76,7 @@ SUNK = 0.2
 
 
 def corners(x: float, y: float) -> tuple[tuple[float, float], ...]:
-    """The corners of a rectangle 2 x by 2 y around the middle, as screws stand in a plate."""
+    """The corners of a rectangle 2 x by 2 y around the middle, for a plate's screws."""
     return tuple((sx * x, sy * y) for sx in (-1, 1) for sy in (-1, 1))
 
 
@@ -88,7 +88,7 @@ def sunk(name: str, thread: str, at: Vector, axis: Vector, thickness: float, und
 
 
 def tapped(name: str, thread: str, at: Vector, axis: Vector, thickness: float, engaged: float = 0.0) -> Hole:
-    """Drilled through, or blind where the plate is thicker than a drill reaches.
+    """Drilled through, or blind if the plate is thicker than a drill reaches.
 
     Threaded from `at` as deep as is useful, and at least to the end of the screw, which is `engaged` mm in.
     """

@@ -32,14 +32,14 @@ def plate_material(design: CommonTables) -> Material:
 
 
 def bar_material(design: CommonTables) -> Material:
-    """What is turned of the plates' alloy: extruded bar."""
+    """Extruded bar of the plates' alloy, for turned parts."""
     alloy = ALLOYS[design.plate_alloy]
     standard = alloy.standard.replace("EN 485-2", "EN 755-2")
     return Material(alloy.name, alloy.density, standard=standard, magnetic=alloy.magnetic or "")
 
 
 def held_for_grinding(material: Material) -> str:
-    """How a piece is held on a surface grinder: a magnetic chuck holds what a magnet draws, and that only."""
+    """Workholding on a surface grinder: a magnetic chuck holds magnetic material only."""
     if material.magnetic == "yes":
         return "on a magnetic chuck, demagnetised afterwards"
     if material.magnetic:

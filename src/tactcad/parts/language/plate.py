@@ -13,12 +13,12 @@ from .limits import FACES, Characteristic, DatumFeature, Geometric, within
 from .metric import METRIC
 from .part_materials import plate_material
 
-# A plate is faced on both sides to this, plus and minus mm, so that screws through it end where they should;
-# what is thicker is a block, with general tolerances.
+# A plate is faced on both sides to this, plus and minus mm, so that screws through it end in place; a thicker
+# part is a block, with general tolerances.
 THICKNESS, THICKEST = 0.05, 20.0
 # Zone of a screw hole, mm; chosen: drilled in one clamping. A screw of M3 in a hole of 3.4 takes it twice.
 PLACE = 0.1
-FRAME = ("A", "B", "C")  # the datums that a plate's holes stand from
+FRAME = ("A", "B", "C")  # the datums of a plate's holes
 FRAME_DATUMS = (DatumFeature("A", FACES[0]), DatumFeature("B", "left edge"), DatumFeature("C", "lower edge"))
 RIG_COLOUR = "#8d99a6"
 BREAK_EDGES = "break edges 0.2"
@@ -40,7 +40,7 @@ def plate(
 ) -> Part:
     """A plate of the design's plate alloy; its part number is the design's name and `number`.
 
-    Screw holes of which it states no place stand in a zone each, from a face and two edges.
+    Screw holes without a stated position get a zone each, from a face and two edges.
     """
     features = tuple(features)
     limited = {f for c in characteristics for f in c.between} | {f for g in geometric for f in g.features}

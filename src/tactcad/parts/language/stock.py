@@ -1,5 +1,5 @@
-"""What a part is cut from: flat stock as it is sold, what the blank has over the finished part on each face
-and edge, and the section that its cut file holds. Lengths in mm.
+"""A part's stock: flat stock as sold, the allowance on each face and edge, and the section in its cut file.
+Lengths in mm.
 """
 
 from __future__ import annotations
@@ -29,8 +29,8 @@ _SOLD = rows(__file__, "stock")
 class FlatStock:
     """Flat stock of a part.
 
-    thickness, lower, upper  as ordered, and the limits of what is delivered
-    standard                 by which these hold; "" if no table here has them
+    thickness, lower, upper  as ordered, and the limits of delivery
+    standard                 of these limits; "" if no table here has them
     face, edge               over the finished part, at least, on each face and on each edge; 0: not finished
     """
 
@@ -49,8 +49,8 @@ def own_thickness(part: Part) -> Characteristic | None:
 
 def stock_of(part: Part) -> FlatStock | None:
     """The thinnest stock sold that leaves enough on both faces. Wire-cut or etched sheet of a thickness
-    that is sold is left as rolled, picked where the part's limits are closer than the standard's. None for
-    what is no extrusion, or is turned, and where nothing sold is thick enough."""
+    that is sold is left as rolled, picked by measurement if the part's limits are closer than the standard's.
+    None for parts that are no extrusion, or are turned, and if no stock sold is thick enough."""
     if not isinstance(part.body, Extrusion) or part.process not in FACE:
         return None
     t, own, metal = part.body.thickness, own_thickness(part), family(part.material.density)
@@ -73,9 +73,9 @@ def stock_of(part: Part) -> FlatStock | None:
 def cut_section(part: Part) -> Extrusion | None:
     """The section that a part's cut file describes, extruded; None if the part has no cut file.
 
-    Wire-cut and etched parts are cut with all their holes. What is milled or ground from plate has a cut file
-    of its blank: a rectangle that leaves material on every edge, as thick as its stock, without holes. What
-    has a pocket, or is thicker than it is wide, is milled from a block and has no cut file.
+    Wire-cut and etched parts are cut with all their holes. Parts milled or ground from plate have a cut file
+    of the blank: a rectangle that leaves material on every edge, as thick as its stock, without holes. Parts
+    with a pocket, or thicker than wide, are milled from a block and have no cut file.
     """
     if part.by_contour:
         outer, openings = section(part)

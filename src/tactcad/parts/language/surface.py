@@ -65,7 +65,7 @@ def _hole_area(hole: Hole) -> float:
     area = 2 * pi * r * hole.depth
     if hole.counterbore:
         wide, deep = hole.counterbore
-        area += pi * (wide - hole.diameter) * deep  # its ring-shaped floor replaces what it took
+        area += pi * (wide - hole.diameter) * deep  # its ring-shaped floor replaces the removed area
     if hole.drill_point:
         area += pi * r * (hypot(r, drill_point_height(hole.diameter)) - r)
     if hole.through:
@@ -101,7 +101,7 @@ AGREES = 1e-6  # mm
 
 @dataclass(frozen=True)
 class LocalAxes:
-    """A right-handed frame: where it stands, its x axis, and its axis z."""
+    """A right-handed frame: its origin, its x axis, and its axis z."""
 
     at: Vector = (0.0, 0.0, 0.0)
     x_axis: Vector = (1.0, 0.0, 0.0)
@@ -128,7 +128,7 @@ class LocalAxes:
 
 @dataclass(frozen=True)
 class Wall:
-    """What a segment in the plane of a frame leaves when it is moved along the axis by the depth."""
+    """Surface swept by a segment in a frame's plane along the axis by the depth."""
 
     segment: Segment
     depth: float
@@ -160,7 +160,7 @@ class Wall:
 
     @property
     def middle(self) -> Vector:
-        """The point in the middle of it."""
+        """Its middle point."""
         s = self.segment
         u, v = s.at(0.5)
         return vector(p + self.depth / 2 * a for p, a in zip(self.frame.point(u, v), self.frame.axis))
@@ -195,7 +195,7 @@ class Floor:
 
     @property
     def middle(self) -> Vector:
-        """The point in the middle of what it is within, or where its frame stands."""
+        """The middle of its outline, or its frame's origin."""
         return self.frame.point(*self.within.centroid) if self.within else self.frame.at
 
 
@@ -224,7 +224,7 @@ def _turned(s: Segment) -> Piece:
     if z == z1:
         return Floor(LocalAxes((0.0, 0.0, z)))
     if r != r1 or not isinstance(s, Line):
-        raise CheckFailure(f"{s.name}: limits stand on a turned part's cylinders and planes alone")
+        raise CheckFailure(f"{s.name}: limits on a turned part refer to its cylinders and planes only")
     return Wall(Arc((r, 0.0), (r, 0.0), (0.0, 0.0), True), abs(z1 - z), LocalAxes((0.0, 0.0, min(z, z1))))
 
 
@@ -264,12 +264,12 @@ def _across(axis: Vector) -> Vector:
     return (-y / length, x / length, 0.0) if length > PARALLEL else (1.0, 0.0, 0.0)
 
 
-# --- what a dimension stands on ---
+# --- the surfaces of a dimension ---
 
 
 @dataclass(frozen=True)
 class Measured:
-    """What a dimension stands on: a diameter or radius on `first`, a distance from `first` to `second`."""
+    """The surfaces of a dimension: a diameter or radius on `first`, a distance from `first` to `second`."""
 
     kind: Literal["diameter", "radius", "distance"]
     first: tuple[Piece, ...]
@@ -277,12 +277,12 @@ class Measured:
 
 
 def measured(part: Part, c: Characteristic) -> Measured:
-    """The pieces of the part that a characteristic stands on: of equal names, those at its nominal size.
+    """The surfaces of a characteristic on the part: of equal names, those at its nominal size.
 
     Raises
     ------
     CheckFailure
-        Where its features have no such size.
+        If its features have no such size.
     """
     groups = [pieces(part, feature) for feature in c.between]
     if len(groups) == 1:
@@ -300,7 +300,7 @@ def measured(part: Part, c: Characteristic) -> Measured:
             return Measured("distance", tuple(dict.fromkeys(a for a, _ in pairs)), tuple(second))
     where = " and ".join(c.between)
     raise CheckFailure(
-        f"{part.part_no}: {c.name} of {c.nominal:g} mm stands on {where}, which has no such size"
+        f"{part.part_no}: {c.name} of {c.nominal:g} mm refers to {where}, which has no such size"
     )
 
 

@@ -1,5 +1,5 @@
-"""Tables of standard sizes, CSV in the folder `data` beside who reads them; lines that start with # name the
-standards.
+"""Tables of standard sizes, CSV in the folder `data` next to the module that reads them; lines that start
+with # name the standards.
 """
 
 from __future__ import annotations

@@ -1,9 +1,9 @@
-"""Rules between fields of a design, one file a subject: what cannot be built or held is refused before
-anything is made.
+"""Rules between fields of a design, one file a subject. Designs that cannot be built or held are refused
+before anything is made.
 
-In: a layout. Out: findings, each with the field to look at and what is legal. A field's own range is tried
-when the file is read, these after. A rule is a function with `@rule` above it in any file of this folder;
-`@fits` marks one that an array keeps for a rig to take it, and the rig's declaration lists it.
+In: a layout. Out: findings, each with the field at fault and its legal range. A field's own range is checked
+when the file is read, these rules afterwards. A rule is a function with `@rule` above it in any file of this
+folder; `@fits` marks one that an array must keep to fit a rig, whose declaration lists it.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from tactcad.design.tree import CommonTables
 from ..language.finding import Finding
 from .rule import Rule
 
-# The order in which files are tried where it matters; any other file of this folder follows by name.
+# The order of files whose order matters; any other file of this folder follows by name.
 FIRST = (
     "element_rules",
     "gauge_rules",

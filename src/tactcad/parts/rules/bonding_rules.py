@@ -1,4 +1,4 @@
-"""Rules on the fixture in which gauges are bonded: whether one can be had for the array's elements."""
+"""Rules on the fixture for bonding gauges: whether one can be made for the array's elements."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ from ..rigs.stiffness import bonding_lines
 from .rule import at_least, at_most, fits, wrong
 from .stiffness_remedy import too_much
 
-TALLEST = 60.0  # clamp bar, mm; chosen: a taller one topples where its pins end
+TALLEST = 60.0  # clamp bar, mm; chosen: a taller one topples at its pins' ends
 # The clamp alone bends an unbacked leaf to this share of its yield strength at most; chosen: a tenth, so that
-# no zero is bonded in that a reading would show.
+# bonding leaves no visible zero offset.
 BENT_BY_CLAMP = 0.1
 
 
@@ -33,7 +33,7 @@ def tongue_enters_slot(layout: Layout) -> Iterator[Finding]:
             return
         yield from at_least(
             "element.hinge_length",
-            f"the tongue in its slot would be {rig.tongue:g} mm thick, less than the wire leaves standing",
+            f"the tongue in its slot would be {rig.tongue:g} mm thick, too thin for wire-cutting",
             rig.hinge.l,
             round(LEAST_TONGUE + less, 6),
         )
@@ -54,7 +54,7 @@ def nest_clears_rear_body(layout: Layout) -> Iterator[Finding]:
 
 @fits
 def rear_body_takes_pins(layout: Layout) -> Iterator[Finding]:
-    """Two pairs of pins beside the element, apart enough for the clamp not to turn on them."""
+    """Two pairs of pins at the element's sides, far enough apart to keep the clamp from turning."""
     for rig in bonding_rigs(layout.design):
         first, last = rig.pin_x
         short = 2 * rig.pin_d + EDGE - (last - first)
@@ -75,7 +75,7 @@ def clamp_balances_on_leaf(layout: Layout) -> Iterator[Finding]:
         if rig.pad_x[1] - rig.pad_x[0] < LEAST_GAP - SAME:
             yield wrong(
                 "gauge.carrier_arm_side",
-                "the clamp finds no room beside the contact pad",
+                "the clamp has no room next to the contact pad",
                 g.carrier_arm_side,
                 "a longer arm, or a carrier that ends further from the pad",
             )

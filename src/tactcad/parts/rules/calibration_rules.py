@@ -25,10 +25,11 @@ from ..rigs.stand import (
     most_elements,
 )
 from ..rigs.stiffness import calibration_lines, calibration_loads
+from .board_rules import leads_reach_from_stages
 from .rule import at_least, at_most, fits, misfit, rule, wrong
 from .stiffness_remedy import too_much
 
-ROLLER_OUT = 0.1  # mm that the roller's holder keeps from pads beside the one that is pressed; chosen
+ROLLER_OUT = 0.1  # mm between the roller's holder and the pads next to the pressed one; chosen
 
 
 @rule(after="stop_land_above_arm")
@@ -55,7 +56,7 @@ def calibration_bends_elastically(layout: Layout) -> Iterator[Finding]:
     if c is None or misfit(layout, FITS) is not None:
         return
     for load in calibration_loads(layout.design):
-        if c.travel > load.travel_at_yield:  # not where the estimator does not reach
+        if c.travel > load.travel_at_yield:  # not outside the estimator's range
             yield wrong(
                 "calibration.travel",
                 f"the hinge of element {load.place.number} yields before its end",
@@ -66,8 +67,7 @@ def calibration_bends_elastically(layout: Layout) -> Iterator[Finding]:
 
 @rule(after="stop_land_above_arm")
 def roller_stays_on_pad(layout: Layout) -> Iterator[Finding]:
-    """High pads of short arms swing sideways: at the end of the travel the roller still stands on every
-    pad."""
+    """High pads of short arms swing sideways: at the end of the travel the roller is still on every pad."""
     c = layout.design.calibration
     if c is None or misfit(layout, FITS) is not None:
         return
@@ -148,7 +148,7 @@ def mount_holes_apart(layout: Layout) -> Iterator[Finding]:
 
 
 def carrier_threads_clear(layout: Layout, x: float, y: float, what: str) -> Iterator[Finding]:
-    """The carrier's threads stand clear of M4 screws at (x, y): with a web between their counterbores."""
+    """The carrier's threads clear M4 screws at (x, y), with a web between their counterbores."""
     c = layout.design.clamp
     apart = hypot(layout.mount_x - x, c.mount_pitch_y / 2 - y)
     least = (counterbore_diameter("M4") + counterbore_diameter(c.mount_thread)) / 2 + HOLE_WEB
@@ -196,5 +196,6 @@ FITS = (
     carrier_screws_fit,
     mount_holes_apart,
     roller_clears_neighbours,
+    leads_reach_from_stages,
     calibration_stays_straight,
 )

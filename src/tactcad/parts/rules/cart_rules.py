@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
 from functools import wraps
-from math import pi, tan
+from math import floor, pi, tan
 
 from tactcad.design.fields import present
 from tactcad.design.following import LARGEST_SIDE
@@ -18,7 +18,7 @@ from ..rigs.cart import FITTING_RADIUS, GROOVE_WALL, CartLayout, cart_layout
 from ..rigs.frame import POST_Y, TIP_LAND, pad_middles
 from .rule import Find, at_least, at_most, fits, rule, wrong
 
-WALL = 0.8  # least material beside an axle's hole, mm; as for free-standing aluminium walls
+WALL = 0.8  # least material around an axle's hole, mm; as for free-standing aluminium walls
 LEAST_TIPPING = 2.0  # mm that any load on the sample stays inside the wheels; chosen: a badly centred sample
 LEAST_AIR = 0.5  # between things that pass each other, mm
 
@@ -77,9 +77,9 @@ def cart_cannot_tip(rig: CartLayout) -> Iterator[Finding]:
 @rule(after="stop_land_above_arm")
 @on_cart
 def holder_on_cart(rig: CartLayout) -> Iterator[Finding]:
-    most = min(rig.cart.width, rig.cart.length)
-    legal = f"at most {most:g} mm in all"
-    yield from at_most("holder.margin", "holder larger than the cart", rig.holder_side, most, legal)
+    whole = floor(min(rig.cart.width, rig.cart.length) + SAME)  # as the holder's side is
+    most = (whole - rig.sample.side) / 2
+    yield from at_most("holder.margin", "holder larger than the cart", rig.holder.margin, most)
 
 
 @rule(after="stop_land_above_arm")

@@ -131,10 +131,10 @@ def end_plate_takes_holes(layout: Layout) -> Iterator[Finding]:
 
 
 def _heads_apart(layout: Layout, around: float, rod: bool) -> Iterator[Finding]:
-    """Screw heads or nuts of radius `around` (mm) beside each other, the dowels, and the other row's."""
+    """Screw heads or nuts of radius `around` (mm) clear each other, the dowels, and the other row's."""
     dowel = float(layout.design.clamp.dowel) / 2
     spots = [(x, around, True) for x in layout.screw_x] + [(x, dowel, False) for x in layout.dowel_x]
-    beside = SOCKET_WALL if rod else 0.0  # a socket goes over a nut beside the next one; dowels end flush
+    beside = SOCKET_WALL if rod else 0.0  # a socket wrench fits over a nut next to another; dowels end flush
     between = LEAST_GAP if rod else HOLE_WEB
     for (x0, r0, turned), (x1, r1, other) in combinations(spots, 2):
         least = r0 + r1 + between + (beside if turned and other else 0.0)
@@ -214,7 +214,7 @@ def _stop_plate_lies(layout: Layout) -> Iterator[Finding]:
 
 
 def _set_screw_holds(layout: Layout) -> Iterator[Finding]:
-    """A standard set screw reaches the stop plate, and stands in the carrier's thread as it should."""
+    """A standard set screw reaches the stop plate and engages the carrier's thread sufficiently."""
     c, hold = layout.design.clamp, layout.hold_down
     if hold.length is None:
         short = hold.reach - (SET_SCREW_LENGTHS[c.screw][-1] - c.carrier_thickness + SUNK)
@@ -235,7 +235,7 @@ def _set_screw_holds(layout: Layout) -> Iterator[Finding]:
     if not engagement(c.screw) - SAME <= engaged <= c.carrier_thickness + SAME:
         yield wrong(
             "clamp.end_plate_height",
-            f"the {hold.length:g} mm set screw does not engage the carrier as it should",
+            f"the {hold.length:g} mm set screw does not engage the carrier sufficiently",
             c.end_plate_height,
             "leave it out, to have it derived",
         )
@@ -248,7 +248,7 @@ def carrier_holes_apart(layout: Layout) -> Iterator[Finding]:
     c, seat = layout.design.clamp, "element.seat_length"
     head, mount, m = counterbore_diameter(c.screw), METRIC[c.mount_thread].d, METRIC[c.screw]
     offset = c.carrier_screw_offset
-    # path of the field that moves it, that field's value, where it is, its radius
+    # path of the field that moves it, that field's value, its place, its radius
     spots = [
         ("clamp.carrier_screw_offset", offset, layout.carrier_screw_x, layout.end_plate_y, head / 2),
         ("clamp.mount_pitch_y", c.mount_pitch_y, layout.mount_x, c.mount_pitch_y / 2, mount / 2),

@@ -1,4 +1,4 @@
-"""Rules on the elements and how they stand to each other."""
+"""Rules on the elements and their distances."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def pitch_is_sheet_and_spacer(layout: Layout) -> Iterator[Finding]:
         and_spacer = "array.spacer" if layout.spacer >= 0.05 else "0.05"
         yield wrong(
             "array.pitch",
-            "leaves no room for a spacer beside the sheet",
+            "leaves no room for a spacer next to the sheet",
             d.array.pitch,
             f"at least sheet.thickness + {and_spacer} = {least:g} mm",
         )

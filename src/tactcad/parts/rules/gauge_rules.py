@@ -13,8 +13,8 @@ from ..array.leads import leads
 from ..language.finding import SAME, Finding
 from .rule import at_least, at_most, rule, wrong
 
-# Neighbouring arms, and arm and end plate, stand a spacer apart; chosen: a thin gauge wire must not jam. Air
-# that stays where all tolerances add up, mm; chosen: burrs of the wire are smaller.
+# Neighbouring arms, and arm and end plate, are a spacer apart; chosen: a thin gauge wire must not jam. Least
+# air when all tolerances add up, mm; chosen: burrs of the wire are smaller.
 LEAST_ARM_GAP = 0.1
 LEAST_BESIDE = 0.02
 
@@ -80,8 +80,8 @@ def arms_clear_neighbours(layout: Layout) -> Iterator[Finding]:
 
 @rule(after="override_names_element")
 def leads_have_room(layout: Layout) -> Iterator[Finding]:
-    """The leads fit: in the wire recess, as wide as element and spacer; in front of it under the face, beside
-    the gauge.
+    """The leads fit: in the wire recess, as wide as element and spacer; in front of it under the face, next
+    to the gauge.
     """
     d, e, wire, count = layout.design, layout.design.element, lead(layout), leads(layout)
     if leads_that_fit(layout) < count:
@@ -114,7 +114,7 @@ def lead(layout: Layout) -> float:
 
 
 def gauge_stands_out(layout: Layout) -> float:
-    """How far gauge and leads stand out of the faces that they lie on, mm."""
+    """Height of gauge and leads over the faces that they lie on, mm."""
     gauge = layout.design.gauge
     return lead(layout) + (gauge.grid_height if layout.design.element.sides == "one" else 0.0)
 

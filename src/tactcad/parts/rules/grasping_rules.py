@@ -11,6 +11,7 @@ from ..rigs.frame import BAR, BAR_FRONT, BAR_WIDTH, CARRIAGE_LENGTH, RAIL_HEIGHT
 from ..rigs.linear_guide import guide_layout
 from ..rigs.moving_weight import BAR_SCREW_X
 from ..rigs.stiffness import grasping_lines, sample_lines
+from .board_rules import leads_reach_from_guide
 from .calibration_rules import carrier_screws_fit, carrier_threads_clear
 from .cart_rules import LEAST_AIR, pads_on_sample
 from .rule import at_most, fits, rule, wrong
@@ -34,7 +35,7 @@ def bar_clears_screws(layout: Layout) -> Iterator[Finding]:
     before = BAR_FRONT - clamp.mount_pitch_y / 2 - head
     if max(beside, before) < 0.2 - SAME:
         most = 2 * (BAR_FRONT - head - 0.2)
-        what = "bar stands on the carrier's screws"
+        what = "the bar overlaps the carrier's screws"
         yield wrong("clamp.mount_pitch_y", what, clamp.mount_pitch_y, f"at most {most:g} mm")
 
 
@@ -74,13 +75,14 @@ def sample_stand_stays_straight(layout: Layout) -> Iterator[Finding]:
     yield from too_much(layout, sample_lines)
 
 
-# What the vertical guide asks of an array, and what the stand asks for the sample's stiffness.
+# Requirements of the vertical guide on an array, and of the stand for the sample's stiffness.
 FITS = (
     pads_on_sample,
     carrier_screws_fit,
     bar_clears_screws,
     foot_holes_apart,
     rail_is_long_enough,
+    leads_reach_from_guide,
     guide_stays_straight,
 )
 SAMPLE_FITS = (sample_stand_stays_straight,)

@@ -47,7 +47,7 @@ def land_stands_over_arm(layout: Layout) -> Iterator[Finding]:
         if high <= taken + SAME:
             yield wrong(
                 "tolerance.arm_height",
-                f"as much as the stop land of element {p.number} stands over its arm",
+                f"as large as the height of element {p.number}'s stop land over its arm",
                 taken,
                 f"less than {high:.4g} mm",
             )
@@ -66,7 +66,7 @@ def slots_stay_open(layout: Layout) -> Iterator[Finding]:
             least = (limit + high * sin(w)) * 2 / (1 + cos(w))
             yield wrong(
                 "element.hinge_length",
-                f"the slot of element {p.number} closes before its arm has turned as far as it may",
+                f"the slot of element {p.number} closes before its arm has reached its largest turn",
                 p.hinge.l,
                 f"more than {least:.4g} mm, or a narrower stop gap",
             )
@@ -123,7 +123,7 @@ _FIELD = {
 
 @rule(after="pressed_arms_clear_opposite_row")
 def no_slivers(layout: Layout) -> Iterator[Finding]:
-    """Every piece of every element's contour is at least LEAST_EDGE long: neither wire nor kernel makes a
+    """Every piece of every element's contour is at least LEAST_EDGE long: neither wire nor kernel can make a
     shorter one.
     """
     seen = set()

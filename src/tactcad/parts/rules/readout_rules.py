@@ -29,8 +29,8 @@ from ..language.finding import SAME, Finding
 from .gauge_rules import lead
 from .rule import at_least, at_most, rule, wrong
 
-# Leads are bonded over so many of their own diameters at least; chosen: as far as glue takes up the pull of
-# a wire whose insulation it holds.
+# Least bonded length of leads, in their diameters; chosen: enough for the glue to take the pull of a wire by
+# its insulation.
 RELIEF = 10
 
 
@@ -55,13 +55,13 @@ def gauge_lies_in_slot(layout: Layout) -> Iterator[Finding]:
 
 
 def _set_first(r: Readout, *names: str) -> str:
-    """The first of these fields that is set otherwise than it comes, or the first of them."""
+    """The first of these fields that differs from its default, or the first of all."""
     came = Readout()
     return next((name for name in names if getattr(r, name) != getattr(came, name)), names[0])
 
 
 def _borne(fits: Callable[[float], bool]) -> float:
-    """The largest share, from 0 to 1, that fits where all less do; 0 if none does."""
+    """The largest share, from 0 to 1, up to which all fit; 0 if none does."""
     least, most = 0.0, 1.0
     for _ in range(30 if fits(0.0) else 0):
         middle = (least + most) / 2
@@ -70,7 +70,7 @@ def _borne(fits: Callable[[float], bool]) -> float:
 
 
 def by_card(find: Callable[[Layout], Iterator[Finding]]) -> Callable[[Layout], Iterable[Finding]]:
-    """A rule's function that finds nothing where a sigma-delta converter reads the bridges."""
+    """A rule's function that passes if a sigma-delta converter reads the bridges."""
 
     @wraps(find)
     def found(layout: Layout) -> Iterable[Finding]:
@@ -202,7 +202,7 @@ def bridge_stays_in_range(layout: Layout) -> Iterator[Finding]:
         return _borne(fits)
 
     borne = [(cause, share) for cause in _causes(layout, arm) if (share := bearable(cause.reach)) > 0]
-    if borne:  # what adds most of it
+    if borne:  # the largest contribution
         cause, share = min(borne, key=lambda found: max(map(abs, found[0].reach(0.0))))
         yield wrong(cause.path, said, cause.value, cause.legal(share))
     elif too_small := _too_small_a_range(d.readout, said, low, high):
@@ -214,8 +214,8 @@ def bridge_stays_in_range(layout: Layout) -> Iterator[Finding]:
 
 
 def _too_small_a_range(r: Readout, said: str, low: float, high: float) -> Finding | None:
-    """The first field, set otherwise than it comes, of which another value alone makes the range hold these
-    volts."""
+    """The first field, set otherwise than by default, for which another value alone brings these volts into
+    range."""
     needed: dict[str, Any] = {
         "headroom": min(r.supply_positive - high, low - r.supply_negative),
         "adc_range": max(high, -low),
@@ -234,8 +234,8 @@ def _too_small_a_range(r: Readout, said: str, low: float, high: float) -> Findin
 
 @dataclass(frozen=True)
 class _Cause:
-    """Of an unbalanced bridge: a field and its value; what the bridges reach with a share of it, V; what is
-    legal where the range bears that share."""
+    """A cause of an unbalanced bridge: a field and its value; the bridges' output with a share of it, V; the
+    legal value if the range allows that share."""
 
     path: str
     value: object
@@ -244,7 +244,7 @@ class _Cause:
 
 
 def _causes(layout: Layout, arm: float) -> Iterator[_Cause]:
-    """Fields that the design sets otherwise than they come."""
+    """Fields that the design sets otherwise than by default."""
     d, lead = layout.design, longest_lead_resistance(layout)
     r, ohm, tolerance = d.readout, completion_resistance(d), d.gauge.resistance_tolerance
     if ohm != d.gauge.resistance:
@@ -302,7 +302,7 @@ def _shorter(layout: Layout, share: float) -> str:
 
 
 def _too_much_gain(design: Design, said: str, share: float) -> Finding:
-    """Where no cause alone is to blame: a gain that the amplifier has, or less excitation."""
+    """If no single cause is to blame: a gain that the amplifier has, or less excitation."""
     r, amplifier = design.readout, AMPLIFIERS[design.readout.amplifier]
     most = r.gain * share
     fitting = [f"{g:g}" for g in amplifier.gains if g <= most]
@@ -368,7 +368,9 @@ def switching_settles(layout: Layout) -> Iterator[Finding]:
         yield wrong("readout.samples", what, r.samples, f"at most {floor(r.sample_rate / r.mains)}")
     elif r.instant is not None and not settling - SAME <= r.instant <= r.on_time - sampling + SAME:
         span = f"from {settling:.3g} s, when the output has settled, to {r.on_time - sampling:.3g} s"
-        yield wrong("readout.instant", "samples do not lie in what is settled and powered", r.instant, span)
+        yield wrong(
+            "readout.instant", "the samples are not within the settled, powered time", r.instant, span
+        )
     elif r.mains is not None and r.on_time < least:
         what = f"settling takes {settling:.3g} s and a period of the mains {sampling:.3g} s"
         yield wrong("readout.on_time", what, r.on_time, f"at least {least * 1.005:.3g} s")

@@ -17,10 +17,10 @@ Find = Callable[[Any], Iterable[Finding]]  # of a family's layout
 class Rule:
     """A function from a layout to findings, the most important first.
 
-    after   name of an earlier rule: this one is tried only where that one and all before it are kept, because
-            it would only repeat their findings, or could not be computed
-    stands_on   kinds of electronic parts whose figures decide it: a finding names those that nobody read
-    fit     a rig needs it to take the array: a design that breaks it loses the rig's scene and is not refused
+    after       name of an earlier rule: this one is tried only if that one and all before it are kept,
+                because it would only repeat their findings, or could not be computed
+    stands_on   kinds of electronic parts whose figures decide it: a finding names the unverified ones
+    fit         a rig needs it to take the array: a design that breaks it only loses the rig's scene
     """
 
     find: Find
@@ -53,12 +53,12 @@ def fits(find: Find) -> Rule:
 
 
 def misfit(layout: Layout, rules: Iterable[Rule]) -> Finding | None:
-    """The first finding of a rig's rules: why it cannot take this array; None if it can."""
+    """The first finding of a rig's rules: the reason why it cannot take this array; None if it can."""
     return next((finding for rule in rules for finding in rule(layout)), None)
 
 
 def wrong(path: str, what: str, value: object, legal: str) -> Finding:
-    """A finding on a field; the rule's name is added where the rule is tried.
+    """A finding on a field; the rule's name is added by the caller.
 
     Parameters
     ----------
@@ -67,7 +67,7 @@ def wrong(path: str, what: str, value: object, legal: str) -> Finding:
     what
         Is wrong: one clause.
     value, legal
-        The field's value, or what was measured of it, and in words what would be accepted.
+        The field's value, or the value derived from it, and the legal range in words.
     """
     found = round(value, 9) if isinstance(value, float) else value  # 3.6, not 3.5999999999999996
     return Finding("", "fail", path, (), found, legal, what)

@@ -11,7 +11,7 @@ from ..language.finding import Finding
 from ..rigs.setting_fixture import SettingLayout
 from .rule import at_least, rule
 
-FIRM = 1.02 * LEVER  # chosen: the check of steps, on the solids, finds up to 1 % less
+FIRM = 1.02 * LEVER  # chosen: the check of steps, on the solids, gives up to 1 % less
 TENTH = 0.1  # mm, in which a legal place is stated
 
 

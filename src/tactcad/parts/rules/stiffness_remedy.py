@@ -1,4 +1,4 @@
-"""Which field to change where a part gives way too much, and to which value; the rule that refuses it."""
+"""The field and value that stiffen a part that deflects too much; the rule that refuses it."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ V = TypeVar("V", int, float)
 
 
 def too_much(layout: Layout, lines: Lines) -> Iterator[Finding]:
-    """What a rig's rule refuses of its stiffness table; lines that are only flagged refuse nothing."""
+    """Lines of a rig's stiffness table that its rule refuses; flagged lines do not count."""
     for line in lines(layout.design):
         if line.too_much and line.severity == "fail":
             path, value, legal = remedy(layout.design, line, lines)
@@ -28,7 +28,7 @@ def too_much(layout: Layout, lines: Lines) -> Iterator[Finding]:
 
 
 def remedy(design: CommonTables, line: Deflection, lines: Lines) -> tuple[str, object, str]:
-    """The first field that by itself brings a deflection, one of `lines`, below what is allowed.
+    """The first field that alone brings a deflection, one of `lines`, below its allowance.
 
     Returns
     -------

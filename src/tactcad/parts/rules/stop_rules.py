@@ -15,8 +15,8 @@ from ..array.stop_give import SHARE, shortest_pitch
 from ..language.finding import SAME, Finding
 from .rule import at_least, at_most, rule, wrong
 
-# Least contact of stop plate and shortest ledge along the arm, mm; chosen: it carries the set screw's
-# push without lifting, and is the least that a 0.15 mm misplaced plate still finds.
+# Least contact of stop plate and shortest ledge along the arm, mm; chosen: it carries the set screw's push
+# without lifting, and a plate misplaced by 0.15 mm still has it.
 LEAST_SEAT = 0.5
 USUAL = {
     "stop.tolerance": Stop().tolerance,
@@ -112,7 +112,7 @@ def stop_land_above_arm(layout: Layout) -> Iterator[Finding]:
 
 @rule(after="stop_land_above_arm")
 def stop_plate_stays(layout: Layout) -> Iterator[Finding]:
-    """Under an arm pressed on it by the overload force the stop plate gives way by at most SHARE of the gap.
+    """Under an arm pressed on it by the overload force the stop plate deflects by at most SHARE of the gap.
 
     The gap is taken for a rigid stop, so that the allowance does not depend on the plate.
     """
@@ -132,8 +132,8 @@ def stop_plate_stays(layout: Layout) -> Iterator[Finding]:
 
 
 def _what_helps(layout: Layout, what: str, allowed: float) -> Finding:
-    """The field that brings the plate's compliance (mm/N) down to what is allowed: the pitch if it is given
-    and suffices, else a thicker plate, else less force.
+    """The field that brings the plate's compliance (mm/N) down to its limit: the pitch if it is given and
+    suffices, else a thicker plate, else less force.
     """
     d, c = layout.design, layout.design.clamp
     if c.hold_down_pitch is not None:
@@ -142,7 +142,7 @@ def _what_helps(layout: Layout, what: str, allowed: float) -> Finding:
             return wrong("clamp.hold_down_pitch", what, c.hold_down_pitch, f"at most {pitch:g} mm")
     for tenths in range(ceil(10 * c.stop_plate_thickness), 201):
         thicker = replace(d, clamp=replace(c, stop_plate_thickness=tenths / 10))
-        if Layout(thicker).stop_give <= allowed:  # other set screws reach to it
+        if Layout(thicker).stop_give <= allowed:  # limited by other set screws
             return wrong(
                 "clamp.stop_plate_thickness", what, c.stop_plate_thickness, f"at least {tenths / 10:g} mm"
             )
@@ -193,7 +193,7 @@ def stop_gap_above_tolerance(layout: Layout) -> Iterator[Finding]:
             continue
         taken = _taken_by_tolerances(layout)
         legal = {path: _largest_tolerance(d, path) for path in taken}
-        # where a usual tolerance would do it is not the overload that leaves no gap
+        # if a usual tolerance would suffice, the overload is not the cause
         held = [path for path in taken if legal[path] >= USUAL[path]]
         if not held and 0 < overload < d.rating.overload_force:
             what = f"no stop keeps the hinge of element {p.number} within its rated deflection"

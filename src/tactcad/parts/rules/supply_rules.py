@@ -28,7 +28,7 @@ def regulators_take_supply(layout: Layout) -> Iterator[Finding]:
     limits = f"from {made + DROPOUT:.3g} to {REFERENCE_MOST_VOLTS:g} V"
     what = f"more than the board's regulator, {REFERENCE}, bears"
     yield from at_most("readout.supply_positive", what, r.supply_positive, REFERENCE_MOST_VOLTS, limits)
-    what = f"the board's regulator, {REFERENCE}, cannot make {made:.3g} V of it"
+    what = f"the board's regulator, {REFERENCE}, cannot make {made:.3g} V from it"
     yield from at_least("readout.supply_positive", what, r.supply_positive, made + DROPOUT, limits)
     if converter is None:
         ohm, given = bridge_resistance(layout.design), regulator_gives(r.supply_positive)

@@ -1,7 +1,8 @@
-"""Runs inside FreeCAD: makes a document from a record (JSON) and the parts' shapes (BREP files beside it).
+"""Runs inside FreeCAD: makes a document from a record (JSON) and the parts' shapes (BREP files in its
+folder).
 
-TACTCAD_RECORD names the record, TACTCAD_OUT the document to write. In the window program colours and what is
-hidden are kept too; FreeCAD's command line knows neither. Writes the empty file `done` beside the record.
+TACTCAD_RECORD names the record, TACTCAD_OUT the document to write. The window program also keeps colours and
+hidden parts; FreeCAD's command line has neither. Writes the empty file `done` next to the record.
 """
 
 from __future__ import annotations
@@ -67,7 +68,7 @@ def table(document: Any, name: str, rows: list) -> None:
 
 
 def text(value: object) -> str:
-    """A cell's content that is shown as it stands: never a formula, whatever a design's text begins with."""
+    """A cell's content shown literally: never a formula, however a design's text begins."""
     return "'" + str(value).replace("\n", " ")
 
 
@@ -130,14 +131,14 @@ def link(document: Any, placed: dict, part: Any) -> Any:
 
 
 def exploded(one: Any, place: str, item: dict, unit: str) -> None:
-    """Let the place go its way as the cell says."""
+    """Move the place along its way by the cell's share."""
     for axis, start, way in zip("xyz", item["at"], item["way"]):
         if way:
             one.setExpression(f"{place}.{axis}", f"{start!r}{unit} + {EXPLODE} * {way!r}{unit}")
 
 
 class View:
-    """What is seen: kept by the window program alone."""
+    """Display state: kept by the window program only."""
 
     def __init__(self) -> None:
         self.on = bool(FreeCAD.GuiUp)

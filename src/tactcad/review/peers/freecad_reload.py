@@ -1,4 +1,4 @@
-"""Makes the document beside it again from its design, and shows it where one stood.
+"""Makes the document in its folder again from its design, and shows it in place of the old one.
 
 Written by `tactcad review --freecad`; runs inside FreeCAD 0.20 or later: Macro > Macros, or, once it is open
 in FreeCAD, the green arrow.
@@ -19,7 +19,7 @@ def reload() -> None:
     own = {name: value for name, value in os.environ.items() if not name.startswith("PYTHON")}
     run = subprocess.run(COMMAND, cwd=FOLDER, env=own, capture_output=True, text=True, check=False)
     if run.returncode:
-        FreeCAD.Console.PrintError(run.stderr)  # the document stays as it is
+        FreeCAD.Console.PrintError(run.stderr)  # the document remains unchanged
         return
     for name, document in FreeCAD.listDocuments().items():
         if document.FileName and os.path.realpath(document.FileName) == DOCUMENT:
@@ -31,7 +31,7 @@ def reload() -> None:
 
 
 def camera(name: str, to: str = "") -> str:
-    """The camera of a document's views, each set to what is given; "" if no view is open."""
+    """The camera of a document's views, each set to the given one; "" if no view is open."""
     import FreeCADGui  # there with a window alone
 
     views = FreeCADGui.getDocument(name).mdiViewsOfType("Gui::View3DInventor") if FreeCAD.GuiUp else []
