@@ -383,7 +383,7 @@ def setting_words(layout: Layout) -> str:
 
 
 def flatness_tools(layout: Layout) -> tuple[str, ...]:
-    """What the pads are made coplanar with, and measured."""
+    """Tools for making the pads coplanar, and for measuring them."""
     tolerance = layout.design.tolerance.pad_height
     feelers = f"feelers, {2 * tolerance * 1e3:g} um"
     if len(layout.design.array.row_arms) == ABREAST:
@@ -392,7 +392,7 @@ def flatness_tools(layout: Layout) -> tuple[str, ...]:
 
 
 def carrier_tools(design: Design) -> tuple[str, ...]:
-    """What the carrier's screws are turned by."""
+    """Tools for the carrier's screws."""
     return (f"hex key {METRIC[design.clamp.screw].key:g} mm: the carrier's screws",)
 
 
