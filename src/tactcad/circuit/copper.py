@@ -90,11 +90,11 @@ class BoardCopper:
 
     @cached_property
     def outlines(self) -> dict[str, tuple[Point, ...]]:
-        """Of each plane: one closed line around its copper, with slits of no width to its openings."""
+        """For each plane one closed line around its copper, with slits of no width to its openings."""
         return {layer: self._outline(net) for layer, net in PLANES.items()}
 
     def corners(self, inside: bool = False) -> tuple[Point, ...]:
-        """Of the board, or of its planes inside it."""
+        """Corners of the board, or of its planes."""
         e = EDGE if inside else 0.0
         return ((e, e), (self.width - e, e), (self.width - e, self.height - e), (e, self.height - e))
 

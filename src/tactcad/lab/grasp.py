@@ -87,7 +87,7 @@ class Grasp:
 
 @dataclass(frozen=True)
 class OnLayer:
-    """What the readings say of a layer.
+    """Results of the readings for a layer.
 
     modulus    MPa; None if the thickness is not known
     angle      of its face along x and y, degrees: estimate, low, high of each

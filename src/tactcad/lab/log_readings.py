@@ -56,7 +56,7 @@ class LogStep:
 
 @dataclass(frozen=True)
 class Taken:
-    """What was taken for what.
+    """The reading of a log: channels, steps and table.
 
     volts     signal of every kept element's channel, V, [element, row of the log]
     left_out  elements whose channel has no information, each with the reason
@@ -390,7 +390,7 @@ def _require_kind(taken: Taken, kind: str) -> None:
 
 
 def to_text(taken: Taken) -> str:
-    """What was taken for what, for people."""
+    """The reading of the log as text."""
     steps = taken.steps
     names = [n for n in NEEDED[taken.kind] if n in steps[0].values]
     lines = [
