@@ -34,6 +34,7 @@ def sound_rigs(d: Draw) -> None:
         _grasping(d)
     _calibration(d, d.table["sample.travel"] if both else 0.0)
     d.number("bonding.terminal_length", 0.5, d.recess - 0.51 - d.table["wiring.bonded"])
+    d.number("bonding.terminal_width", high=d.table["sheet.thickness"])
     d.rest("bonding")
 
 
@@ -45,7 +46,7 @@ def _cart(d: Draw) -> None:
     plain = 2 * axle.d + 12  # the threaded part of ISO 4762
     shim = d.number("cart.shim", high=lengths[-1] - plain - bearing.B)
     shank = next(n for n in lengths if n - plain >= shim + bearing.B - 1e-9)
-    widest = 2 * (POST_FRONT - 0.5 - 2 * shim - bearing.B - axle.head_height)
+    widest = float(int(2 * (POST_FRONT - 0.5 - 2 * shim - bearing.B - axle.head_height)))
 
     # sample and holder; the port's thread wants a flat wall of the octagonal plenum
     covered = 2 * max(d.far_x, d.far_y)
@@ -58,7 +59,7 @@ def _cart(d: Draw) -> None:
         (groove / 2 + M3.clearance / 2 + 1) / 2**0.5 + 4, groove / 2 + 1, across / 2 + 5, side / 2 + 7
     )
     margin = d.number("holder.margin", beside - side / 2, min((widest - side) / 2, 40 + (across - side) / 2))
-    holder = side + 2 * margin
+    holder = ceil(side + 2 * margin - 1e-9)  # whole millimetres, as the holder is
 
     # lid, body, and the screw through both into the cart plate
     hole = d.number("holder.hole_diameter", 0.5, min(5.0, (across - 1) / 4))
@@ -138,7 +139,11 @@ def _grasping(d: Draw) -> None:
         d.number("grasping.moving_weight", low, max(low, min(high, HEAVIEST - added)))
     heavy = added + d.table["grasping.moving_weight"]
     low = max(d.table["tolerance.pad_height"], 10.5 * d.on_cart * heavy)
-    d.number("tolerance.pad_height", low, max(low, d.most_pad))
+    if low > d.most_pad:  # too heavy for the cart
+        for path in [p for p in d.table if p.startswith("grasping.")]:
+            del d.table[path]
+        return
+    d.number("tolerance.pad_height", low, d.most_pad)
     # bar, 30 mm between foot and carriage, 23 x 8, turned by its load's 20 mm; foot and platform are stiffer
     square = 10.5 * heavy * 20 * 30 / (69e3 * 23 * 8**3 / 12) * 180 / pi
     d.number("tolerance.tilt", max(d.table["tolerance.tilt"], square))
@@ -151,7 +156,7 @@ def _calibration(d: Draw, into_sample: float) -> None:
     travel = d.number("calibration.travel", high=min(0.9, d.elastic, aside))
     retract = d.number("calibration.retract", high=40.0)
     d.number("calibration.axis_travel", max(max(retract, travel, into_sample) + 5.0, 9.0))
-    d.number("calibration.stage_travel", max(d.far_x, d.far_y))
+    d.number("calibration.stage_travel", max(d.far_x, d.far_y), 25.0)  # as the largest sold
     d.put("calibration.roller", d.choice("2", "2.5", "3"))
     # the carrier from its middle to an end plate, which stands at half the stack and its own half
     stack = 2 * d.far_y + 2 * d.table["array.spacer"]

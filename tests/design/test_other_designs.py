@@ -10,6 +10,7 @@ from tactcad.design.messages import InputError
 from tactcad.parts.designs import load
 from tactcad.parts.language.finding import Finding, grouped
 from tactcad.parts.rules import refuse_broken
+from tactcad.scenes import make_scene
 
 TEXT = open("hardware/macro-array.toml").read()
 
@@ -33,16 +34,30 @@ def test_another_alloys_properties_are_refused_all_at_once():
     assert "left out" in said and said.count("\n") == 0
 
 
-def test_the_moving_weight_follows_the_density():
-    usual = load("macro-array")
-    assert usual.grasping.moving_weight == MOVING
+def of_spring_steel():
     lines = [
         line
         for line in TEXT.replace('alloy = "7075-T6"', 'alloy = "1.4310-C1300"').splitlines()
         if not line.startswith(("youngs_modulus", "poisson", "density", "yield_", "fatigue_", "tensile_"))
         and not line.startswith(('"material.', "conductivity", "magnetic"))
     ]
-    steel = parse("\n".join(lines), "steel")
+    return parse("\n".join(lines), "steel")
+
+
+def test_gauges_are_ordered_for_the_grade_of_steel():
+    """An austenitic one expands half as much again as others, and its gauges are other ones."""
+    said = {
+        of: next(s for s in make_scene(design, "array").supplies if s.part_no == "STRAIN-GAUGE").designation
+        for of, design in (("7075", load("macro-array")), ("1.4310", of_spring_steel()))
+    }
+    assert "self-compensated for aluminium," in said["7075"]
+    assert "self-compensated for steel 1.4310-C1300," in said["1.4310"]
+
+
+def test_the_moving_weight_follows_the_density():
+    usual = load("macro-array")
+    assert usual.grasping.moving_weight == MOVING
+    steel = of_spring_steel()
     # 290 mm2 of sheet, 21 mm of it, 5.09 g/cm3 heavier: 31 g
     assert steel.grasping.moving_weight == pytest.approx(MOVING + 0.31, abs=0.1)
 

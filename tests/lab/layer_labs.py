@@ -72,13 +72,27 @@ class Bench:
         self.C = C * (1 - nu**2) / np.pi  # of a pressure, E = 1
         self.arm = 1 + (X[None] / lever[:, None])  # what a pad's patches sink where its middle sinks by 1
 
-    def sinks(self, E, K, height, slope, load):
-        """Of every pad's middle under each load, mm."""
+    def sinks(self, E, K, height, slope, load, stop=np.inf):
+        """Of every pad's middle under each load, mm; no pad sinks beyond its stop."""
+        stop, closed = np.broadcast_to(stop, self.n), np.zeros(self.n, bool)
+        out = self._sinks(E, K, height, slope, load, closed, stop)
+        for t in np.flatnonzero((out > stop[:, None]).any(0)):  # loads rise: a stop once closed stays so
+            while True:
+                closed = closed | (out[:, t] > stop)
+                out[:, t] = self._sinks(E, K, height, slope, [load[t]], closed, stop)[:, 0]
+                if not (out[~closed, t] > stop[~closed]).any():
+                    break
+        return out
+
+    def _sinks(self, E, K, height, slope, load, closed, stop):
         back = np.repeat(height, self.m) + slope[0] * self.px + slope[1] * self.py
         M = self.C / E
         for i in range(self.n):
             s = slice(i * self.m, (i + 1) * self.m)
-            M[s, s] += np.outer(self.arm[i], self.arm[i] * self.area[s]) / K[i]
+            if closed[i]:
+                back[s] += stop[i] * self.arm[i]
+            else:
+                M[s, s] += np.outer(self.arm[i], self.arm[i] * self.area[s]) / K[i]
         out = []
         on = np.ones(len(back), bool)
         for total in load:
@@ -100,7 +114,7 @@ class Bench:
                     break
                 on = now
             moment = (p * self.area).reshape(self.n, self.m) * self.arm
-            out.append(moment.sum(1) / K)
+            out.append(np.where(closed, stop, moment.sum(1) / K))
         return np.array(out).T
 
 

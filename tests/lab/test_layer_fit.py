@@ -144,6 +144,56 @@ def test_layers_of_unknown_thickness_are_all_covered():
         assert a.object.low <= b.object.low and b.object.high <= a.object.high
 
 
+def stopped_labs(count: int, seed: int, of: labs.Bench) -> tuple[np.ndarray, np.ndarray]:
+    """Labs whose element 4 closes its stop at 0.8 to 1.2 of the nominal gap, at one of the last four loads:
+    the modulus by all readings and by those below the stop, with its interval, [lab, 2, 3]; whether it was
+    told."""
+    rng = np.random.default_rng(seed)
+    at, out, told, near = layers(DESIGN, "6", NU)[0], [], [], PADS.stop.copy()
+    touched = of.sinks(0.5, K, 0 * K, (0.0, 0.0), labs.LOAD)
+    four = int(np.flatnonzero(NUMBER == 4)[0])
+    for _ in range(count):
+        stop = np.full(len(K), inf)
+        stop[four] = touched[four, -1] * rng.uniform(0.62, 0.95)
+        near[four] = stop[four] / rng.uniform(0.8, 1.2)
+        sink = of.sinks(0.5, K, rng.uniform(0, 0.02, len(K)), (0.0, 0.0), labs.LOAD, stop)
+        signal = K_V[READ, None] * sink[READ]
+        signal = signal + labs.NOISE * rng.standard_normal(signal.shape)
+        known = labs.calibration(ARRAY, K[READ], K_V[READ], rng)
+        reading = GraspReadings(1, NUMBER[READ], labs.LOAD, np.ones(9, int), signal)
+        some, said = grasp.below_stops(reading, known, replace(at, stop=near))
+        out.append([fit(at, r.element, r.load, r.signal[None], known).modulus[0] for r in (reading, some)])
+        told.append(said != () and said[0].startswith("element 4 is at its stop from"))
+    return np.array(out), np.array(told)
+
+
+def test_readings_at_a_stop_are_left_out_and_said():
+    """A stopped element bends the fit. Sound readings are all kept; where two loads are left, a line says
+    so."""
+    coarse = labs.Bench(PADS.x, PADS.y, 2.0, 3.0, 1 / MOVE[:, 1], NU, 6.0, 5, 6)
+    found, told = stopped_labs(5, 8, coarse)
+    (_, low, high), (by_all, below) = found[:, 1].T, found[..., 0].T
+    assert told.all() and ((low <= 0.5) & (0.5 <= high)).sum() >= 4
+    assert np.abs(below / 0.5 - 1).max() < 0.12 < np.abs(by_all / 0.5 - 1).max()
+    reading, known = one_lab()
+    at = layers(DESIGN, "6", NU)[0]
+    assert grasp.below_stops(reading, known, at) == (reading, ())
+    held = reading.signal.copy()
+    held[3, 3:] = held[3, 3]
+    near = replace(at, stop=np.full(len(K), abs(held[3, 3] - held[3, 0]) / K_V[READ][3]))
+    with pytest.raises(InputError, match="element 4 is at its stop from .*three smaller loads"):
+        grasp.below_stops(replace(reading, signal=held), known, near)
+
+
+@pytest.mark.nightly
+def test_coverage_with_one_stopped_element():
+    found, told = stopped_labs(400, 9, bench(6.0))
+    held = ((found[..., 1] <= 0.5) & (0.5 <= found[..., 2])).mean(0)
+    half = np.median((found[..., 2] - found[..., 1]), 0)
+    print(f"all readings {held[0]:.3f} +-{half[0]:.3f}; below the stop {held[1]:.3f} +-{half[1]:.3f}")
+    assert 0.92 < held[1] < 0.99 and told.mean() > 0.98
+
+
 def test_the_angle_is_found():
     reading, known = one_lab(slope=np.tan(np.radians((1.0, -2.0))))
     found = grasp.on_layers(

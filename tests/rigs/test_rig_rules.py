@@ -50,6 +50,8 @@ MISFITS = {
     "pads_on_sample": ("grasping", {"array.row_arms": [[6.0] * 9, [6.0] * 9], "sample.side": 32.0}),
     "bar_clears_screws": ("grasping", {"clamp.mount_pitch_y": 36.0, "clamp.carrier_screw_offset": 2.0}),
     "rail_is_long_enough": ("grasping", {"grasping.lift": 90.0}),
+    "leads_reach_from_stages": ("calibration", {"wiring.to_board": 100.0}),
+    "leads_reach_from_guide": ("grasping", {"wiring.to_board": 100.0}),
     "calibration_stays_straight": ("calibration", {"calibration.step": 0.01}),
     "sample_stand_stays_straight": ("sample-stiffness", {"sample.step": 0.001}),
     "guide_stays_straight": ("grasping", {"grasping.weights": 40}),

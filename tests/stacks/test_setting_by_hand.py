@@ -12,7 +12,7 @@ from tactcad.parts.array.clamp import OVER_EDGE, SQUARE, lean
 from tactcad.parts.designs import load
 from tactcad.parts.rigs.setting_fixture import SettingLayout
 from tactcad.stacks.mechanic import PAD, Assembled
-from tactcad.stacks.variables import STEPS, made
+from tactcad.stacks.variables import STEPS, made, own_holes, pair_holes
 from tactcad.stacks.virtual_build import sensor
 
 COUNT = 20_000
@@ -176,3 +176,28 @@ def test_an_unset_plate_is_no_level_one(macro):
     a = Assembled(macro.layout, zero)
     lever = min(macro.layout.dowel_x) - macro.layout.pad_outer
     assert a.turn == pytest.approx(-0.02 / lever, rel=1e-9)
+
+
+def test_a_flat_carrier_turns_the_stack_as_far_as_its_plates_lean(macro):
+    """Upper edges over the holes, by the holes' heights over step and lower edge: each plate is turned until
+    its edge lies along the carrier, elements between them in proportion, by whole rotations."""
+    m = made(macro.variables, 2000, "uniform", np.random.default_rng(11))
+    a, layout = Assembled(macro.layout, m), macro.layout
+    xd, half = min(layout.dowel_x), SettingLayout(layout.design).half
+    at = (layout.stack + layout.design.clamp.end_plate_thickness) / 2
+    pins, lean_to = [0, len(layout.dowel_x)], {}
+    for which, step in (("tapped", 1), ("head", 0)):
+        over = m["setting fixture: steps over the floor"][:, [step]]
+        over = over + m["setting fixture: steps' lean"][:, [step]] / half * np.array([xd, -xd])
+        edge = over + m[f"end plate, {which}: {OVER_EDGE}"][:, pins]
+        edge = edge - (m[pair_holes("z")] + m[own_holes(which, "z")])[:, pins]
+        lean_to[which] = np.arctan2(edge[:, 0] - edge[:, 1], 2 * xd)
+    flat = (lean_to["tapped"] + lean_to["head"]) / 2
+    for i, place in enumerate(layout.elements):
+        share = (place.y + at) / (2 * at)
+        turned = flat - (share * lean_to["tapped"] + (1 - share) * lean_to["head"])
+        x = (layout.pad_inner + layout.pad_outer) / 2 * (1.0 if place.row == 1 else -1.0)
+        z = x * np.sin(turned) + a.pads[:, i] * np.cos(turned)
+        assert a.carried[:, i] == pytest.approx(z, abs=1e-7)
+    assert 1e-4 < np.abs(a.twist).max() < 1e-3  # rad: it moves no pad by more than a micrometre
+    assert np.abs(a.carried - a.pads).max() < 1e-3

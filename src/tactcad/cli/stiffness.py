@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import sys
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from .parser import add_needless_allowance, allowance
@@ -110,6 +111,10 @@ def stiffness_rows(args: argparse.Namespace, design: Design) -> int:
         for g in samples:
             tell(len(results), len(samples), f"sample {g.sample}")
             shares = pads.coupling(args.design, g, args.coupling or 0.0)
+            stopped: tuple[str, ...] = ()
+            if layers:
+                pads.refuse_strangers(args.design, g)
+                g, stopped = grasp.below_stops(g, known, layers[0])
             found = grasp.evaluate(
                 g,
                 known,
@@ -120,9 +125,8 @@ def stiffness_rows(args: argparse.Namespace, design: Design) -> int:
                 elements=sum(map(len, design.array.row_arms)),
             )
             if layers:
-                pads.refuse_strangers(args.design, g)
                 found = grasp.on_layers(found, g, known, layers, args.level)
-            results.append(found)
+            results.append(replace(found, notes=(*stopped, *found.notes)))
     sys.stdout.write((grasp.to_json if args.json else grasp.to_text)(results, args.level))
     unbounded = [g.sample for g in results if g.layer and g.layer.modulus and not g.layer.modulus.bounded]
     if unbounded:

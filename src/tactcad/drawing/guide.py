@@ -97,6 +97,11 @@ def at_step(scene: Scene, number: int) -> tuple[tuple[Placement, ...], tuple[Pla
     return standing, tuple(moved_by(placed[d], at) for d, at in coming.items())
 
 
+def pictured(step: Step) -> bool:
+    """Whether a step brings or moves something."""
+    return bool(step.designators or step.order)
+
+
 def _coming(scene: Scene, step: Step) -> tuple[Placement, ...]:
     placed = {p.designator: p for p in scene.placements}
     count = len(step.designators)
@@ -179,10 +184,10 @@ def _section(design: CommonTables, scene: Scene, number: int, step: Step) -> str
         if what:
             lines.append(f'<p class="note">{said}: {escape("; ".join(what))}.</p>')
     if step.designators:
-        lines += [
-            _table(design, scene, step),
-            f'<img src="{_name(scene, f"{number:02d}")}" alt="step {number}; blue: the parts of this step">',
-        ]
+        lines.append(_table(design, scene, step))
+    if pictured(step):
+        picture = _name(scene, f"{number:02d}")
+        lines.append(f'<img src="{picture}" alt="step {number}; blue: the parts of this step">')
     if step.elements:
         lines.append(
             f'<figure><img src="{_name(scene, MAP)}" alt="where each element stands">'

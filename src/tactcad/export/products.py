@@ -269,7 +269,7 @@ def guide_files(plan: Plan) -> Iterator[Batch]:
         title = f"{plan.design.design.title}: {scene.name}, exploded"
         yield picture(scene, "exploded", title, guide.exploded(scene), ())
         for n, step in enumerate(scene.steps, start=1):
-            if step.designators:
+            if guide.pictured(step):
                 standing, coming = guide.at_step(scene, n)
                 title = f"{scene.name}, step {n}: {step.title}"
                 yield picture(scene, f"{n:02d}", title, (*standing, *coming), coming)

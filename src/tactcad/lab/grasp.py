@@ -41,6 +41,11 @@ STRAY = 1e-4  # probability, over all elements, below which an element is report
 SURELY = 3.0  # standard errors below zero from which an element's force is reported to fall; chosen
 TOUCHES = 1e-3  # of the largest force on a pad, from which a pad counts as touching
 ROUNDED = 1e-9  # below which a singular value of unit columns is nought but rounding
+# An element is at its stop where its deflection is at least NEAR_STOP of the nominal one there (the gap's
+# tolerance and seat are up to 0.2 of it), grows with the load by less than SLOWED of what it did before, and
+# by less than STANDS of that at all larger loads. Readings are averaged at LEVELS loads, so that noise does
+# not count.
+NEAR_STOP, SLOWED, STANDS, LEVELS = 0.75, 0.7, 0.2, 25
 COUPLED = (0.25, 0.5, 1.0)  # tried shares of the coupling: K_obj need not be most extreme at the full one
 
 
@@ -218,6 +223,55 @@ def evaluate(
         tuple(notes),
         tuple(unlikely(what, {load_name: -1, signal_name: 1}, sums, "N", LOAD)),
     )
+
+
+def below_stops(
+    readings: GraspReadings, calibration: Sensitivity, at: LayeredArray
+) -> tuple[GraspReadings, tuple[str, ...]]:
+    """The readings at loads below that at which the first element reaches its stop, and a note where that
+    leaves some out. A stopped pad bears more than its spring says, so the others' readings err as well.
+
+    Raises
+    ------
+    InputError
+        Fewer than three loads are left.
+    """
+    place = {int(n): i for i, n in enumerate(at.number)}
+    stop = at.stop[[place[int(n)] for n in readings.element]]
+    touching = readings.load > 0
+    sink = readings.signal / calibration.of(readings.element).signal_per_deflection[:, None]
+    apart = readings.load.max(initial=1e-300) / LEVELS
+    level = np.rint(readings.load[touching] / apart)
+    load, *sinks = (
+        np.array([v[touching][level == one].mean() for one in np.unique(level)])
+        for v in (readings.load, *sink)
+    )
+    if len(load) < 3:
+        return readings, ()
+    rate = np.diff(sinks, axis=1) / np.diff(load)
+    # where no reading is without load, from where the first two loads lead back to
+    resting = np.array(sinks)[:, 0] - rate[:, 0] * load[0]
+    deep = np.array(sinks) - (resting if touching.all() else sink[:, ~touching].mean(1))[:, None]
+    first, who = inf, 0
+    for e, t in zip(*np.nonzero((deep >= NEAR_STOP * stop[:, None])[:, 2:])):
+        before, after = rate[e, t], rate[e, t + 1 :]
+        if after[0] < SLOWED * before and (after[1:] < STANDS * before).all():
+            # closed one load earlier, it has not moved since
+            closed = t + 1 if after[0] < STANDS * before and deep[e, t + 1] >= NEAR_STOP * stop[e] else t + 2
+            if load[closed] < first:
+                first, who = float(load[closed]), int(readings.element[e])
+    if first == inf:
+        return readings, ()
+    kept = readings.load < first - apart / 2
+    what = f"element {who} is at its stop from {first:.4g} N on: these loads are left out"
+    if (readings.load[kept] > 0).sum() < 3:
+        where = f"{readings.path}: sample {readings.sample}"
+        raise InputError(where, what, legal="three smaller loads at least")
+    time = None if readings.time is None else readings.time[kept]
+    fewer = replace(
+        readings, load=readings.load[kept], run=readings.run[kept], signal=readings.signal[:, kept], time=time
+    )
+    return fewer, (what,)
 
 
 def on_layers(

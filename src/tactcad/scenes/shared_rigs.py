@@ -8,6 +8,8 @@ from dataclasses import replace
 
 from tactcad.design.fields import present
 from tactcad.parts import rigs
+from tactcad.parts.array.leads import BESIDE as BOARDS_OFF
+from tactcad.parts.array.leads import Bench
 from tactcad.parts.array.supplies import supplies
 from tactcad.parts.bought import screws, standard_parts
 from tactcad.parts.bought.standard_parts import STAGES, bearing
@@ -29,7 +31,7 @@ from tactcad.parts.rigs.stand import BASE_SCREW, BASE_UNDER_HEAD, POST_SCREWS, S
 
 from .builder import Builder
 from .moves import APPROACH
-from .scene import AGAINST_Y, ALONG_Y, STILL, Move
+from .scene import AGAINST_Y, ALONG_Y, STILL, Move, Need
 
 CORNERS = tuple((sx, sy) for sx in (-1, 1) for sy in (-1, 1))
 STAND = "BP1"  # the base plate
@@ -200,9 +202,25 @@ def place_sample(
         "Lay the sample on the middle of the lid, clean and dry, and open the vacuum.",
         order=[Move((object_,), (0.0, front, high), ((0.0, 0.0, high), STILL))],
         sets=(f"{object_} on {lid}: all, by the vacuum",),
+        leaves=(f"{object_}: all, while the vacuum is shut",),
     )
     b.group(None)
     return object_
+
+
+def boards_on_bench(b: Builder, bench: Bench) -> None:
+    """The step that brings the boards, on their plates: bench equipment beside the base plate."""
+    on = f"blocks {bench.block:g} mm high" if bench.block else "the bench"
+    b.step(
+        "Boards on the bench",
+        (0, 0, 0),
+        f"Lay the boards on their plates (guide wiring) on {on}, {BOARDS_OFF:g} mm off the ends of the base "
+        "plate, row 1's at +x, lead clamps towards the array. Clamp each bundle as there, then, supplies "
+        "off, plug its socket. The leads reach wherever the array is moved: they hang loose and pull at "
+        "nothing.",
+        leaves=("boards: along x and y, by the leads' slack", "sockets: up, by hand"),
+        needs=(Need(("CA1", STAND), "its leads reach boards beside the base plate"),),
+    )
 
 
 def place_force_axis(

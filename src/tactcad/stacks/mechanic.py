@@ -193,9 +193,16 @@ class Assembled:
         return self.raised((self.layout.pad_inner + self.layout.pad_outer) / 2)
 
     @property
+    def carried(self) -> Array:
+        """Height of each pad's middle once the carrier is screwed on: it stays flat, and the stack between
+        the end plates turns with them about y until their upper edges lie on it, half of the twist each."""
+        middle = (self.layout.pad_inner + self.layout.pad_outer) / 2
+        return self.pads - self.twist * self.side * middle * self.y / self.plates_apart
+
+    @property
     def pads_apart(self) -> Array:
         """Highest over lowest pad, (arrays, 1)."""
-        return np.ptp(self.pads, axis=1, keepdims=True)
+        return np.ptp(self.carried, axis=1, keepdims=True)
 
     # --- end plates ---
 
@@ -223,14 +230,30 @@ class Assembled:
 
     @property
     def tilt(self) -> Array:
-        """The carrier's angles against the fixture's floor, along the row and across, degrees, (arrays, 2),
-        by the upper edges of both plates over their lower ones."""
-        y = self.layout.stack / 2 + self.layout.design.clamp.end_plate_thickness / 2
-        tapped = self.over_floor("tapped") - self.holes("tapped", "z")
-        head = self.over_floor("head") - self.holes("head", "z")
-        along = (head - tapped).mean(axis=1, keepdims=True) / (2 * y)
-        across = (tapped[:, :1] - tapped[:, 1:]) / (2 * self.dowel_x)
-        return np.degrees(np.hstack([along, across]))
+        """The carrier's angles against the fixture's floor, degrees, (arrays, 3), by the plates' upper edges
+        over their lower ones: along the row, and across on each plate, between which it lies."""
+        along = (self.edges("head") - self.edges("tapped")).mean(axis=1, keepdims=True) / self.plates_apart
+        return np.degrees(np.hstack([along, self.across("tapped"), self.across("head")]))
+
+    @property
+    def plates_apart(self) -> float:
+        """From the middle of one end plate to that of the other, mm."""
+        return self.layout.stack + self.layout.design.clamp.end_plate_thickness
+
+    def edges(self, which: Plate) -> Array:
+        """How much higher than drawn a plate's upper edge is over its first holes, (arrays, 2)."""
+        return self.over_floor(which) - self.holes(which, "z")
+
+    def across(self, which: Plate) -> Array:
+        """Slope of a plate's upper edge across the row, (arrays, 1)."""
+        edge = self.edges(which)
+        return (edge[:, :1] - edge[:, 1:]) / (2 * self.dowel_x)
+
+    @property
+    def twist(self) -> Array:
+        """By how much the upper edges of both plates differ in slope, rad, (arrays, 1): tapped plate's, at
+        +y, less the other's."""
+        return self.across("tapped") - self.across("head")
 
     # --- rows ---
 

@@ -179,7 +179,7 @@ def element_figures(arrays: Assembled) -> dict[str, Array]:
     arm = np.array([p.load_arm for p in places])
     return {
         "stiffness": arrays.stiffness,
-        "pad_height_um": 1e3 * (arrays.pads - arrays.pads.min(axis=1, keepdims=True)),
+        "pad_height_um": 1e3 * (arrays.carried - arrays.carried.min(axis=1, keepdims=True)),
         "load_arm": arm + made_[of_element(ARM_LENGTH)] - made_[of_element(PAD_LENGTH)] / 2,
         "stop_gap": arrays.gaps,
         "closes": arrays.closing_force,

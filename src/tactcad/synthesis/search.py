@@ -8,7 +8,7 @@ against every rule. If one refuses it, the search runs again and checks each new
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from itertools import combinations, product
@@ -45,6 +45,7 @@ AT_ONCE, FEW, GUESS, GUESSED = 16, 100, 0.2, 0.02
 
 Goal = Callable[[Candidates], Array]
 Refusals = Callable[[Design], dict[str, str]]
+Around = Callable[[Stand, np.random.Generator], Iterable[Stand]]
 
 
 @dataclass(frozen=True)
@@ -101,6 +102,7 @@ def search(
     evolve: bool = True,
     within: float = 1e-4,
     until: float = inf,
+    around: Around = others,
 ) -> Found:
     """The candidate of a stand with the least goal.
 
@@ -121,9 +123,11 @@ def search(
         change the answer by less.
     until
         Of `time.perf_counter`; then the best so far is returned.
+    around
+        Stands that are tried beside a given one, on a body.
     """
     if stand.on_layer:
-        return _on_layer(stand, goal, rules, start, evolve, until)
+        return _on_layer(stand, goal, rules, start, evolve, until, around)
     low, high = stand.limits
     high = np.maximum(low, high)
     refused: dict[str, str] = {}
@@ -237,7 +241,13 @@ def moves(count: int) -> Array:
 
 
 def _on_layer(
-    stand: Stand, goal: Goal, rules: Refusals | None, start: Array | None, evolve: bool, until: float
+    stand: Stand,
+    goal: Goal,
+    rules: Refusals | None,
+    start: Array | None,
+    evolve: bool,
+    until: float,
+    around: Around,
 ) -> Found:
     """From a start, or from the best on springs, go to the first better neighbour, in a random order, until
     none is better; `evolve` also tries other orders of kinds, pitches and pads."""
@@ -265,15 +275,20 @@ def _on_layer(
             value = np.where(bad > 0.0, FAR * (1.0 + np.minimum(bad, 1e3)), wanted)
         return c, np.where(np.isfinite(value), value, FAR * 1e4)
 
+    def worth() -> float:
+        """What a candidate must be below; where limits are missed, by how much they are counts alone."""
+        base = FAR if best[0] >= FAR else 0.0
+        return base + (best[0] - base) * (1.0 - WORTH)
+
     def better(at: Stand, few: Stand, rows: Array) -> bool:
         nonlocal best, looked, decided_by
         looked += len(rows)
         # no candidate is better than at the few poses that decide the best: most need no others
         if few.tried:
-            rows = rows[valued(few, rows)[1] < best[0] * (1.0 - WORTH)]
+            rows = rows[valued(few, rows)[1] < worth()]
         c, value = valued(at, rows)
         for i in np.argsort(value):
-            if not value[i] < best[0] * (1.0 - WORTH):
+            if not value[i] < worth():
                 return False
             if value[i] < FAR and rules:
                 if refused := refusals(realised(at.candidates(rows[i : i + 1]))):
@@ -295,7 +310,7 @@ def _on_layer(
             few = replace(at, tried=decided_by)
             steps = [(at, few, part) for part in parts]
             if evolve:
-                steps += [(o, replace(o, tried=decided_by), row[np.newaxis]) for o in others(at, rng)]
+                steps += [(o, replace(o, tried=decided_by), row[np.newaxis]) for o in around(at, rng)]
             for k in rng.permutation(len(steps)):
                 if time.perf_counter() > until:
                     break

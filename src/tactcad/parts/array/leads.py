@@ -86,6 +86,41 @@ def least_to_board(layout: Layout) -> float:
     return ceil(10 * least - 1e-6) / 10
 
 
+@dataclass(frozen=True)
+class Bench:
+    """Boards on the bench beside a rig's base plate, the array over this: the longest level way from a tie to
+    its lead clamp, mm, and how high the board plates are raised so that wiring.to_board reaches."""
+
+    run: float
+    block: float
+
+    @property
+    def least(self) -> float:
+        """Of wiring.to_board, mm, with plates as high as the leads."""
+        return ceil(10 * (LAST + self.run) - 1e-6) / 10
+
+
+def on_bench(layout: Layout, edge: float, high: float, aside: tuple[float, float] = (0.0, 0.0)) -> Bench:
+    """Boards side by side as in `stands`, BESIDE off the base plate's ends, mm.
+
+    edge   of the base plate, from the array's middle along x
+    high   leads in their recess over the bench
+    aside  that the array is moved along x and y, at most
+    """
+    w, runs = layout.design.wiring, []
+    x = edge + BESIDE + PLATE_AHEAD - CLAMP_AHEAD - layout.rear_end - w.gather + aside[0]
+    for board, stand in zip(boards(layout), stands(layout)):
+        runs.append(hypot(x, abs(stand.y - _middle(board)) + aside[1]))
+    run = max(runs)
+    along = max(w.to_board - LAST, run)
+    return Bench(run, float(ceil(max(0.0, high - PLATE - sqrt(along**2 - run**2)))))
+
+
+def _middle(board: ReadBoard) -> float:
+    """y at which a board's leads are tied, mm."""
+    return (board.places[0].y + board.places[-1].y) / 2
+
+
 def _drop(layout: Layout) -> float:
     """From the leads in their recess to the clamp's groove, mm; the array lies on its back."""
     return carrier_top(layout) - PLATE - layout.design.element.recess_depth
@@ -99,7 +134,7 @@ def carrier_top(layout: Layout) -> float:
 def _route(layout: Layout, board: ReadBoard, stand: BoardStand, place: ElementPlace) -> LeadRoute:
     d, side = layout.design, stand.side
     terminal, recess = layout.recess_start + AHEAD_OF_LEADS, d.element.recess_depth
-    middle = (board.places[0].y + board.places[-1].y) / 2
+    middle = _middle(board)
     tie = layout.rear_end + d.wiring.gather
     points = (
         (side * terminal, place.y, recess),

@@ -13,6 +13,7 @@ from tactcad.design.fields import present
 from tactcad.design.tree import Design
 
 from ..array.layout import Layout
+from ..array.leads import Bench, on_bench
 from ..bought.standard_parts import STAGES, Stage
 from ..language.description import Extrusion, Feature, Part, Purchase, Revolution
 from ..language.limits import FACES, Geometric
@@ -122,6 +123,22 @@ class StandLayout:
     @property
     def post_height(self) -> float:
         return self.post_rows[-1] + 15.0
+
+
+def calibration_bench(layout: Layout) -> Bench:
+    """Boards beside the base plate, while any pad stands under the roller."""
+    rig, d = StandLayout(layout.design), layout.design
+    high = BASE[1] + rig.pads_up - d.element.pad_height - d.element.recess_depth
+    x, y = (max(abs(pad[i]) for pad in pad_middles(layout)) for i in (0, 1))
+    return on_bench(layout, rig.base_length / 2, high, (x, y))
+
+
+def grasping_bench(layout: Layout) -> Bench:
+    """Boards beside the base plate, the array lifted."""
+    guide = guide_layout(layout.design)
+    assert guide is not None
+    high = BASE[1] + guide.array_z + layout.design.element.recess_depth + guide.grasping.lift
+    return on_bench(layout, StandLayout(layout.design).base_length / 2, high)
 
 
 AIR = 0.5  # mm between things that pass each other; chosen, as under the cart

@@ -25,6 +25,7 @@ from ..rigs.stand import (
     most_elements,
 )
 from ..rigs.stiffness import calibration_lines, calibration_loads
+from .board_rules import leads_reach_from_stages
 from .rule import at_least, at_most, fits, misfit, rule, wrong
 from .stiffness_remedy import too_much
 
@@ -195,5 +196,6 @@ FITS = (
     carrier_screws_fit,
     mount_holes_apart,
     roller_clears_neighbours,
+    leads_reach_from_stages,
     calibration_stays_straight,
 )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
 from functools import wraps
-from math import pi, tan
+from math import floor, pi, tan
 
 from tactcad.design.fields import present
 from tactcad.design.following import LARGEST_SIDE
@@ -77,9 +77,9 @@ def cart_cannot_tip(rig: CartLayout) -> Iterator[Finding]:
 @rule(after="stop_land_above_arm")
 @on_cart
 def holder_on_cart(rig: CartLayout) -> Iterator[Finding]:
-    most = min(rig.cart.width, rig.cart.length)
-    legal = f"at most {most:g} mm in all"
-    yield from at_most("holder.margin", "holder larger than the cart", rig.holder_side, most, legal)
+    whole = floor(min(rig.cart.width, rig.cart.length) + SAME)  # as the holder's side is
+    most = (whole - rig.sample.side) / 2
+    yield from at_most("holder.margin", "holder larger than the cart", rig.holder.margin, most)
 
 
 @rule(after="stop_land_above_arm")

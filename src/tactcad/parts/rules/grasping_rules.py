@@ -11,6 +11,7 @@ from ..rigs.frame import BAR, BAR_FRONT, BAR_WIDTH, CARRIAGE_LENGTH, RAIL_HEIGHT
 from ..rigs.linear_guide import guide_layout
 from ..rigs.moving_weight import BAR_SCREW_X
 from ..rigs.stiffness import grasping_lines, sample_lines
+from .board_rules import leads_reach_from_guide
 from .calibration_rules import carrier_screws_fit, carrier_threads_clear
 from .cart_rules import LEAST_AIR, pads_on_sample
 from .rule import at_most, fits, rule, wrong
@@ -81,6 +82,7 @@ FITS = (
     bar_clears_screws,
     foot_holes_apart,
     rail_is_long_enough,
+    leads_reach_from_guide,
     guide_stays_straight,
 )
 SAMPLE_FITS = (sample_stand_stays_straight,)

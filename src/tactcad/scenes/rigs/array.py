@@ -357,7 +357,12 @@ def setting_words(layout: Layout) -> str:
     """Instructions for tightening the stack in the setting fixture, and measuring it."""
     d, c = layout.design, clamping(layout)
     tolerance = d.tolerance.pad_height
-    tight = "the nuts of the tie rods, the one at the other end held," if c.rod else "the clamping screws"
+    tight = "Tighten the clamping screws"
+    if c.rod:
+        tight = (
+            "Push the tie rods through, as far out at one end as at the other, a nut at each end. Tighten "
+            "the nuts, the one at the other end held,"
+        )
     gap = (
         f"Check the gap between the rows with feelers, {2 * layout.pad_inner:g} mm nominal: the dowels set "
         "it, force nothing between the pads. "
@@ -373,7 +378,7 @@ def setting_words(layout: Layout) -> str:
     return (
         "Press both end plates down on the fixture's steps, and with a bar of rubber on the ledges, between "
         "pads and dowels, every pad down on its floor. Press nowhere behind the dowels: that lifts the pads. "
-        f"Tighten {tight} crosswise, in three rounds: a third, two thirds, the whole torque. An element can "
+        f"{tight} crosswise, in three rounds: a third, two thirds, the whole torque. An element can "
         f"still turn about its dowel by {wedge(layout)}: pressed on its ledge it lies at one end of that. "
         f"{gap}No pad may let a {2 * tolerance * 1e3:g} um feeler pass. Then lay the array on its back on a "
         "surface plate (grade 1 or better) and read each pad with a lever indicator: all within "
@@ -403,10 +408,10 @@ def _is_calibrated(layout: Layout) -> bool:
 
 def _laying_stop_plate(layout: Layout) -> str:
     calibrated = (
-        "An array that is still to be calibrated goes to scene calibration without stop plate and set "
-        "screws, its carrier on: the stops would close before the end of the travel. Afterwards take the "
-        "carrier off again and read the pads' heights on the surface plate once more, as before: what "
-        "has moved is made coplanar and calibrated anew. "
+        "An array that is still to be calibrated is wired (scene wiring) and goes to scene calibration "
+        "without stop plate and set screws, its carrier on: the stops would close before the end of the "
+        "travel. Afterwards take the carrier off again and read the pads' heights on the surface plate "
+        "once more, as before: what has moved is made coplanar and calibrated anew. "
     )
     return (
         calibrated if _is_calibrated(layout) else ""
@@ -425,7 +430,7 @@ def _hold_down(layout: Layout) -> str:
         "Read the pads' heights once more. Check each stop: push every pad with a plastic rod; it must give "
         f"way and come to a stop, with {', '.join(f'{gap:g} mm at arm {arm:g}' for arm, gap in gaps)} "
         f"(to {tolerance:g} mm less, or {wider:g} mm more, one plate lying on all "
-        "ledges) on the lever indicator at the tip."
+        "ledges) on the lever indicator at the tip. Leads and boards are the scene wiring's."
     )
 
 

@@ -19,7 +19,7 @@ from tactcad.parts.rigs.frame import (
     pad_middles,
     under_carrier_screw,
 )
-from tactcad.parts.rigs.stand import StandLayout
+from tactcad.parts.rigs.stand import StandLayout, calibration_bench
 from tactcad.parts.rigs.stiffness import calibration_lines, calibration_loads, series_give
 from tactcad.parts.rules.calibration_rules import FITS
 
@@ -38,6 +38,7 @@ from ..shared_rigs import (
     STAND,
     THREAD,
     UNDER,
+    boards_on_bench,
     driven,
     place_force_axis,
     place_stand,
@@ -98,12 +99,14 @@ def calibration(design: Design, pose: Pose = REST) -> Scene:
         ),
     )
     _mounted_array(b, rig, under, contact, dx, dy, pose)
+    boards_on_bench(b, calibration_bench(rig.array))
     b.step(
         "Calibrate, then fit the stop plate",
         (0, 0, 0),
         f"Above a pad, set x by the edge of the pad to {c.load_point:g} mm; {c.step * 1e3:g} um steps to "
-        f"{c.travel * 1e3:g} um. {_limits(design)} Afterwards take the array off its mount, set it in the "
-        "setting fixture as in the step Coplanar pads of the array's own guide, still clamped, "
+        f"{c.travel * 1e3:g} um. {_limits(design)} Afterwards drive the roller up, pull "
+        "the sockets off, free the leads, take the mount off the stages and the array off the mount. Set "
+        "it in the setting fixture as in the step Coplanar pads of the array's own guide, still clamped, "
         "and take the carrier off it there (hex key of its screws). Read the pads' heights on the "
         "surface plate again and go on in that guide with the step Stop plate. Zero every signal anew.",
         tools=(*flatness_tools(rig.array), *carrier_tools(design)),
@@ -222,9 +225,10 @@ def _mounted_array(
         "Array on its mount",
         (0, 0, 120),
         "On the bench: lay the array (its own guide, but without stop plate and set screws: the stops "
-        "would close before the end of the travel) on the mount with its carrier down, its rows across "
-        "the mount's longer side and row 1 at the end marked x, and fix it by four screws from below. "
-        "Leads leave along x, loose.",
+        "would close before the end of the travel; leads on their sockets, guide wiring) on the mount with "
+        "its carrier down, its rows across the mount's longer side and row 1 at the end marked x, and fix "
+        "it by four screws from below. "
+        "Leads leave along x, sockets unplugged.",
         bench=True,
         at=IN_FRONT,
     )

@@ -58,7 +58,7 @@ from tactcad.parts.rigs.moving_weight import (
     PLATFORM_UNDER_HEAD,
     ballast_thickness,
 )
-from tactcad.parts.rigs.stand import StandLayout
+from tactcad.parts.rigs.stand import StandLayout, grasping_bench
 from tactcad.parts.rigs.stiffness import grasping_lines
 from tactcad.parts.rules.grasping_rules import FITS
 from tactcad.parts.rules.rule import fits, wrong
@@ -80,7 +80,16 @@ from ..scene import (
     Scene,
     whole_um,
 )
-from ..shared_rigs import CORNERS, SHIMS, SQUARE, cart_on_base, place_cart, place_sample, place_stand
+from ..shared_rigs import (
+    CORNERS,
+    SHIMS,
+    SQUARE,
+    boards_on_bench,
+    cart_on_base,
+    place_cart,
+    place_sample,
+    place_stand,
+)
 from .array import array, without_gaps
 
 # Relative difference allowed between the parts' weight and the design's: the ballast is turned to weight
@@ -103,6 +112,7 @@ def grasping(design: Design, pose: Pose = REST) -> Scene:
     lift = pose.height - pose.deflection
     below, z = place_axis(b, rig, rail, lift)
     b.group(None)
+    boards_on_bench(b, grasping_bench(rig.array))
     up, lid_text = (0.0, 0.0, g.lift), "The array hangs on the latch over it."
     cart_on_base(b, text=lid_text)
     axis = tuple(b.groups["axis"])
@@ -293,7 +303,7 @@ def place_axis(b: Builder, rig: GuideLayout, rail: str, lift: float) -> tuple[st
         "Ballast",
         (0, 0, 305),
         "Slide all that moves up off the guide on the carriage's transport rail and weigh it without that "
-        f"rail: with the ballast it must be {rig.grasping.moving_weight:g} N, "
+        f"rail, leads held up: with the ballast it must be {rig.grasping.moving_weight:g} N, "
         f"{rig.grasping.moving_weight / NEWTON:.1f} g. Turn the ballast thinner until it is; then slide it "
         "back, on the latch.",
         tools=("balance, 0.1 g",),
@@ -394,8 +404,8 @@ def _place_carried(b: Builder, rig: GuideLayout, rail: str, lift: float, standin
     b.step(
         "Array under the foot",
         (0, -140, -35),
-        "Screw the finished array (its own guide) under the foot. Leads leave along x in a loose loop to "
-        "the post.",
+        "Screw the finished array (its own guide, leads on their sockets by guide wiring) under the foot. "
+        "Leads leave along x, sockets unplugged.",
         elements=True,
         bench=True,
     )

@@ -24,9 +24,11 @@ from tactcad.parts.array.board_plate import (
     stand_off,
 )
 from tactcad.parts.array.layout import Layout
-from tactcad.parts.array.leads import BoardStand, carrier_top, leads, stands
-from tactcad.parts.array.supplies import wiring_supplies
+from tactcad.parts.array.leads import BoardStand, boards, carrier_top, leads, stands
+from tactcad.parts.array.supplies import supplies, wiring_supplies
 from tactcad.parts.language.description import Vector, vector
+from tactcad.parts.rules.bonding_rules import FITS as BONDING_FITS
+from tactcad.parts.rules.rule import misfit
 
 from ..builder import Builder
 from ..rig import Rig, none
@@ -56,6 +58,8 @@ def wiring(design: Design, pose: Pose = REST) -> Scene:
     stood = stands(layout)
     b = Builder()
     b.supplies += wiring_supplies(layout)
+    if design.bonding is None or misfit(layout, BONDING_FITS):
+        b.supplies += (s for s in supplies("bonding", {}) if s.part_no in ("SOLDER", "FLUX"))
     level = PLATE + STAND_OFF
 
     def at(stand: BoardStand, x: float, y: float, z: float) -> Vector:
@@ -70,7 +74,7 @@ def wiring(design: Design, pose: Pose = REST) -> Scene:
         "Board plates",
         (0, 0, 0),
         "Lay a board plate on the bench for each board, at the side of the row that it reads, its edge "
-        "with the lead clamp's two threads towards the array's place.",
+        f"with the lead clamp's two threads towards the array's place.{_in_order(layout)}",
     )
     screws: list[tuple[BoardStand, str, Vector]] = []
     for stand, plate in zip(stood, plates):
@@ -96,14 +100,15 @@ def wiring(design: Design, pose: Pose = REST) -> Scene:
         "Boards",
         (0, 0, 60),
         "Lay each board, its parts soldered and its flux washed off, on its stand-offs, J2 towards the "
-        "array's place, and screw it down crosswise. Plug the cable to card or controller on its J1, the "
-        "other end still free.",
+        f"array's place, and screw it down crosswise.{_fitted(layout)} Plug the cable to card or controller "
+        "on its J1, the other end still free.",
     )
     b.subassembly(whole, DOWN, (0, 0, carrier_top(layout)))
     b.step(
         "Array on its back",
         (0, 0, 60),
-        "Lay the finished array on the bench on its carrier, pads up, row 1 to the right (+x): each row's "
+        "Lay the array on the bench on its carrier, pads up, finished, or still to be calibrated and without "
+        "stop plate and set screws: row 1 to the right (+x): each row's "
         "leads come out towards its board. Nothing may lie on the pads.",
         order=[Move(tuple(p.designator for p in whole.placements), (0.0, 0.0, LIFTED), (STILL,))],
         sets=("array on the bench: along z, turn about x and y",),
@@ -122,7 +127,7 @@ def wiring(design: Design, pose: Pose = REST) -> Scene:
         "braid and the wire from the array's metal to the last two, and shrink the sleeves over the joints. "
         "Measure at the socket: from red to black a gauge, from black to the array's metal nothing.",
         order=[Move((name,), vector((*parked[s][:2], LIFTED)), (parked[s],)) for s, name in sockets.items()],
-        tools=(SOLDERING, "ohmmeter, four wires, 0.01 ohm"),
+        tools=(SOLDERING, "solder and flux, as for the gauges", "ohmmeter, four wires, 0.01 ohm"),
         sets=("leads in their socket: all, by solder",),
         leaves=("sockets: lie loose on their plates",),
         needs=(Need((*fitted,), "leads are as long as the way to their board"),),
@@ -166,6 +171,27 @@ def wiring(design: Design, pose: Pose = REST) -> Scene:
         ),
     )
     return b.scene("wiring", cover=[p.designator for p in whole.placements if p.designator in whole.cover])
+
+
+def _in_order(layout: Layout) -> str:
+    """Where the boards of a row that has several stand."""
+    rows = [[b for b in boards(layout) if b.places[0].row == row] for row in (1, 2)]
+    told = [
+        f"A{own[0].number} beside {own[0].places[0].designator} to A{own[-1].number} beside "
+        f"{own[-1].places[-1].designator}"
+        for own in rows
+        if len(own) > 1
+    ]
+    return f" A row's boards stand in the order of their elements: {', '.join(told)}." if told else ""
+
+
+def _fitted(layout: Layout) -> str:
+    """Which board has how many channels fitted, where they differ: its files are named by that."""
+    fitted: dict[int, list[str]] = {}
+    for b in boards(layout):
+        fitted.setdefault(len(b.places), []).append(f"A{b.number}")
+    told = [f"{' '.join(names)} of board-{used}" for used, names in fitted.items()]
+    return f" Parts are fitted as in the files {', '.join(told)}." if len(told) > 1 else ""
 
 
 RIG = Rig(
