@@ -361,7 +361,7 @@ class Readout:
     mains: float | None = given(
         Number("Hz", 10, 1000, "frequency of the mains: samples are spread over a whole period"),
         None,
-        "not asked: samples follow each other at readout.sample_rate",
+        "not asked: samples follow each other at readout.sample_rate; 50 of a sigma-delta converter",
     )
     hum: float = given(Number("V", 0, 10, "rms of the mains at the amplifier's output"), 0.0)
     adc_noise: float | None = given(
