@@ -142,7 +142,7 @@ def front() -> str:
         for angle in ANGLES:
             found.append([answer(*one, float(angle)) for one in at])
             at = [(one.candidate.stand, one.row) for one in found[-1]]
-            print(angle, row_of(stiffness, thickness, angle, found[-1]), flush=True)
+            print(stiffness, angle, [said(one) for one in found[-1]], flush=True)
         for n, angle in enumerate(ANGLES):
             best = [min(later, key=worth) for later in zip(*found[n:])]
             rows.append(row_of(stiffness, thickness, angle, best))
