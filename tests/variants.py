@@ -13,6 +13,10 @@ from tactcad.design.load import from_table
 from tactcad.design.tree import Design
 
 HARDWARE = Path(__file__).parents[1] / "hardware"
+# Shipped designs of facing rows, which have [array]: tests of what is facing rows' own take these.
+FACING_ROWS = sorted(
+    p.stem for p in HARDWARE.glob("*.toml") if "array" in tomllib.loads(p.read_text("utf-8"))
+)
 DROP = object()
 # All that a text or table of the published array needs of its origins: its modulus is not its alloy's.
 ORIGIN = {"material.youngs_modulus": "paper: 69000 MPa"}

@@ -32,7 +32,7 @@ def review(folder: Path) -> int:
     """1 where something differs or nothing is there, else 0; says so line by line."""
     manifest = json.loads((folder / "manifest.json").read_text(encoding="utf-8"))
     parts = {part["part_no"]: part for part in manifest["parts"]}
-    element = design_table(manifest["design"])["element"]
+    element = element_table(manifest["design"])
     files = [file for file in manifest["files"] if file["kind"] == "dxf"]
     wrong = []
     for file in files:
@@ -44,10 +44,13 @@ def review(folder: Path) -> int:
     return 1 if wrong or not files else 0
 
 
-def design_table(name: str) -> dict:
+def element_table(name: str) -> dict:
+    """What a design says of its elements; of planar cells, the narrower beam's width."""
     tables = [tomllib.loads(path.read_text(encoding="utf-8")) for path in sorted(HARDWARE.glob("*.toml"))]
     (table,) = [table for table in tables if table["design"]["name"] == name]
-    return table
+    if "planar" in table:
+        return {"beam_width": min(table[kind]["beam_width"] for kind in ("measuring", "reference"))}
+    return table["element"]
 
 
 def file_faults(path: Path, part: dict, element: dict) -> list[str]:
@@ -69,6 +72,9 @@ def file_faults(path: Path, part: dict, element: dict) -> list[str]:
         found, meant = thinnest(entities), hinge_thickness(part["part_no"], element)
         if abs(found - meant) > HINGE:
             faults.append(f"hinge is {found} mm thick in the file, {meant} mm in the design")
+    if part["part_no"].endswith("-foil") and abs(thinnest(entities) - element["beam_width"]) > HINGE:
+        width = element["beam_width"]
+        faults.append(f"narrowest beam is {thinnest(entities)} mm in the file, {width} mm in the design")
     return faults
 
 

@@ -7,13 +7,13 @@ from dataclasses import replace
 import pytest
 from bad_parts import BAD
 from traced_parts import asked_parts, unnamed
-from variants import variant
+from variants import FACING_ROWS, variant
 
 from tactcad.checks.facing_rows.circuit import check_bridges, check_circuit, check_inputs, check_signals
 from tactcad.checks.facing_rows.gauge_limits import check_gauges
 from tactcad.circuit.bridges import netlist
 from tactcad.circuit.netlist import Netlist
-from tactcad.design.load import names, read
+from tactcad.design.load import read
 from tactcad.parts.array.layout import Layout
 from tactcad.parts.bought.electronic_parts import parts_used
 
@@ -32,7 +32,7 @@ def moved(designator: str, role: str, net: str) -> Netlist:
     return replace(SHIPPED, components=changed)
 
 
-@pytest.mark.parametrize("name", names())
+@pytest.mark.parametrize("name", FACING_ROWS)
 def test_the_shipped_designs_pass(name):
     assert [*check_circuit(read(name)), *check_signals(read(name))] == []
 

@@ -6,10 +6,9 @@ from dataclasses import replace
 from math import asin, cos, sin
 
 import pytest
-from variants import variant
+from variants import FACING_ROWS, variant
 
 from tactcad.checks.facing_rows.overload_stop import _Arms, _mirrored, _nearest, check_clearance
-from tactcad.design.load import names
 from tactcad.parts.array.layout import Layout
 from tactcad.parts.array.stop_gap import seat, stop_gap
 from tactcad.parts.designs import load
@@ -17,7 +16,7 @@ from tactcad.parts.rigs.stiffness import calibration_loads
 from tactcad.parts.rules.pressed_rules import turns
 
 
-@pytest.mark.parametrize("name", names())
+@pytest.mark.parametrize("name", FACING_ROWS)
 def test_what_ships_is_clear(name):
     assert check_clearance(load(name)) == []
 

@@ -14,12 +14,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from variants import variant
+from variants import FACING_ROWS, variant
 
 from tactcad.circuit.bridges import netlist
 from tactcad.circuit.netlist_files import wiring
 from tactcad.circuit.read_board import board_netlist
-from tactcad.design.load import names, read
+from tactcad.design.load import read
 from tactcad.design.messages import CheckFailure
 from tactcad.export import circuit_files
 from tactcad.parts.array.layout import Layout
@@ -51,7 +51,7 @@ def part(node: list, name: str) -> list:
     return next(x for x in node if isinstance(x, list) and x[0] == name)
 
 
-@pytest.mark.parametrize("name", names())
+@pytest.mark.parametrize("name", FACING_ROWS)
 def test_kicads_netlist_read_by_another_reader(name):
     design = read(name)
     used, channels = max(map(len, design.array.row_arms)), 8
@@ -151,7 +151,7 @@ def test_equal_bytes_under_any_hash_seed():
     assert len(said) == 1 and said.pop().count("\n") == 4
 
 
-@pytest.mark.parametrize("name", names())
+@pytest.mark.parametrize("name", FACING_ROWS)
 @pytest.mark.parametrize("connection", ["three-wire", "two-wire"])
 def test_leads_are_as_long_as_their_way_on_the_scene(name, connection):
     """Measured on the placed elements: the body's end and recess are read off the part's contour."""
@@ -324,3 +324,20 @@ def test_another_tolerance_than_the_named_resistors_is_ordered_by_its_figures():
     }
     line = bill["BRIDGE-RESISTOR"]
     assert "0.5 %" in line.designation and line.mpn == "" and not line.verified
+
+
+@pytest.mark.parametrize(
+    ("kind", "ohm", "mpn"),
+    [
+        ("film-0.1", 120, "RT0805BRB07120RL"),
+        ("film-1", 1000, "RC0805FR-071KL"),
+        ("film-1", 350, ""),  # E192 has 348 and 352
+    ],
+)
+def test_a_film_resistor_has_a_makers_number_where_its_value_is_sold(kind, ohm, mpn):
+    changes = {"readout.completion": kind, "gauge.resistance": float(ohm), "readout.excitation": 2.0}
+    bill = {s.part_no: s for s in make_scene(variant(changes), "array").supplies}
+    line = bill["BRIDGE-RESISTOR"]
+    assert (
+        line.mpn == mpn and line.manufacturer == ("Yageo" if mpn else "") and "any maker" in line.designation
+    )

@@ -8,12 +8,11 @@ import re
 import signal
 from dataclasses import replace
 from functools import partial
-from pathlib import Path
 
 import numpy as np
 import pytest
 from part21 import Text
-from variants import variant
+from variants import FACING_ROWS, variant
 
 from tactcad.contour import rectangle
 from tactcad.design.messages import CheckFailure
@@ -22,14 +21,14 @@ from tactcad.export.formats import has_limits, part_formats
 from tactcad.export.step_text import Header
 from tactcad.export.workers import Task, side_by_side
 from tactcad.parts.designs import load
-from tactcad.parts.language.description import Extrusion, Hole, Material, Part, Pocket
+from tactcad.parts.language.description import Extrusion, Hole, Material, Part, Pocket, Revolution
 from tactcad.parts.language.limits import FACES, DatumFeature, Geometric, within
 from tactcad.scenes import make_scene, scene_names
 
 pytestmark = pytest.mark.cad
 
 HEADER = Header("part", "a part", "B", "2026-11-22", "author", "organisation")
-DESIGNS = sorted((Path(__file__).parents[2] / "hardware").glob("*.toml"))
+DESIGNS = [*FACING_ROWS, "jaw-array"]  # the other planar design has parts of the same functions
 SYMBOLS = ("POSITION", "FLATNESS", "PARALLELISM", "PERPENDICULARITY")
 
 
@@ -160,6 +159,13 @@ def lies_on(text: Limits, face: int, part: Part, feature: str) -> bool:
     return False
 
 
+def nearest(nominal: float, face: tuple, others: list[tuple]) -> tuple[float, float]:
+    """The distance to a face parallel to this one, mm, that is nearest the nominal one, and how far off."""
+    (_, here, _), n = face, face[1][:3, 2]
+    across = [abs(n @ (a[:3, 3] - here[:3, 3])) for _, a, _ in others if abs(n @ a[:3, 2]) > 1 - 1e-9]
+    return min(((d, abs(d - nominal)) for d in across), key=lambda found: found[1])
+
+
 def measured(text: Limits, record: dict) -> float:
     """What the faces themselves measure, mm: a diameter, a radius, or the distance of planes and axes."""
     first, *second = ([text.surface(f) for f in side] for side in record["sides"])
@@ -168,6 +174,9 @@ def measured(text: Limits, record: dict) -> float:
         return 2 * r if record["kind"] == "diameter" else r
     points = [np.mean([axes[:3, 3] for _, axes, _ in side], axis=0) for side in (first, second[0])]
     normals = [axes[:3, 2] for kind, axes, _ in (*first, *second[0]) if kind == "PLANE"]
+    if len(normals) == len(first) + len(second[0]) > 2:  # a cell's beams, turned and repeated: the worst face
+        found = (nearest(record["nominal value"], face, second[0]) for face in first)
+        return max(found, key=lambda pair: pair[1])[0]
     assert all(np.linalg.norm(np.cross(normals[0], n)) < 1e-9 for n in normals)
     return abs(normals[0] @ (points[1] - points[0]))
 
@@ -228,11 +237,11 @@ def test_a_model_says_what_the_part_says(macro_scene, ending):
 
 
 @pytest.mark.nightly
-@pytest.mark.parametrize("path", DESIGNS, ids=lambda p: p.stem)
-def test_every_made_part_of_every_design(path):
-    design = load(path)
-    parts = {p.part_no: p for name in scene_names(design) for p in make_scene(design, name).parts}
-    stated = [p for p in parts.values() if has_limits(p)]
+@pytest.mark.parametrize("name", DESIGNS)
+def test_every_made_part_of_every_design(name):
+    design = load(name)
+    parts = {p.part_no: p for s in scene_names(design) for p in make_scene(design, s).parts}
+    stated = [p for p in parts.values() if has_limits(p) and not isinstance(p.body, Revolution)]
     assert len(stated) > 5
     for part in stated:
         holds(part, model(part))
@@ -310,7 +319,7 @@ def test_a_dimension_that_its_features_do_not_have_is_refused(between, said):
 def test_a_feature_that_is_cut_away_is_refused():
     width = plate(characteristics=(within("length", 10, 0.1, between=("left edge", "right edge")),))
     away = Pocket("step", (0, 0, 5), (0, 0, -1), (1, 0, 0), rectangle(0, -8, 1, 0), 5.0)
-    with pytest.raises(CheckFailure, match="P-1: length stands on a face that the solid does not have"):
+    with pytest.raises(CheckFailure, match="P-1: length refers to a face that the solid does not have"):
         model(replace(width, features=(*width.features, away)))
 
 
@@ -376,6 +385,7 @@ def crash(*_) -> bytes:
 
 def test_a_crash_of_the_kernel_is_reported_with_the_file(monkeypatch):
     from tactcad.solids.build import build
+    from tactcad.solids.occt import end_threads
 
     class Built:
         def of(self, part):
@@ -385,6 +395,7 @@ def test_a_crash_of_the_kernel_is_reported_with_the_file(monkeypatch):
     (form,) = (f for f in part_formats() if f.kind == "step-pmi")
     part = plate(datums=(DatumFeature("A", "bore"),))
     task = Task("step/P-1_A-ap242.step", partial(form.make, part, Built(), HEADER, ()))
+    end_threads()  # as the export does: a fork waits for ever for those that earlier tests started
     with pytest.raises(CheckFailure, match=r"step/P-1_A-ap242.step: the process .* crashed"):
         list(side_by_side([task]))
     assert form.has(part) and not form.has(plate()) and not form.has(replace(part, process="bought"))

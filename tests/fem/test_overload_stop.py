@@ -11,8 +11,8 @@ from functools import lru_cache
 import numpy as np
 import pytest
 from skfem import Basis, ElementTriP2
+from variants import FACING_ROWS
 
-from tactcad.design.load import names
 from tactcad.fem import elasticity, fem_ladder
 from tactcad.fem.free_mesh import Fine, triangle_mesh
 from tactcad.fem.space import line_load
@@ -27,7 +27,7 @@ from tactcad.parts.designs import load
 KINDS = sorted(
     {
         (element(layout, p).body, layout.design.rating): (name, p.arm)
-        for name in names()
+        for name in FACING_ROWS
         for layout in [Layout(load(name))]
         for p in layout.elements
     }.values()

@@ -74,3 +74,19 @@ def test_another_area_is_seen(tmp_path):
     body, meant = (Extrusion(slotted(0.25, 0.88, 0.3), 3.0, (circle((4, 4), d),)) for d in (3.4, 3.401))
     found = faults(tmp_path, body, meant, 0.25)
     assert found and all("area" in fault for fault in found)
+
+
+def test_a_foil_s_narrowest_beam_is_the_design_s(tmp_path):
+    """A frame with a beam of 0.4 mm across, between two openings."""
+    openings = tuple(
+        rounded_polygon([Corner(p, 0.1) for p in ((1, y), (9, y), (9, y + 3), (1, y + 3))]) for y in (1, 4.4)
+    )
+    body = Extrusion(
+        rounded_polygon([Corner(p, 0.0) for p in ((0, 0), (10, 0), (10, 8.4), (0, 8.4))]), 0.08, openings
+    )
+    path = tmp_path / "foil.dxf"
+    path.write_bytes(dxf_bytes(Part("x-foil", "", "etched", Material("", 7900.0), body)))
+    assert review.file_faults(path, facts(body, "x-foil"), {"beam_width": 0.4}) == []
+    (fault,) = review.file_faults(path, facts(body, "x-foil"), {"beam_width": 0.41})
+    assert "narrowest beam" in fault
+    assert review.element_table("jaw-array") == {"beam_width": 0.2}

@@ -5,10 +5,10 @@ from __future__ import annotations
 
 import io
 from dataclasses import replace
-from pathlib import Path
 
 import ezdxf
 import pytest
+from variants import FACING_ROWS
 
 from tactcad.contour import rectangle
 from tactcad.export.dxf import dxf_bytes
@@ -20,7 +20,6 @@ from tactcad.scenes import make_scene, scene_names
 from tactcad.solids.build import build
 from tactcad.solids.measure import bounding_box
 
-DESIGNS = [p.stem for p in sorted(Path("hardware").glob("*.toml")) if "row_arms" in p.read_text()]
 # mm, plus and minus: of rolled plate, written down again from EN 485-3 and EN 10051 as issued to a shop
 ROLLED = {8: 0.35, 10: 0.45, 12: 0.50, 15: 0.50, 20: 0.60, 25: 0.65, 30: 0.65, 5: 0.32}
 
@@ -34,7 +33,7 @@ def read(part: Part) -> list:
     return [*ezdxf.read(io.StringIO(dxf_bytes(part).decode())).modelspace()]
 
 
-@pytest.mark.parametrize("name", DESIGNS)
+@pytest.mark.parametrize("name", FACING_ROWS)
 def test_a_blank_holds_no_finished_hole_and_material_everywhere(name):
     blanks = [p for p in parts_of(name).values() if p.process in ("milled", "ground") and cut_section(p)]
     assert len(blanks) > 3
@@ -90,7 +89,7 @@ def test_wire_cut_sheet_is_picked_and_other_wire_cut_parts_are_ground_to_size():
         )
 
 
-@pytest.mark.parametrize("name", DESIGNS)
+@pytest.mark.parametrize("name", FACING_ROWS)
 def test_a_material_is_ordered_by_the_standard_of_its_form(name):
     """EN 485-2: rolled aluminium; EN 755-2: extruded bar; EN 10088-2: stainless sheet and plate; -3: bar."""
     for part in parts_of(name).values():

@@ -5,9 +5,9 @@ from __future__ import annotations
 
 from functools import cache
 from itertools import product
-from pathlib import Path
 
 import pytest
+from variants import FACING_ROWS
 
 from tactcad.design.family import family_of
 from tactcad.drawing.parts.part_sheet import part_plan
@@ -19,7 +19,6 @@ from tactcad.parts.language.metric import METRIC
 from tactcad.parts.rigs.cart import cart_layout
 from tactcad.scenes import make_scene, scene_names
 
-DESIGNS = [p.stem for p in sorted(Path("hardware").glob("*.toml")) if "row_arms" in p.read_text()]
 MADE = ("wire-cut", "milled", "turned", "ground")
 
 
@@ -34,7 +33,7 @@ def flatness(part: Part, face: str) -> float:
     return min((g.zone for g in part.geometric if g.symbol == "flatness" and face in g.features), default=1.0)
 
 
-@pytest.mark.parametrize("name", DESIGNS)
+@pytest.mark.parametrize("name", FACING_ROWS)
 def test_faces_that_others_refer_to_are_flat(name):
     for number, part in made(name).items():
         a = next((d.feature for d in part.datums if d.letter == "A"), "")
@@ -44,7 +43,7 @@ def test_faces_that_others_refer_to_are_flat(name):
             assert a == "face z=0" and flatness(part, a) <= 0.01
 
 
-@pytest.mark.parametrize("name", DESIGNS)
+@pytest.mark.parametrize("name", FACING_ROWS)
 def test_a_head_that_is_sunk_stays_below_its_face_at_any_limits(name):
     """ISO 4762: the head is at most as high as its thread is wide."""
     for number, part in made(name).items():
@@ -54,7 +53,7 @@ def test_a_head_that_is_sunk_stays_below_its_face_at_any_limits(name):
             assert deep < 0.8 * head or deep - general(deep) >= head, (number, h.name, deep)
 
 
-@pytest.mark.parametrize("name", DESIGNS)
+@pytest.mark.parametrize("name", FACING_ROWS)
 def test_no_wheel_rolls_over_a_thread(name):
     rig, base = cart_layout(load(name)), made(name).get("base")
     if rig is None or base is None:
@@ -65,7 +64,7 @@ def test_no_wheel_rolls_over_a_thread(name):
             assert abs(h.at[1] - y) >= half + h.thread_diameter / 2 + 0.3, h.name
 
 
-@pytest.mark.parametrize("name", [n for n in DESIGNS if load(n).calibration is not None])
+@pytest.mark.parametrize("name", [n for n in FACING_ROWS if load(n).calibration is not None])
 def test_the_roller_is_sold_and_lies_straight_on_its_pad(name):
     """ISO 8734 begins at 5 mm for 2 mm pins; the ends of a pin are chamfered by 0.35, of cut rod by 0.1."""
     design = load(name)
@@ -79,7 +78,7 @@ def test_the_roller_is_sold_and_lies_straight_on_its_pad(name):
     assert length / 2 <= design.array.pitch - design.sheet.thickness / 2 - 0.1 + 1e-9
 
 
-@pytest.mark.parametrize("name", DESIGNS)
+@pytest.mark.parametrize("name", FACING_ROWS)
 def test_sheets_state_no_size_finer_than_its_limits(name):
     design = load(name)
     for part in made(name).values():
@@ -92,14 +91,14 @@ def test_sheets_state_no_size_finer_than_its_limits(name):
                 assert d.text(plan.values).endswith("Ⓔ"), (part.part_no, d.name)
 
 
-@pytest.mark.parametrize("name", DESIGNS)
+@pytest.mark.parametrize("name", FACING_ROWS)
 def test_geometry_stands_in_frames_and_not_in_the_surface_finish(name):
     words = ("parallel", "square", "within", "flat ", "chamfer")
     for part in made(name).values():
         assert not [w for w in words if w in part.finish], part.finish
 
 
-@pytest.mark.parametrize("name", DESIGNS)
+@pytest.mark.parametrize("name", FACING_ROWS)
 def test_an_elements_holes_are_placed_by_axis_and_then_face(name):
     for number, part in made(name).items():
         if part.kind == "element":

@@ -6,14 +6,13 @@ import re
 
 import numpy as np
 import pytest
-from variants import DROP, IN_SLOT, variant
+from variants import DROP, FACING_ROWS, IN_SLOT, variant
 
 from tactcad.checks.described.goes_together import check_assembly
 from tactcad.checks.described.wirecut import check_wirecut
 from tactcad.checks.on_solids.interference import check_interference
 from tactcad.checks.shop import DEFAULT, load_shop
 from tactcad.circuit.element_signals import element_signals
-from tactcad.design.load import names
 from tactcad.drawing.engine.extent import placed
 from tactcad.drawing.parts.part_sheet import part_plan
 from tactcad.families.facing_rows import FAMILY
@@ -79,7 +78,7 @@ def edge(scene, designator, name):
 
 
 def test_every_shipped_design_has_its_fixture():
-    for name in names():
+    for name in FACING_ROWS:
         assert "bonding" in scene_names(load(name)) and left_out(load(name)) == []
 
 

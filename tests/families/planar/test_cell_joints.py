@@ -28,7 +28,7 @@ from tactcad.robot import read, read_taxels
 from tactcad.scenes import make_scene
 
 pytestmark = pytest.mark.cad
-DESIGNS = Path(__file__).parent / "designs"
+DESIGNS = Path(__file__).parents[3] / "hardware"
 
 
 @pytest.fixture(scope="module", params=["jaw", "planar"])

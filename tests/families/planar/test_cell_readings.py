@@ -20,7 +20,7 @@ from tactcad.families.planar.cell_layout import PlanarLayout
 from tactcad.families.planar.sensor import chip_matrix
 from tactcad.parts.designs import load
 
-PLANAR = Path(__file__).parent / "designs" / "planar-array.toml"
+PLANAR = Path(__file__).parents[3] / "hardware" / "planar-array.toml"
 LOADS = np.linspace(0.1, 0.5, 5)
 
 

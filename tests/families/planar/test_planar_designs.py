@@ -19,7 +19,7 @@ from tactcad.families.planar.rules import design_rules
 from tactcad.families.planar.sensor import chip_matrix, closing_force, rows, strength
 from tactcad.parts.designs import load
 
-DESIGNS = Path(__file__).parent / "designs"
+DESIGNS = Path(__file__).parents[3] / "hardware"
 PLANAR, JAW = (DESIGNS / f"{name}-array.toml" for name in ("planar", "jaw"))
 
 
@@ -105,6 +105,32 @@ def test_estimate_tells_ratio_resolution_and_stops(layout):
         assert drawn.std(axis=1)[[0, 2]] == pytest.approx([row.force_noise_x, row.force_noise_z], rel=0.05)
     table = list(csv.DictReader(io.StringIO(strength(layout).decode())))
     assert [r["element"] for r in table] == [e.designator for e in layout.elements]
+
+
+def told(found, object_stiffness, matrices):
+    """Relative error of K_obj, of a cell of each kind on it, pressed until one is at its rated force: by the
+    slope of F_m / F_r and its errors, which are the noise and that of the matrices."""
+    cells = [found["measuring"], found["reference"]]
+    soft, stiff = (1 / c.stiffness + 1 / object_stiffness for c in cells)
+    way = min(cells[0].rated_force * soft, cells[1].rated_force * stiff)
+    noise = [c.force_noise_z * series / way for c, series in zip(cells, (soft, stiff))]
+    return np.hypot(*[np.hypot(n, matrices) for n in noise]) * object_stiffness / (1 / stiff - 1 / soft)
+
+
+def test_the_jaw_s_file_says_what_can_be_had_there():
+    """Its jaw, K and noise by kind, and errors of K_obj."""
+    lay = PlanarLayout(load(str(JAW)))
+    assert 2 * np.array(lay.half) == pytest.approx([28.0, 10.0])
+    said = " ".join(line[2:] for line in JAW.read_text("utf-8").splitlines() if line.startswith("# "))
+    found = {row.kind: row for row in rows(lay, "", None)}
+    soft, stiff = found["measuring"], found["reference"]
+    assert f"K_m = {soft.stiffness:.2f} and K_r = {stiff.stiffness:.2f} N/mm, rated for " in said
+    assert f"rated for {soft.rated_force:.2f} and {stiff.rated_force:.2f} N" in said
+    for row in (soft, stiff):
+        assert f"{1e3 * row.force_noise_x:.2f} mN" in said and f"{1e3 * row.force_noise_z:.2f} mN" in said
+    errors = [[100 * told(found, k, m) for k in (0.5, 1.0, 5.0, 20.0)] for m in (0.0, 0.01)]
+    text = "{:.1f} % at 0.5 N/mm, {:.1f} % at 1, {:.1f} % at 5 and {:.1f} % at 20".format(*errors[0])
+    assert text in said and "{:.1f}, {:.1f}, {:.1f} and {:.1f} %".format(*errors[1]) in said
 
 
 def test_three_components_come_back_from_the_field(layout):

@@ -24,7 +24,7 @@ from tactcad.solids.step import to_bytes
 
 pytestmark = pytest.mark.cad
 
-DESIGNS = Path(__file__).parent / "designs"
+DESIGNS = Path(__file__).parents[3] / "hardware"
 ETCHED = 0.013  # mm, plus and minus, below 0.13 mm: data/processes.csv, the least
 
 
