@@ -207,7 +207,7 @@ def test_the_stated_half_width_covers_the_layer(case):
 def test_the_map_over_both_angles_is_what_solid_elements_give(elements, load, most):
     """Tissue-array, or four of its elements, at five points of the report's map, up to `most` degrees:
     readings by the body's influence from bricks (rung fem-object) have the forces that the map counts with,
-    and their evaluation finds K_obj with the half-width that it shows."""
+    and K_obj lies within the interval of each of eight labs, as wide as the map shows."""
     target = read_target(HARDWARE / "targets" / "tissue-array.toml")
     whole = MadeSensor(target, read("tissue-array")).on_body
     some = np.r_[6:10] if elements == 4 else np.arange(10)  # the soft one among them
@@ -225,13 +225,13 @@ def test_the_map_over_both_angles_is_what_solid_elements_give(elements, load, mo
     loads = load * (np.arange(target.grasp.loads) + 1) / target.grasp.loads
     for point, force, wide in zip(points, shown.force, half):
         pressed = [solid.press(load=float(N), angle=tuple(point), modulus=E) for N in loads]
-        assert pressed[-1].force == pytest.approx(force, abs=0.006 * force.mean())
+        assert pressed[-1].force == pytest.approx(force, abs=0.01 * force.max())
         signal = made.signal[:, None] * np.array([p.sink for p in pressed]).T
         readings = np.concatenate([np.zeros((elements, 1)), signal], 1)
         rng = np.random.default_rng(7)
-        readings = readings + made.noise * rng.standard_normal(readings.shape)
+        read_out = readings + made.noise * rng.standard_normal((8, *readings.shape))
         number, at = np.arange(1, elements + 1), np.r_[0.0, loads]
-        found = layer_fit.fit(made.array, number, at, readings[None], made.calibration)
-        x, low, high = found.object_[0]
+        x, low, high = layer_fit.fit(made.array, number, at, read_out, made.calibration).object_.T
         right = E * pad_stiffness(solid.body, made.pads.length, made.pads.width)
-        assert abs(x - right) < 0.5 * wide and (high - low) / 2 == pytest.approx(wide, rel=0.25)
+        assert ((low <= right) & (right <= high)).all()
+        assert np.median(high - low) / 2 == pytest.approx(wide, rel=0.15)
