@@ -76,7 +76,7 @@ class _Rings:
     def forces(
         self, u: np.ndarray, p: np.ndarray | None = None
     ) -> tuple[np.ndarray, csc_matrix, np.ndarray, np.ndarray]:
-        """What holds the displacements u: forces on the nodes, and their derivative; each element's pressure,
+        """Forces on the nodes for displacements u, and their derivative; each element's pressure,
         kappa (J - 1), and its derivative by the element's displacements, [element, 4 (, 2 node)].
 
         The derivative of the forces is taken at the pressures p, if they are given: Newton's method then

@@ -40,7 +40,7 @@ class Late:
 
 @dataclass(frozen=True)
 class FamilyEstimate:
-    """What closed forms or elements tell of the numbered elements.
+    """Estimates of the numbered elements by closed forms or finite elements.
 
     rows      (layout, rung, force or None) to records by number: `number`, `stiffness` N/mm, `force`,
               `rated_force` N, `gauge_strain`, `peak_strain`; None for what is not known
@@ -60,7 +60,7 @@ class FamilyEstimate:
 
 @dataclass(frozen=True)
 class FamilyStack:
-    """How limits add up.
+    """The family's tolerance stack.
 
     limits    (layout, scenes) to the variables by name, and the requirements
     built     (layout, deviations) to arrays that were put together from parts as made
@@ -76,29 +76,37 @@ class FamilyStack:
 
 @dataclass(frozen=True)
 class FamilyReadout:
-    """What reads the elements.
+    """The electronics that read the elements.
 
     netlist  (layout) to the circuit
-    boards   (layout) to every different board, laid out
     tracks   (layout, circuit) to the circuit with the resistance of its boards' tracks
-    supplies (layout) to the lines of the bill of what the read-out takes
     wiring   (layout, circuit) to the bytes of the table of leads to cut
     sheets   orders of the circuit's drawing to what is written
     signals  (design) to V/N of every element
     """
 
     netlist: Late
-    boards: Late
     tracks: Late
-    supplies: Late
     wiring: Late
     sheets: Late
     signals: Late
 
 
 @dataclass(frozen=True)
+class FamilyBoards:
+    """The boards that carry what reads the elements.
+
+    made      (layout) to every different board, laid out; none: the family says why in a finding
+    supplies  (layout) to the lines of the bill with what is fitted on them
+    """
+
+    made: Late
+    supplies: Late
+
+
+@dataclass(frozen=True)
 class FamilyPads:
-    """How the pads meet an object.
+    """The pads' contact with an object.
 
     places   (design) to x, y, number, length and width of the pads, mm
     springs  (design) to those pads on their springs, `tactcad.contact.press.Pads`, and the signal of each
@@ -155,6 +163,7 @@ class Family:
     stack      its tolerance stack
     pads       their contact with an object; None: unknown
     readout    its electronics; None: it has none
+    boards     its circuit boards; None: no files of boards are made
     readings   functions for `calibrate` and `stiffness`; None: they refuse the design
     variables  the search of `tactcad design`, (target, arrays, seconds, tell); None: none,
                and sweeps measure no rung
@@ -178,6 +187,7 @@ class Family:
     variables: Late | None
     checks: str
     robot: FamilyRobot | None = None
+    boards: FamilyBoards | None = None
 
     def __post_init__(self) -> None:
         if not (isinstance(self.spec, type) and issubclass(self.spec, CommonTables)):

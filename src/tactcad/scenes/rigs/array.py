@@ -282,17 +282,26 @@ def _gauges(layout: Layout) -> str:
     bonded = d.bonding is not None and misfit(layout, BONDING_FITS) is None
     how = (
         f"Bond a gauge on {face} in the bonding fixture, by the guide of scene bonding, and check it as that "
-        "says; lay its leads in the wire recess towards the rear end."
+        "says; its leads lie in the wire recess, bonded at the rear end."
         if bonded
         else f"Bond a gauge on {face}, its grid centred on the hinge within 0.1 mm, carrier trimmed to "
-        f"{d.gauge.carrier_arm_side + d.gauge.carrier_body_side:g} mm; cure, coat, solder three leads, "
-        "and lay them in the wire recess towards the rear end."
+        f"{d.gauge.carrier_arm_side + d.gauge.carrier_body_side:g} mm; cure, coat, solder its leads. "
+        f"{laying_leads(layout)}"
     )
     return (
         f"Hold and lift an element by its rear body only, never by its arm: the hinge is {thinnest:g} mm "
         "thick. Keep each apart from the others, rear body held, arm free. Measure and record the hinge "
         "thickness of every element, and mark its rear body with its number: equal elements differ in what "
         f"was measured. {how}"
+    )
+
+
+def laying_leads(layout: Layout) -> str:
+    """How an element's leads are cut, and laid in its wire recess with their strain relief."""
+    return (
+        "Cut the leads as long as the wiring list in circuit/ says and number both ends. Lay them in the "
+        "recess to the rear end and bond them there with the gauges' adhesive, over its last "
+        f"{layout.design.wiring.bonded:g} mm: no pull reaches the terminals."
     )
 
 
@@ -326,7 +335,7 @@ def _stacking(layout: Layout, stacked: Sequence[Placement]) -> str:
 
 
 def rows_alike(layout: Layout) -> float:
-    """By how much the two rows' stacks may differ in length, mm, whole hundredths.
+    """Largest difference in length of the two rows' stacks, mm, whole hundredths.
 
     The head plate lies on both and leans by the difference over their distance; over its thickness that takes
     a share of the least play of its holes.
@@ -346,7 +355,7 @@ def _other_plate(c: Clamping, plate: Placement) -> str:
 
 
 def wedge(layout: Layout) -> str:
-    """By how much an element can still turn about its one dowel, its pad on the fixture's floor."""
+    """Remaining turn of an element about its one dowel, its pad on the fixture's floor."""
     h, low = layout.design.holes, dowel_limits(layout.design.clamp.dowel)[0]
     play = h.dowel_hole + h.dowel_hole_upper - low
     lever = min(layout.dowel_x) - layout.pad_outer
@@ -354,7 +363,7 @@ def wedge(layout: Layout) -> str:
 
 
 def setting_words(layout: Layout) -> str:
-    """How the stack is tightened in the setting fixture, and measured."""
+    """Instructions for tightening the stack in the setting fixture, and measuring it."""
     d, c = layout.design, clamping(layout)
     tolerance = d.tolerance.pad_height
     tight = "Tighten the clamping screws"
@@ -388,7 +397,7 @@ def setting_words(layout: Layout) -> str:
 
 
 def flatness_tools(layout: Layout) -> tuple[str, ...]:
-    """What the pads are made coplanar with, and measured."""
+    """Tools for making the pads coplanar, and for measuring them."""
     tolerance = layout.design.tolerance.pad_height
     feelers = f"feelers, {2 * tolerance * 1e3:g} um"
     if len(layout.design.array.row_arms) == ABREAST:
@@ -397,7 +406,7 @@ def flatness_tools(layout: Layout) -> tuple[str, ...]:
 
 
 def carrier_tools(design: Design) -> tuple[str, ...]:
-    """What the carrier's screws are turned by."""
+    """Tools for the carrier's screws."""
     return (f"hex key {METRIC[design.clamp.screw].key:g} mm: the carrier's screws",)
 
 

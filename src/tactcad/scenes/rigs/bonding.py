@@ -23,6 +23,7 @@ from ..builder import Builder
 from ..rig import Rig, none
 from ..rig_requirements import bonding_requirements
 from ..scene import AGAINST_Y, REST, UPRIGHT, Placement, Pose, Rotation, Scene
+from .array import laying_leads
 
 FACE_UP: Rotation = ((1, 0, 0), (0, 0, 1), (0, -1, 0))  # local y runs along -z, the thickness along +y
 BETWEEN = 20.0  # mm between the fixtures of several kinds of hinge; chosen: a hand's room
@@ -93,7 +94,7 @@ THUMB = 20.0  # N; chosen: a thumb that presses hard
 
 
 def fixture(rigs: Sequence[BondingLayout]) -> str:
-    """How the nest and its clamp are put together."""
+    """Assembly of the nest and its clamp."""
     rig = rigs[0]
     kinds = (
         f" There are {len(rigs)} nests: each is for the elements with its own hinge, as its number says."
@@ -135,7 +136,7 @@ def element_in(rig: BondingLayout) -> str:
 
 
 def gauge(rigs: Sequence[BondingLayout]) -> str:
-    """How the gauge is set on the hinge, and how near."""
+    """Instructions for setting the gauge on the hinge, with the tolerance."""
     from tactcad.parts.array.gauge_checks import allowed_places
 
     rig = rigs[0]
@@ -156,7 +157,7 @@ def gauge(rigs: Sequence[BondingLayout]) -> str:
 
 
 def clamp(rigs: Sequence[BondingLayout]) -> str:
-    """What presses how much for how long, and what the leaf bears."""
+    """Instructions for clamping: weight, time, and the leaf's load."""
     rig = rigs[0]
     return (
         "Release film on the gauge, then at once the clamp bar down on the pins, rubber on the gauge. Let "
@@ -215,7 +216,7 @@ def solder(rig: BondingLayout) -> str:
     return (
         "Tin tabs and terminals, then join each tab to its terminal with one insulated strand, bare at "
         "its ends, in a loose arc, so "
-        f"that no lead pulls on the gauge. Solder {to_terminals}Lay them in the recess to the rear end. "
+        f"that no lead pulls on the gauge. Solder {to_terminals}{laying_leads(rig.array)} "
         "Each joint within 2 s; clean off all flux."
     )
 
