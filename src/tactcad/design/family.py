@@ -160,6 +160,8 @@ class Family:
                and sweeps measure no rung
     checks     name of the folder or module that declares its checks, besides those of all families
     robot      how it moves, for robots' simulators; None: unknown
+    targets    `tactcad design` of a target file with a table of the family's name: (arguments) to the exit
+               status; None: there are none
     """
 
     name: str
@@ -178,6 +180,7 @@ class Family:
     variables: Late | None
     checks: str
     robot: FamilyRobot | None = None
+    targets: Late | None = None
 
     def __post_init__(self) -> None:
         if not (isinstance(self.spec, type) and issubclass(self.spec, CommonTables)):
