@@ -23,7 +23,7 @@ from tactcad.design.family import family_of
 from tactcad.design.files import read_text, write_whole
 from tactcad.design.load import DEFAULT_DESIGN, MOST_BYTES, find, from_table, names, unknown_field
 from tactcad.design.materials import alloy
-from tactcad.design.messages import CheckFailure, InputError, in_brackets, near
+from tactcad.design.messages import CheckFailure, InputError, did_you_mean, in_brackets
 from tactcad.design.text_values import parse_toml
 
 if TYPE_CHECKING:
@@ -314,7 +314,7 @@ class LoadedDesign:
         for name in wanted:
             if name not in known:
                 why = next((f" ({o.reason})" for o in left_out(self.design) if o.scene == name), "")
-                hint = why or in_brackets(near(name, known))
+                hint = why or in_brackets(did_you_mean(name, known))
                 raise InputError(self.name, f"no scene {name!r}; there are {', '.join(known)}{hint}")
         return tuple(name for name in known if not wanted or name in wanted)
 
@@ -394,7 +394,7 @@ class OpenScene:
         known = {p.designator for p in made.placements}
         touched = (touches,) if isinstance(touches, str) else tuple(touches)
         if unknown := [d for d in touched if d not in known]:
-            legal = f"a designator of scene {self.name}{in_brackets(near(unknown[0], known))}"
+            legal = f"a designator of scene {self.name}{in_brackets(did_you_mean(unknown[0], known))}"
             raise InputError("touches", "nothing is called so", value=unknown[0], legal=legal)
         if not isinstance(part, Part):
             part = _from_solid(part, design.name, name, material)

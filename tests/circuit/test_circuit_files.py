@@ -324,3 +324,20 @@ def test_another_tolerance_than_the_named_resistors_is_ordered_by_its_figures():
     }
     line = bill["BRIDGE-RESISTOR"]
     assert "0.5 %" in line.designation and line.mpn == "" and not line.verified
+
+
+@pytest.mark.parametrize(
+    ("kind", "ohm", "mpn"),
+    [
+        ("film-0.1", 120, "RT0805BRB07120RL"),
+        ("film-1", 1000, "RC0805FR-071KL"),
+        ("film-1", 350, ""),  # E192 has 348 and 352
+    ],
+)
+def test_a_film_resistor_has_a_makers_number_where_its_value_is_sold(kind, ohm, mpn):
+    changes = {"readout.completion": kind, "gauge.resistance": float(ohm), "readout.excitation": 2.0}
+    bill = {s.part_no: s for s in make_scene(variant(changes), "array").supplies}
+    line = bill["BRIDGE-RESISTOR"]
+    assert (
+        line.mpn == mpn and line.manufacturer == ("Yageo" if mpn else "") and "any maker" in line.designation
+    )

@@ -13,7 +13,7 @@ import pytest
 from variants import variant
 
 from tactcad.checks.facing_rows.circuit import check_signals
-from tactcad.circuit.digital_readout import digital_readout, settings_header, settings_json
+from tactcad.circuit.digital_readout import digital_readout, registers, settings_header, settings_json
 from tactcad.mechanics.gauge_signal import continuous, thermal_resistance, time_constant
 from tactcad.parts.array.bridge_figures import power_of
 from tactcad.parts.array.hinge_section import design_gauge
@@ -120,6 +120,15 @@ def test_its_resolution_by_hand():
     told = (4 * found.noise**2 + drift**2) ** 0.5 / abs(found.per_force)
     assert found.resolution == pytest.approx(told, rel=1e-3)
     assert [len(chip) for chip in found.chips] == [5, 5]
+
+
+def test_the_first_notch_lies_on_the_mains_that_are_said():
+    """At 60 Hz: FS is 320, an input takes three periods, and white noise grows by the root of 6/5."""
+    at_50, at_60 = (digital_readout(Layout(variant({"readout.mains": hz})), CHIP) for hz in (50.0, 60.0))
+    assert digital_readout(Layout(variant()), CHIP).rate == at_50.rate == 50
+    values = {r.name: r.value for r in registers(at_60, 0)}
+    assert values["FILTER_0"] & 0x7FF == 320 and at_60.settling == 3 / 60
+    assert at_60.noise / at_50.noise == pytest.approx(1.2**0.5, rel=1e-9)
 
 
 def test_the_registers_say_what_was_meant():

@@ -160,7 +160,7 @@ def test_notched_arm_is_refused_not_smoothed_over():
     bump = [(5.0, 2.0), (5.0, 2.4), (4.0, 2.4), (4.0, 2.0)]
     points = [top.start, *bump, top.end]
     contour = Contour((*pieces[:at], *(Line(a, b) for a, b in zip(points, points[1:])), *pieces[at + 1 :]))
-    with pytest.raises(CheckFailure, match="stands out of the arm"):
+    with pytest.raises(CheckFailure, match="protrudes from the arm"):
         read(contour, 6.0)
     hollow = [(5.0, 2.0), (5.0, 1.6), (4.0, 1.6), (4.0, 2.0)]
     points = [top.start, *hollow, top.end]

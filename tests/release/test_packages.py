@@ -326,7 +326,7 @@ SAYS = {  # what is then among the faults
     "another cut file, as its order says": f"dxf/{ELEMENT}.dxf: not as in the whole zip",
     "a cut file less": f"dxf/{ELEMENT}.dxf: not here as order.csv has it",
     "a file that nobody asked for": "step/other.step: no line of order.csv names it",
-    "a line of a part in no bill": "GILDING of an order stands in no bill",
+    "a line of a part in no bill": "GILDING of an order is in no bill",
     "a draft's README": "README.txt: says that it is a draft",
     "a quantity": "7 with spares, not 4 and 2",
     "an element less": "tiny-element-a5mm: 0 ordered, 1 needed",

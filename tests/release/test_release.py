@@ -279,7 +279,7 @@ SAYS = {  # what is then among the faults; several gates may see one change
     "instance missing": "21 solids, bom.csv has 22",
     "bill of another revision": "bom.csv: tiny-stop-plate is of revision 'ZZ'",
     "bill with another quantity": "22 solids, bom.csv has 23",
-    "bill with another file": "is not here as it stands there",
+    "bill with another file": "is missing or differs from the bill",
     "bill missing": "or bom.csv: missing",
     "drawing missing": "0 pages instead of 1",
     "drawing of another part": "'tiny-element-a5mm' is missing",

@@ -163,6 +163,7 @@ def test_boards_of_a_row_stand_beside_their_elements():
     assert "A1 beside E1 to A2 beside E9" in scene.steps[0].text
     at = {p.designator: sum(ends(p, 1)) / 2 for p in scene.placements}
     assert (at["A1"] - at["A2"]) * (at["E1"] - at["E9"]) > 0.0
+    assert "A1 of board-8, A2 of board-1, A3 of board-3." in scene.steps[2].text
     assert "order of their elements" not in make_scene(variant(), "wiring").steps[0].text
 
 

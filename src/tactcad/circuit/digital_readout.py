@@ -20,10 +20,10 @@ from tactcad.mechanics import gauge_signal
 from tactcad.mechanics.readout import transmission
 from tactcad.parts.array.bridge_figures import COPPER, zero_drift
 from tactcad.parts.array.converter_figures import (
-    RATE,
     bridge_supply,
     converter_noise,
     on_time,
+    rate,
     settling,
     warm_up,
 )
@@ -100,7 +100,7 @@ def digital_readout(layout: Layout, name: str) -> DigitalReadout:
     resolution = np.hypot(2 * noise, drift) / np.abs(per_force)
     times = (warm_up(layout), on_time(layout)) if d.readout.power == "duty" else (0.0, 0.0)
     return DigitalReadout(
-        part, volts, gain, RATE, settling(), *times,
+        part, volts, gain, rate(layout), settling(layout), *times,
         noise, drift, per_strain, per_force, resolution, largest, chips,
     )  # fmt: skip
 

@@ -22,13 +22,12 @@ EXAMPLES = """\
   tactcad calibrate mine.csv --load-cell 57.04+-0.5 --run-scatter 0.005   measured cell, runs known to repeat
   tactcad calibrate mine.csv --design my-sensor.toml              the load cell of the design's [calibration]
   tactcad calibrate mine.csv --load-cell inf --json               a rigid force sensor; JSON
-  tactcad calibrate run7.lvm --map map.toml --out cal.csv         a lab's log as it is (tactcad readings
-  --help)
+  tactcad calibrate run7.lvm --map map.toml --out cal.csv         a lab's raw log
 
 FILE is CSV with the columns element, run, displacement, force, signal: the stage's displacement, in mm, N
 and V; or with the unit in the name: displacement_um, force_mN, signal_mV. Lines that start with # are
 comments; semicolons or tabs between columns, and decimal commas with them, are read too. With a column
-time_s a displacement may be read any number of times, and where it returns later the drift is estimated.
+time_s a displacement may be read any number of times, and if it returns later the drift is estimated.
 Of a planar design (--design): element, run, fx, fy, fz (N, fz down on the pad), bx, by, bz (mT), and sink
 (mm) to measure K; every run along one axis, two at least along each."""
 
@@ -40,8 +39,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--load-cell",
         metavar="K[+-U]",
         help="the force sensor's own stiffness in N/mm and the limits within which it is known, as 57.04+-1 "
-        "or 57.04+-2%% (inf for a rigid one; default the paper's 57.04; limits where none are given: 2 %%, "
-        "assumed); the intervals hold for every load cell within them",
+        "or 57.04+-2%% (inf for a rigid one; default the paper's 57.04; without limits, 2 %% are assumed); "
+        "the intervals hold for every load cell within them",
     )
     parser.add_argument(
         "--design",
@@ -53,8 +52,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--run-scatter",
         type=float,
         metavar="S",
-        help="relative standard deviation of an element's slope from run to run, where you know it (0.01 "
-        "for 1 %%); default: estimated from the runs; 0.01 for a single one",
+        help="relative standard deviation of an element's slope from run to run, if known (0.01 for 1 %%); "
+        "default: estimated from the runs; 0.01 for a single one",
     )
     parser.add_argument(
         "--level", type=float, default=0.95, metavar="P", help="level of the intervals (default 0.95)"

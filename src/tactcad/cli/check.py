@@ -27,7 +27,7 @@ EXAMPLES = """\
   tactcad check --in 60                   meshed as finely as 60 s allow; no check is left out
 
 Failures are printed in a table at the end and make the exit status 1. Flags (such as the hinge, for the
-quotation, or a rig that does not take the array, which fails with --strict) are listed. A design in
+quotation, or a rig that does not fit the array, which fails with --strict) are listed. A design in
 hardware/ is compared with its golden file in exports/golden/ too."""
 
 

@@ -27,13 +27,13 @@ EXAMPLES = """\
 
 DIR gets the answer first: design.toml, which every rule accepts, report.html and report.json. What limits
 it and a design file for each alternative follow. Without --in the answer takes at most 30 s on two cores,
-and all of it 2 minutes; 2 and 3 minutes where the object is a body (a modulus or a thickness).
+and all of it 2 minutes; 2 and 3 minutes if the object is a body (a modulus or a thickness).
 If the target cannot be met, the exit status is 1: the miss is printed, with the least change of each single
 field that would make it possible, and nothing is written except with --best."""
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("target", metavar="TARGET.toml", help="what is to be felt, and the means for it")
+    parser.add_argument("target", metavar="TARGET.toml", help="target file: objects and means")
     parser.add_argument(
         "-o", "--out", metavar="DIR", required=True, help="new or empty folder for design and report"
     )

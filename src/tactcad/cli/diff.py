@@ -29,14 +29,13 @@ EXAMPLES = """\
   tactcad diff origin/main HEAD macro-array --out changes.md --fail-on checks --fail-on revision
                                                                for a pull request
 
-A and B are each a design (a path or a name in hardware/), an export's folder, or a golden file (.json); with
-DESIGN they are git revisions (a commit, branch or tag, as HEAD~3), or '.' for the files as they stand. The
+A and B are each a design (a path or a name in hardware/), an export's folder, or a golden file (.json);
+with DESIGN they are git revisions (a commit, branch or tag, as HEAD~3), or '.' for the present files. The
 present code reads the designs of both revisions, and nothing of the repository runs. --their-code runs each
-revision's own code as you: use it on code that you trust.
-First stands what each change of the design means by itself, by the present code, largest consequence first:
-K, rated force, signal, stop gap, yield, mass, cut, parts, sheets, bill, and checks that turned.
-What only one of them tells is left out, and said. The exit status is 0 whether anything changed or not, but
-1 where --fail-on is met."""
+revision's own code as you: use it on code that you trust. The report starts with the edits, most important
+first, each with its own effects by the present code: K, rated force, signal, stop gap, yield, mass, cut,
+parts, sheets, bill, and checks that turned. Data that only one side has is left out and named. The exit
+status is 0 with or without changes, but 1 if a --fail-on condition is met."""
 
 
 MOST_CHANGES = 40  # lines of differences without --full; chosen: about a screen
@@ -60,7 +59,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     # what --fail-on takes; tactcad.review.consequences, which has them, loads numpy
     kinds = ("changes", "geometry", "stiffness", "checks", "revision")
     parser.add_argument("old", metavar="A", help="design, export's folder or golden file; or revision")
-    parser.add_argument("new", metavar="B", help="the same, what it became")
+    parser.add_argument("new", metavar="B", help="likewise, the new side")
     parser.add_argument(
         "design", metavar="DESIGN", nargs="?", help="the design of which A and B are git revisions"
     )
@@ -92,8 +91,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
         default=[],
         choices=kinds,
         metavar="KIND",
-        help="exit status 1 where there are changes at all (changes), other parts, places or bills "
-        "(geometry), another K (stiffness), a failure of checks or rules that was not (checks), or other "
+        help="exit status 1 for any change (changes), other parts, places or bills (geometry), another K "
+        "(stiffness), a new failure of checks or rules (checks), or other "
         "content under the same part number and revision letter (revision); may be repeated",
     )
 

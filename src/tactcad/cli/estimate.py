@@ -25,8 +25,8 @@ EXAMPLES = """\
   tactcad estimate
   tactcad estimate hardware/soft-tissue.toml --force 0.5 --json
   tactcad estimate --model fem-plane
-  tactcad estimate --within 1%               # the rung of least work whose measured worst error is within it
-  tactcad estimate --in 5                    # the most exact one that 5 s allow
+  tactcad estimate --within 1%               # the quickest rung with a measured worst error within it
+  tactcad estimate --in 5                    # the most accurate one within 5 s
   tactcad estimate soft-tissue --within 0.1% --in 60 --json
   tactcad estimate --batch designs.csv --model plane --out stiffness.csv
   tactcad estimate --batch designs.csv --within 0.5% --out stiffness.csv    # a rung for every row
@@ -72,7 +72,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--batch", metavar="IN.csv", help="a table of designs, one a line (columns: docs/howto.md)"
     )
-    parser.add_argument("-o", "--out", metavar="OUT.csv", help="where --batch writes its table")
+    parser.add_argument("-o", "--out", metavar="OUT.csv", help="the table that --batch writes")
     parser.add_argument(
         "--inspection",
         metavar="FILE",

@@ -29,11 +29,11 @@ EXAMPLES = """\
   tactcad export --measured inspections/macro-array-L.csv --drawings
                                               issued again, with spacers for the measured sheet
   tactcad export --within 0.1%                with an STL of every part made, its volume within 0.1 %
-  tactcad export --in 60                      the same, as fine as 60 s allow where nothing is in the cache
+  tactcad export --in 60                      the same, as fine as 60 s allow with an empty cache
 
 The folder is replaced in one step by a finished one; a second export with nothing changed writes nothing.
 Rigs follow the array. If a rig cannot be built of parts that are sold, the export ends with a warning that
-names the field, its value and what is legal; with --strict the exit status is 1.
+names the field, its value and its legal values; with --strict the exit status is 1.
 A folder with files that tactcad did not write is left as it is, unless --keep or --discard is given: fill
 in a copy of inspection.csv (in inspections/, say), not the export's own."""
 

@@ -25,7 +25,7 @@ EXAMPLES = """\
   tactcad grasp --object E=0.5,nu=0.49,thickness=6,base=frictionless --out pressure.svg
 
 E in MPa, thickness in mm (inf: a half-space); base: bonded (default) or frictionless. Angles in degrees,
-positive where the object's face falls away toward +x (along the arms) and +y (along the rows). Rung layer
+positive if the object's face falls away toward +x (along the arms) and +y (along the rows). Rung layer
 (default): rigid pads that tilt and lift on a continuous body. Rung springs: a separate spring under every
 pad, as the paper's equations have it. Rung fem-object: as layer, the body by solid elements (some minutes).
 Rung large: as layer, corrected for large strain. Errors and ranges: docs/accuracy.md."""
@@ -41,7 +41,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--object",
         required=True,
         metavar="E=..,nu=..,thickness=..",
-        help="what is pressed: modulus (MPa), Poisson's ratio, thickness (mm; inf: a half-space)",
+        help="the object: modulus (MPa), Poisson's ratio, thickness (mm; inf: a half-space)",
     )
     parser.add_argument(
         "--load",

@@ -32,7 +32,7 @@ GROUPS = {
         "design": "find the design that feels a target, and how surely",
         "export": "write the files of a design: STEP, DXF, bill of materials, pictures",
         "check": "run every check on a design",
-        "build": "build a thousand arrays virtually from parts within their limits, and say what fails",
+        "build": "build a thousand arrays virtually from parts within their limits, and count the failures",
         "release": "run every check, and write one zip that a shop can quote from",
     },
     "look": {
@@ -68,7 +68,7 @@ exit status: 0 done; 1 a check failed, or a request cannot be met; 2 bad input
 
 variables:
   TACTCAD_CACHE      folder that keeps what was made (default: .cache in a checkout, else the user's cache)
-  TACTCAD_PROFILE    set: what was loaded and made, how long it took and how much memory, on standard error
+  TACTCAD_PROFILE    set: modules loaded, files made, times and memory, on standard error
   NO_COLOR           set: no colours on a terminal"""
 
 # Extras without which a command, or one of its options, is refused before any work.

@@ -10,7 +10,7 @@ from typing import Any, NoReturn
 
 from tactcad.design.allowance import Allowance, read_seconds, read_within
 from tactcad.design.load import DEFAULT_DESIGN
-from tactcad.design.messages import InputError, near, one_of
+from tactcad.design.messages import InputError, did_you_mean, one_of
 from tactcad.design.text_values import as_number, as_whole
 
 
@@ -32,7 +32,7 @@ class Parser(argparse.ArgumentParser):
             self._refuse("--", "nothing follows it", legal="leave it out, or name what it is for")
         parsed, unknown = super().parse_known_args(args)
         if unknown:
-            hint = near(unknown[0], self._option_string_actions) if unknown[0].startswith("-") else ""
+            hint = did_you_mean(unknown[0], self._option_string_actions) if unknown[0].startswith("-") else ""
             self._refuse(unknown[0], "unknown argument", legal=hint or f"see `{self.prog} --help`")
         for action in self._actions:
             self._refuse_empty(action, getattr(parsed, action.dest, None))
@@ -132,8 +132,8 @@ def add_allowance(parser: argparse.ArgumentParser, of: str, chosen: str) -> None
     parser.add_argument(
         "--within",
         metavar="P",
-        help=f"largest {of} that you accept, as 1%% or 0.01; picks the quickest {chosen} that keeps it, or "
-        "refuses, and prints what a step more or less would cost (docs/accuracy.md)",
+        help=f"largest {of} that you accept, as 1%% or 0.01; picks the quickest {chosen} within it, or "
+        f"refuses, and prints the cost of a step more or less (docs/accuracy.md)",
     )
     parser.add_argument(
         "--in",

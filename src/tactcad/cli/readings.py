@@ -16,7 +16,7 @@ EXAMPLES = """\
   tactcad stiffness run8.tdms --map map.toml --calibration cal.csv     without a file in between
 
 FILE is a log of time and channels: CSV with any separator and either decimal sign, LabVIEW's .lvm, or .tdms.
-MAP says in TOML which column is which element, in what unit, and which rows are a step:
+MAP (TOML) assigns columns to elements, with their units, and defines the steps:
 
   [log]
   kind = "grasp"              # or "calibration"
@@ -24,7 +24,7 @@ MAP says in TOML which column is which element, in what unit, and which rows are
   mains = 50                  # the mean is over whole periods of it
   [signal]
   unit = "mV"                 # of all channels: V, mV, uV
-  least = -5.0                # V; what reaches least or most is saturated
+  least = -5.0                # V; readings at least or most count as saturated
   most = 5.0
   [channels]
   "Dev1/ai0" = 1              # column = element
@@ -46,7 +46,7 @@ element left out."""
 
 def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("file", metavar="FILE", help="the log (CSV, .lvm, .tdms)")
-    parser.add_argument("--map", required=True, metavar="MAP", help="which column is what (TOML)")
+    parser.add_argument("--map", required=True, metavar="MAP", help="the columns and steps of the log (TOML)")
     parser.add_argument(
         "-o",
         "--out",
@@ -93,5 +93,5 @@ def add_map(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--map",
         metavar="MAP",
-        help="FILE is a lab's log (CSV, .lvm, .tdms); MAP says what its columns are: tactcad readings --help",
+        help="FILE is a lab's log (CSV, .lvm, .tdms); MAP describes its columns: tactcad readings --help",
     )

@@ -18,7 +18,7 @@ EXAMPLES = """\
   tactcad release soft-tissue --sample --out to-look-at
                                       without owner: "sample, not for order" in zip, README and title blocks
   tactcad release macro-array --sample --sets all
-                                      every set-up complete, not one set of what they share
+                                      every set-up complete, not one set of shared parts
   tactcad release my-sensor.toml --shop my-shop.toml
                                       with your own shop's limits for wire cutting, and its feed
   tactcad release my-sensor.toml --draft
@@ -42,7 +42,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         help="folder of the zips (default exports/releases)",
     )
     parser.add_argument("--owner", metavar="TEXT", help="legal owner (default: [design] organisation)")
-    parser.add_argument("--contact", metavar="TEXT", help="whom a shop asks (default: [design] contact)")
+    parser.add_argument("--contact", metavar="TEXT", help="contact for shops (default: [design] contact)")
     parser.add_argument(
         "--sample", action="store_true", help='without owner and contact: marked "sample, not for order"'
     )
@@ -50,11 +50,11 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--sets",
         choices=("one", "all"),
         default="one",
-        help="order what several set-ups share once, or for each (default one)",
+        help="order parts that set-ups share once, or for each (default one)",
     )
     add_others(parser, "a zip there is not as tactcad wrote it", "NAME-kept-1.zip")
     add_shop(parser)
-    parser.add_argument("--draft", action="store_true", help="write PRELIMINARY zips whatever the checks say")
+    parser.add_argument("--draft", action="store_true", help="write PRELIMINARY zips even if checks fail")
     add_json(parser)
 
 

@@ -92,7 +92,7 @@ def run(args: argparse.Namespace) -> int:
     parameter = f"hinge_{args.solve}"
     if getattr(args, parameter) is not None:
         raise InputError(
-            f"--hinge-{args.solve}", "is what is to be found; leave it out", value=getattr(args, parameter)
+            f"--hinge-{args.solve}", "is the result; leave it out", value=getattr(args, parameter)
         )
     from tactcad.design.family import taken_as
     from tactcad.design.tree import Design

@@ -18,11 +18,11 @@ EXAMPLES = """\
   tactcad stiffness hardware/examples/grasp.csv --calibration calibration.csv
   tactcad stiffness mine.csv --calibration calibration.csv --thickness 6+-0.3 --nu 0.49
   tactcad stiffness mine.csv --calibration calibration.csv --reference 1 --json
-  tactcad stiffness run8.tdms --map map.toml --calibration calibration.csv   a lab's log as it is
+  tactcad stiffness run8.tdms --map map.toml --calibration calibration.csv   a lab's raw log
 
-FILE is CSV with the columns load, element, signal (N and V, or load_mN, signal_mV), and where there are
+FILE is CSV with the columns load, element, signal (N and V, or load_mN, signal_mV), and if there are
 several, run and sample: every element at every load. With a column time_s a load may be read any number of
-times, and where it returns later the drift is estimated. The calibration is the file of `tactcad calibrate`
+times, and if it returns later the drift is estimated. The calibration is the file of `tactcad calibrate`
 (--out, or --json). Of a planar design: load, element, bx, by, bz (mT), without load too."""
 
 
@@ -48,8 +48,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--design",
         metavar="DESIGN",
         default=None,
-        help="the array that was pressed; the places of its pads decide how far they feel each other through "
-        "the object "
+        help="the array that was pressed; the places of its pads decide their coupling through the object "
         f"(default {DEFAULT_DESIGN})",
     )
     parser.add_argument(
@@ -57,8 +56,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
         type=float,
         default=None,
         metavar="C",
-        help="take the object as springs that couple the pads by at most this share of what an elastic "
-        "half-space does (0: each pad on an object of its own); without it the object is a layer",
+        help="take the object as springs that couple the pads by at most this share of an elastic "
+        "half-space's coupling (0: each pad on an object of its own); without it the object is a layer",
     )
     parser.add_argument(
         "--thickness",

@@ -26,16 +26,16 @@ EXAMPLES = """\
   tactcad schema study                    every field of a study file
 
 DIR gets results.parquet, results.csv (up to 1e6 rows, above with --csv) and manifest.json. Each task's
-result is kept in DIR/store as it finishes: the same command again takes up where it was stopped, computes
-nothing twice and gives the same bytes. Refused designs are rows with their reason; if all are, the exit
-status is 1."""
+result is kept in DIR/store as it finishes: the same command again resumes a stopped study, computes nothing
+twice and gives the same bytes. Refused designs are rows with their reason; if all are, the exit status is
+1."""
 
 MOST_WORKERS = 1000
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
-        "study", nargs="+", metavar="STUDY.toml", help="what varies and what is measured; or: plot DIR"
+        "study", nargs="+", metavar="STUDY.toml", help="study: varied fields and measures; or: plot DIR"
     )
     parser.add_argument(
         "-o", "--out", metavar="DIR", help="folder of this study: new, empty, or begun before"
@@ -55,10 +55,10 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--workers", type=int, metavar="N", help="processes on this machine (default: one a core)"
     )
-    parser.add_argument("--csv", action="store_true", help="write results.csv above 1e6 rows, too")
+    parser.add_argument("--csv", action="store_true", help="also write results.csv above 1e6 rows")
     add_allowance(
         parser,
-        "error of K, and half-width of the yield's 95 % interval where a study has builds,",
+        "error of K, and half-width of the yield's 95 % interval if the study has builds,",
         "rung and number of arrays",
     )
     add_json(parser)

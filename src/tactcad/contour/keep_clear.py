@@ -16,7 +16,7 @@ FOLDED = 1e-3  # radians between two pieces of one corner, under which one lies 
 def keep_clear(segments: Sequence[Segment], least: float) -> bool:
     """Whether pieces with a common end meet there only, at an angle, and all others are at least that far
     (mm) from each other."""
-    return all(_clear(segments[i], segments[j], least) for i, j in _near(segments, least))
+    return all(_clear(segments[i], segments[j], least) for i, j in _close_pairs(segments, least))
 
 
 def _clear(a: Segment, b: Segment, least: float) -> bool:
@@ -45,7 +45,7 @@ def _leaving(s: Segment, joint: Point) -> Point:
     return cos(angle), sin(angle)
 
 
-def _near(segments: Sequence[Segment], reach: float) -> Iterator[tuple[int, int]]:
+def _close_pairs(segments: Sequence[Segment], reach: float) -> Iterator[tuple[int, int]]:
     """Index pairs whose boxes come within reach: a sweep along x."""
     boxes = sorted((box_around(s), i) for i, s in enumerate(segments))
     first = [box[0] for box, _ in boxes]

@@ -103,7 +103,7 @@ class FamilyPads:
     places   (design) to x, y, number, length and width of the pads, mm
     springs  (design) to those pads on their springs, `tactcad.contact.press.Pads`, and the signal of each
              element over its pad's sink, in its unit a mm
-    limit    (design) to how far a pad may stand above or below their plane, mm
+    limit    (design) to the pads' largest height above or below their plane, mm
     unit     of a signal, and of a thousandth of it
     """
 
@@ -129,7 +129,7 @@ class FamilyReadings:
 class FamilyRobot:
     """The sensor as robots and their simulators take it.
 
-    mechanism  (design) to what stands and what moves on which joints, `tactcad.robot.mechanism.Mechanism`
+    mechanism  (design) to the fixed and moving parts and joints, `tactcad.robot.mechanism.Mechanism`
     jobs       (plan of an export) to the jobs that make its files
     """
 
@@ -143,23 +143,23 @@ class Family:
 
     name       in messages
     spec       class of its design files: a field a table
-    layout     (design) to where its elements stand: `design` and `elements`, each with `number`,
+    layout     (design) to its elements' places: `design` and `elements`, each with `number`,
                `designator`, `row` and `arm`, by which elements of two designs are found again
-    about      (layout) to what it is, a paragraph for the shop
-    parts      (layout) to element, part number and what to measure on it, for every numbered element
+    about      (layout) to its description, a paragraph for the shop
+    parts      (layout) to every numbered element, its part number and its measurements
     scenes     name of the folder or module that declares its rigs; one is `array`
     rules      rules that every design keeps, by name
     estimate   of its elements
     plans      by kind of part, (part, notes, spare) to its sheet; other parts are drawn as prisms. `array`:
-               (layout, box) to the dimensions by which the sensor is held, in the plan of its assembly
-    stack      how limits add up
-    pads       how they meet an object; None: unknown
-    readout    what reads it; None: nothing does
-    readings   what `calibrate` and `stiffness` ask of a design; None: they do not take it
-    variables  the search of `tactcad design` over what may vary, (target, arrays, seconds, tell); None: none,
+               (layout, box) to the mounting dimensions, in the plan of its assembly
+    stack      its tolerance stack
+    pads       their contact with an object; None: unknown
+    readout    its electronics; None: it has none
+    readings   functions for `calibrate` and `stiffness`; None: they refuse the design
+    variables  the search of `tactcad design`, (target, arrays, seconds, tell); None: none,
                and sweeps measure no rung
     checks     name of the folder or module that declares its checks, besides those of all families
-    robot      how it moves, for robots' simulators; None: unknown
+    robot      its motion, for robots' simulators; None: unknown
     targets    `tactcad design` of a target file with a table of the family's name: (arguments) to the exit
                status; None: there are none
     """

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from math import isfinite
 from typing import Any, TypeVar
 
-from .messages import InputError, hidden, in_brackets, near, visible
+from .messages import InputError, did_you_mean, hidden, in_brackets, visible
 
 REQUIRED = object()
 T = TypeVar("T")
@@ -84,7 +84,7 @@ class OneOf:
                 where,
                 "unknown choice",
                 value=value,
-                legal=self.legal + in_brackets(near(str(value), self.options)),
+                legal=self.legal + in_brackets(did_you_mean(str(value), self.options)),
             )
         return value
 

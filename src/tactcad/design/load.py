@@ -178,7 +178,7 @@ def _origins(table: dict[str, Any], design: CommonTables) -> dict[str, str]:
             if isinstance(value, dict):
                 stack.append((f"{path}.", value))
             else:
-                flat[path] = shown_text(value, f"origin.{path}", "where the value is from")
+                flat[path] = shown_text(value, f"origin.{path}", "the value's source")
     known = paths(design)
     for path in flat:
         if path not in known:
@@ -224,7 +224,7 @@ def stale_origins(design: CommonTables) -> list[str]:
         if of and values[path] not in of and not path.startswith("design."):
             told.append(
                 f"origin.{path}: stale, it was written for {dumps(of[0])} and the value is "
-                f"{dumps(values[path])}: say where that is from"
+                f"{dumps(values[path])}: state its source"
             )
     return told
 

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from .fields import present
-from .messages import InputError, in_brackets, near
+from .messages import InputError, did_you_mean, in_brackets
 from .text_values import data_rows
 
 # A value that differs by more than this from the named material's belongs to another material.
@@ -156,7 +156,7 @@ def meant(word: str) -> str:
     nearest."""
     wanted = word.casefold()
     found = [n for n in ALLOYS if n.casefold().startswith(wanted) or wanted in WORDS.get(n, "").casefold()]
-    return f"did you mean {' or '.join(found)}?" if found and wanted else near(word, ALLOYS)
+    return f"did you mean {' or '.join(found)}?" if found and wanted else did_you_mean(word, ALLOYS)
 
 
 def alloy(name: str) -> Alloy:

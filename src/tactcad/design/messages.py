@@ -24,7 +24,7 @@ class InputError(ValueError):
         super().__init__("; ".join(parts))
 
 
-def near(word: str, known: Iterable[str]) -> str:
+def did_you_mean(word: str, known: Iterable[str]) -> str:
     """ "did you mean X?" for the known word that `word` looks like; "" if none does."""
     likely = nearest(word, known)
     return f"did you mean {likely}?" if likely else ""
@@ -48,7 +48,7 @@ def one_of(word: object, known: Iterable[str]) -> str:
         The legal words.
     """
     known = list(known)
-    return "one of " + ", ".join(known) + in_brackets(near(str(word), known))
+    return "one of " + ", ".join(known) + in_brackets(did_you_mean(str(word), known))
 
 
 def in_brackets(hint: str) -> str:

@@ -15,9 +15,7 @@ class Calibration:
     """[calibration]: the set-up that measures each element's stiffness."""
 
     load_cell_stiffness: float = given(Number("N/mm", 0.01, 1e6, "force sensor's own stiffness"), 57.04)
-    load_cell_accuracy: float = given(
-        Number("", 0, 0.5, "half-width of the limits within which that is known, relative"), 0.02
-    )
+    load_cell_accuracy: float = given(Number("", 0, 0.5, "half-width of that stiffness, relative"), 0.02)
     load_cell_range: float = given(Number("N", 0.001, 1e5, "force sensor's range"), 5.0)
     load_cell_resolution: float = given(Number("N", 0, 100, "force sensor's resolution"), 0.001)
     step: float = given(Number("mm", 1e-5, 1, "micrometer step"), 0.025)
@@ -91,7 +89,7 @@ class Holder:
     floor: float = given(Number("mm", 1, 30, "material under the plenum"), 4.0)
     margin: float = given(Number("mm", 2, 60, "lid beyond the sample, for its screws"), 8.0)
     vacuum: float = given(Number("kPa", 1, 100, "below the air's pressure"), 40.0)
-    pull: float = given(Number("N", 0, 1000, "what may pull the sample off: tack of the pads"), 0.6)
+    pull: float = given(Number("N", 0, 1000, "force that may pull the sample off: tack of the pads"), 0.6)
 
 
 @dataclass(frozen=True)
@@ -99,7 +97,8 @@ class Bonding:
     """[bonding]: the fixture in which gauges are bonded, their adhesive and their terminals."""
 
     signal_share: float = given(
-        Number("", 1e-4, 0.5, "share of its signal that a gauge's place along the hinge may cost"), 0.03
+        Number("", 1e-4, 0.5, "largest loss of a gauge's signal by its place along the hinge, as a share"),
+        0.03,
     )
     sight: float = given(
         Number("mm", 0.001, 0.5, "the gauge's middle set between the tongue's edges by eye, plus and minus"),

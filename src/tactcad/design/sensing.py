@@ -268,7 +268,7 @@ class StrainGauge:
     resistance: float = given(Number("ohm", 10, 10000, "gauge resistance"), 120.0)
     factor: float = given(Number("", 0.5, 200, "gauge factor"), 2.1)
     foil: str = given(
-        OneOf(tuple(FOILS), "grid and backing, for the strain that they bear"), "constantan on polyimide"
+        OneOf(tuple(FOILS), "grid and backing, for their strain limits"), "constantan on polyimide"
     )
     grid_length: float = given(Number("mm", 0.01, 10, "active grid length, centred on the hinge"), 0.5)
     grid_width: float = given(Number("mm", 0.01, 20, "grid width"), 0.65)
@@ -288,13 +288,20 @@ class StrainGauge:
         Number("1/K", 0, 1e-3, "apparent strain of the gauge bonded on this metal, plus and minus"), 1e-6
     )
     resistance_tolerance: float = given(
-        Number("", 0, 0.1, "of the resistance once it is bonded, relative, plus and minus"), 0.003
+        Number("", 0, 0.1, "of the bonded gauge's resistance, relative, plus and minus"), 0.003
     )
     power_density: float = given(
-        Number("kW/m2", 0.01, 1000, "of the grid, that its backing bears on this metal, mean over a period"),
+        Number(
+            "kW/m2",
+            0.01,
+            1000,
+            "largest of the grid that the backing bears on this metal, mean over a period",
+        ),
         7.8,
     )
-    rise: float = given(Number("K", 0.1, 200, "of the grid over the body, that its backing bears"), 20.0)
+    rise: float = given(
+        Number("K", 0.1, 200, "largest of the grid over the body that the backing bears"), 20.0
+    )
 
 
 @dataclass(frozen=True)
@@ -322,9 +329,7 @@ class Readout:
     )
     amplifier: str = given(OneOf(tuple(AMPLIFIERS), "instrumentation amplifier of a board"), "AD621")
     switch: str = given(OneOf(tuple(SWITCHES), "MOSFET in the return of each bridge"), "IRLML6244")
-    multiplexer: str = given(
-        OneOf(tuple(MULTIPLEXERS), "that leads the bridges of a board to its amplifier"), "ADG1407"
-    )
+    multiplexer: str = given(OneOf(tuple(MULTIPLEXERS), "from a board's bridges to its amplifier"), "ADG1407")
     completion: str = given(
         OneOf(tuple(COMPLETIONS), "resistors of the three arms that complete each bridge"), "foil-0.01"
     )
@@ -339,15 +344,13 @@ class Readout:
     )
     connection: str = given(OneOf(("three-wire", "two-wire"), "leads of each gauge"), "three-wire")
     temperature_span: float = given(
-        Number("K", 0, 100, "by which the temperature changes between taking the zero and a reading"), 1.0
+        Number("K", 0, 100, "change of temperature between zero and reading"), 1.0
     )
     force_resolution: float | None = given(
-        Number("mN", 1e-4, 1e6, "smallest force that each element is to tell from none"),
-        None,
-        "none is asked for",
+        Number("mN", 1e-4, 1e6, "smallest force that each element must resolve"), None, "none is asked for"
     )
     instant: float | None = given(
-        Number("s", 0, 100, "from ENABLE to the first sample"), None, "as late as readout.on_time allows"
+        Number("s", 0, 100, "time from ENABLE to the first sample"), None, "as late as readout.on_time allows"
     )
     timing: str = given(
         OneOf(tuple(JITTER), "what sets the instant: a clocked line of the card, or a program"), "hardware"
@@ -356,9 +359,9 @@ class Readout:
         Number("s", 0, 1, "of the instant, plus and minus"), None, "1 us by hardware, 1 ms by software"
     )
     mains: float | None = given(
-        Number("Hz", 10, 1000, "of the mains: the samples are spread over a whole period"),
+        Number("Hz", 10, 1000, "frequency of the mains: samples are spread over a whole period"),
         None,
-        "not asked: samples follow each other at readout.sample_rate",
+        "not asked: samples follow each other at readout.sample_rate; 50 of a sigma-delta converter",
     )
     hum: float = given(Number("V", 0, 10, "rms of the mains at the amplifier's output"), 0.0)
     adc_noise: float | None = given(
@@ -387,8 +390,13 @@ class Wiring:
 
     wire: str = given(OneOf(tuple(WIRES), "lead wire, by its gauge"), "AWG36")
     bonded: float = given(
-        Number("mm", 0, 50, "of the leads in the wire recess, up to its end: their strain relief"), 4.0
+        Number(
+            "mm", 0, 50, "length of the leads bonded in the wire recess, up to its end: their strain relief"
+        ),
+        4.0,
     )
-    gather: float = given(Number("mm", 1, 500, "from the rear ends to the tie around a row's leads"), 15.0)
-    to_board: float = given(Number("mm", 1, 5000, "from there to the connector on the board"), 150.0)
-    slack: float = given(Number("", 0, 1, "added to each lead's way, relative"), 0.1)
+    gather: float = given(
+        Number("mm", 1, 500, "distance from the rear ends to the tie around a row's leads"), 15.0
+    )
+    to_board: float = given(Number("mm", 1, 5000, "distance from that tie to the board's connector"), 150.0)
+    slack: float = given(Number("", 0, 1, "added to each lead's length, relative"), 0.1)

@@ -47,7 +47,7 @@ class Identity:
         _line("legal owner, for the title block; a release needs one"), None, "not stated"
     )
     contact: str | None = given(
-        _line("whom a shop asks: name, mail or telephone; a release needs one"), None, "not stated"
+        _line("contact for shops: name, mail or telephone; a release needs one"), None, "not stated"
     )
 
 
@@ -77,11 +77,11 @@ class SheetMaterial:
     yield_strength: float = _property(Number("MPa", 1, 5000, "0.2 % proof stress"))
     fatigue_strength: float = _property(Number("MPa", 1, 5000, "fatigue strength, R = -1, 5e8 cycles"))
     tensile_strength: float | None = _property(
-        Number("MPa", 1, 5000, "tensile strength; where unknown, Goodman's line ends at yield"), optional=True
+        Number("MPa", 1, 5000, "tensile strength; if unknown, Goodman's line ends at yield"), optional=True
     )
     conductivity: float | None = _property(Number("W/(m K)", 0.1, 500, "thermal conductivity"), optional=True)
     magnetic: str | None = _property(
-        OneOf(MAGNETIC, "whether a magnet draws it; on the drawing's notes"), optional=True
+        OneOf(MAGNETIC, "whether a magnet attracts it; noted on drawings"), optional=True
     )
 
 
@@ -129,7 +129,7 @@ class Element:
     arm_height: float = given(Number("mm", 0.05, 50, "arm height h over the flat face"))
     body_height: float = given(Number("mm", 0.05, 50, "thickness Hb of the body in front of the clamp"))
     pad_length: float = given(Number("mm", 0.05, 50, "contact pad's length along the arm"))
-    pad_height: float = given(Number("mm", 0.01, 50, "how far the pad stands out of the flat face"))
+    pad_height: float = given(Number("mm", 0.01, 50, "height of the pad over the flat face"))
     sides: str = given(
         OneOf(
             ("one", "two"),
@@ -231,13 +231,13 @@ class Tolerance:
         f"the spread of the material's row; {LOT_SPREAD:g} of a label of its own",
     )
     recast_layer: float = given(
-        Number("mm", 0, 0.05, "layer of every cut face that carries nothing, at most"), 0.001
+        Number("mm", 0, 0.05, "layer without strength on every cut face, at most"), 0.001
     )
     clamp_compliance: float = given(
         Number("rad/(N mm)", 0, 1e-3, "turn of the clamp under the moment at its edge, at most"), 1e-5
     )
     zero_drift: float | None = given(
-        Number("", 0, 0.01, "dR/R by which a bridge's zero drifts during a grasp, by its leads' warmth"),
+        Number("", 0, 0.01, "drift of a bridge's zero, dR/R, during a grasp, by its leads' warmth"),
         None,
         "0.5 K between the copper of the longest lead and its neighbour, over the gauge's resistance",
     )

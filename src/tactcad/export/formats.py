@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class ExportOptions:
-    """What of a design is exported, and how. With the design, this is all that an export is made from.
+    """The options of an export. With the design, they are its only inputs.
 
     `pose`: a rig's configuration, None for its rest pose. `guides`: with assembly guides. `detail`: `full` or
     `envelope`. `drawings`: with sheets, marked PRELIMINARY if a `draft`, not for order if a `sample`.
@@ -53,12 +53,12 @@ class PartFormat:
     path      below the export's folder, with {part_no} and {revision}
     place     among the formats: what every export holds first, by number
     has       which parts have such a file
-    asked     what of the options it is made by, which is part of its key in the cache; None: not asked for
+    asked     the options it depends on, part of its key in the cache; None: not asked for
     make      the part, the shapes, the file's header, and what was asked, to bytes that were read back and
               compared with the part; raises CheckFailure if they differ. It imports what it needs when it
               runs: formats are known without kernel
-    released  what a release's README says of the path's folder; "": shops do not get such a file
-    ordered   its rank among the files that a shop makes the part from: the bill names the highest; 0: none
+    released  the release README's text on the path's folder; "": shops do not get such a file
+    ordered   its rank among the files for making the part: the bill names the highest; 0: none
     """
 
     kind: str

@@ -34,7 +34,7 @@ from .contents import NAME, NOTHING, Contents, contents, remove, sealed, sha256_
 
 SHOWN = 5  # names in a message
 REFUSE, KEEP, DISCARD = "refuse", "keep", "discard"  # what to do with files that are not ours
-LEGAL = "a new name, an empty folder, or one that tactcad wrote and nobody changed"
+LEGAL = "a new name, an empty folder, or an unchanged one that tactcad wrote"
 FINISHED, EARLIER = "finished", "earlier"
 AT_FDCWD, EXCHANGE = -100, 2
 MEANWHILE = (errno.ENOENT, errno.EEXIST, errno.ENOTEMPTY)  # DIR appeared or disappeared

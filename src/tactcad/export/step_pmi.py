@@ -141,7 +141,7 @@ def _faces(part: Part, name: str, some: Iterable[Piece], faces: FaceFinder) -> S
     """The faces on these pieces of surface, each of which must have left one."""
     found = [faces.on(piece) for piece in some]
     if not found or not all(found):
-        raise CheckFailure(f"{part.part_no}: {name} stands on a face that the solid does not have")
+        raise CheckFailure(f"{part.part_no}: {name} refers to a face that the solid does not have")
     return tuple(face for one in found for face in one)
 
 
@@ -233,7 +233,7 @@ def _check_limits(
     """
     left = list(read)
     for name, one in meant.items():
-        alike = next((other for other in left if _alike(one, other)), None)
+        alike = next((other for other in left if _same_annotation(one, other)), None)
         if alike is None:
             raise CheckFailure(
                 f"{part.part_no}: {name} does not read back from the AP242 model as it was meant"
@@ -285,17 +285,17 @@ def _each(labels: TDF_LabelSequence) -> list[TDF_Label]:
     return [labels.Value(i) for i in range(1, labels.Length() + 1)]
 
 
-def _alike(a: Annotation, b: Annotation) -> bool:
+def _same_annotation(a: Annotation, b: Annotation) -> bool:
     return (
         (a.kind, a.text, len(a.faces)) == (b.kind, b.text, len(b.faces))
-        and _near(a.values, b.values, 10**-DIGITS)
+        and _agree(a.values, b.values, 10**-DIGITS)
         and all(_same_faces(some, others) for some, others in zip(a.faces, b.faces))
     )
 
 
 def _same_faces(some: Shapes, others: Shapes) -> bool:
     there = [_where(face) for face in others]
-    return len(some) == len(others) and all(any(_near(_where(f), w, AGREES) for w in there) for f in some)
+    return len(some) == len(others) and all(any(_agree(_where(f), w, AGREES) for w in there) for f in some)
 
 
 def _where(face: TopoDS_Shape) -> tuple[float, ...]:
@@ -306,5 +306,5 @@ def _where(face: TopoDS_Shape) -> tuple[float, ...]:
     return (centre.X(), centre.Y(), centre.Z(), surface.Mass())
 
 
-def _near(a: Sequence[float], b: Sequence[float], within: float) -> bool:
+def _agree(a: Sequence[float], b: Sequence[float], within: float) -> bool:
     return len(a) == len(b) and all(abs(p - q) <= within for p, q in zip(a, b))

@@ -300,7 +300,7 @@ def _without_pad(
     """
     beyond = cut(contour, "y", face, "below" if keep == "above" else "above")
     if any(min(abs(c.box[0] - end_x), abs(c.box[2] - end_x)) > ON_LINE_MM for c in beyond):
-        raise CheckFailure(f"something stands out of the {name} between slot and cut")
+        raise CheckFailure(f"something protrudes from the {name} between slot and cut")
     parts = cut(contour, "y", face, keep)
     if len(parts) != 1:
         raise CheckFailure(f"the {name} is not one piece")

@@ -197,8 +197,8 @@ def report(design: Design, rung: str, rows: Sequence[AsMade]) -> str:
     lines += material_lines(design, [row.made.stiffness for row in rows])
     readings = [r for row in rows for r in row.readings]
     outside, undecided = ([r for r in readings if r.verdict == v] for v in ("outside", "undecided"))
-    lines += [f"outside its tolerance: {_said(r)}" for r in outside]
-    lines += [f"undecided, the uncertainty reaches across a limit: {_said(r)}" for r in undecided]
+    lines += [f"outside its tolerance: {_reading_text(r)}" for r in outside]
+    lines += [f"undecided, the uncertainty reaches across a limit: {_reading_text(r)}" for r in undecided]
     return "\n".join(lines + _missing(readings) + _plastic(rows))
 
 
@@ -222,7 +222,7 @@ def _cells(row: AsMade) -> list[str]:
     ]
 
 
-def _said(r: Reading) -> str:
+def _reading_text(r: Reading) -> str:
     d = r.dimension
     spread = "" if r.uncertainty is None else f" +-{r.uncertainty:g}"
     return f"no. {r.number}, {d.name} {r.measured:g}{spread}, {d.lower:g} to {d.upper:g} mm (line {r.line})"

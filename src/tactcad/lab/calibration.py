@@ -238,7 +238,8 @@ def _in_contact(all_: CalibrationReadings, number: int, rows: np.ndarray) -> _In
     time = None if all_.time is None else all_.time[rows]
     if time is not None and (spare_steps(x, run) < 2 or not told_from_time(x, time, run)):
         notes.append(
-            "displacement goes with time in every run: no drift can be told from the slope; read the way back"
+            "displacement goes with time in every run, so drift cannot be separated from the slope; "
+            "also read the way back"
         )
         time = None
     if time is not None:  # what follows sees force and signal without their drift

@@ -157,7 +157,7 @@ def evaluate(
         terms = drift_terms(readings.load, readings.time)
         if terms is None:
             notes.append(
-                "the load goes with time: no drift can be told from it; read without load before and after, "
+                "the load goes with time, so drift is not estimated; read without load before and after, "
                 "or the loads up and down"
             )
         else:
@@ -188,7 +188,7 @@ def evaluate(
     )
     dropped = int((~touching).sum())
     if terms is not None:
-        notes.append(f"drift of every signal is taken off, as told by {signal.shape[1]} readings over time")
+        notes.append(f"drift of every signal is removed, estimated from {signal.shape[1]} readings over time")
     elif dropped:
         notes.append(
             f"{dropped} of {len(touching)} loads are zero and left out: before contact the pads' heights "

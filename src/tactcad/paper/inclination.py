@@ -148,7 +148,7 @@ def _fit(
     objects: bool = False,
     heights: bool = False,
 ) -> Fitted:
-    """Gauss and Newton over K_r, and what of slopes, K_obj and heights is free."""
+    """Gauss-Newton over K_r, and the free ones of slopes, K_obj and heights."""
     measured, printed = np.log(data.table2.ratio.value), data.table2.object_stiffness.value
     S, n = len(printed), len(samples.K)
     slope, ln_x, height = np.zeros((S, 2)), np.log(printed), np.zeros(n)

@@ -175,8 +175,8 @@ def _without_reading(v: Inversion) -> str:
     of_others = np.exp((log.sum() - log) / (len(x) - 1)) if len(x) > 1 else x
     return (
         f"Always answering {sig(one)} N/mm, the samples' geometric mean, without any reading is within the "
-        f"factor for {elements * _near(one, x).sum()}, the mean of the other samples for "
-        f"{elements * _near(of_others, x).sum()}."
+        f"factor for {elements * _within_factor(one, x).sum()}, the mean of the other samples for "
+        f"{elements * _within_factor(of_others, x).sum()}."
     )
 
 
@@ -185,7 +185,7 @@ def _by_condition(v: Inversion, well: np.ndarray) -> str:
     error = np.abs(np.log(np.where(v.supported.physical(), v.supported.estimate, np.nan) / x))
     inside, outside = (_typical(error, m) for m in (well, ~well))
     supported, left_out = (_right(e, x) for e in (v.supported.estimate, v.left_out))
-    mean = np.broadcast_to(_near(np.exp(np.log(x).mean()), x), well.shape)
+    mean = np.broadcast_to(_within_factor(np.exp(np.log(x).mean()), x), well.shape)
     least = np.abs(v.supported.condition).min()
     return (
         f"The condition number says beforehand which readings count: below {WELL:g} {supported[well].sum()} "
@@ -199,13 +199,13 @@ def _by_condition(v: Inversion, well: np.ndarray) -> str:
     )
 
 
-def _near(estimate: np.ndarray, x: np.ndarray) -> np.ndarray:
+def _within_factor(estimate: np.ndarray, x: np.ndarray) -> np.ndarray:
     return np.abs(np.log(estimate / x)) <= np.log(FACTOR)
 
 
 def _right(estimate: np.ndarray, x: np.ndarray) -> np.ndarray:
     positive = np.isfinite(estimate) & (estimate > 0)
-    return positive & _near(np.where(positive, estimate, 1.0), x)
+    return positive & _within_factor(np.where(positive, estimate, 1.0), x)
 
 
 def _median(w: Inverted, x: np.ndarray) -> float:

@@ -149,12 +149,12 @@ def _alternatives(s: Table2Study) -> str:
     text = ""
     if alike:
         text = (
-            f"{listed(f'{_said(f)} (scatter {percent(f.rms)})' for f in alike)} fits as well as a K_r of "
+            f"{listed(f'{_fit_text(f)} (scatter {percent(f.rms)})' for f in alike)} fits as well as a K_r of "
             f"{sig(base.value[0])} ({percent(base.rms)}): Table 2 alone cannot tell a softer reference "
             "element from a wrong scale of its deflection. "
         )
     if worse:
-        text += f"{listed(f'{_said(f)} (scatter {percent(f.rms)})' for f in worse)} fits worse. "
+        text += f"{listed(f'{_fit_text(f)} (scatter {percent(f.rms)})' for f in worse)} fits worse. "
     both = next(f for f in s.fits if f.model == "K_r free, R times a factor")
     wide = both.high[0] / both.low[0] > USABLE
     text = text[:1].upper() + text[1:]
@@ -189,7 +189,7 @@ def _left_over(s: Table2Study) -> str:
     )
 
 
-def _said(f: Fit) -> str:
+def _fit_text(f: Fit) -> str:
     name = {
         "R times a factor": "a common factor of {} on R",
         "K_obj times a factor": "K_obj {} times as large",

@@ -203,7 +203,7 @@ def nest_svg(nest: Nest, design: str, revision: str) -> bytes:
         f"<title>{escape(title)}</title>",
         *(
             f'<text x="1" y="{y:g}">{escape(line)}</text>'
-            for y, line in zip((-12, -7.5, -3), (title, said(nest), "blue: start holes, red: cut last"))
+            for y, line in zip((-12, -7.5, -3), (title, nest_text(nest), "blue: start holes, red: cut last"))
         ),
         f'<rect width="{w:g}" height="{h:g}" fill="#e9ecef" stroke="#868e96" stroke-width="0.3"/>',
     ]
@@ -222,7 +222,7 @@ def nest_svg(nest: Nest, design: str, revision: str) -> bytes:
     return ("\n".join([*drawn, "</svg>"]) + "\n").encode()
 
 
-def said(nest: Nest) -> str:
+def nest_text(nest: Nest) -> str:
     """Sheet and scrap in one line."""
     on = f", {nest.high} sheets on each other" if nest.high > 1 else ""
     return (

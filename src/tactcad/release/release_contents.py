@@ -148,7 +148,7 @@ def owned(design: CommonTables, owner: str | None, contact: str | None, sample: 
     if missing and not sample:
         raise InputError(
             " and ".join(f"design.{name}" for name in missing),
-            f"{design.name} does not say whose release it is",
+            f"{design.name} names no owner for the release",
             legal=f"in [design], or {' and '.join(given[name][0] for name in missing)}; "
             "or --sample, which is not for order",
         )

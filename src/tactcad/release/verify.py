@@ -164,7 +164,7 @@ def _scene_faults(files: Mapping[str, bytes], contents: ReleaseContents, scene: 
         if row.make_buy == "make" and row.rev != revision:
             yield f"{bill}: {row.part_no} is of revision {row.rev!r}"
         if row.file and _checksums(files).get(row.file) != row.sha256:
-            yield f"{bill}: {row.file} is not here as it stands there"
+            yield f"{bill}: {row.file} is missing or differs from the bill"
 
 
 def _sheet_faults(files: Mapping[str, bytes], contents: ReleaseContents) -> Iterator[str]:
@@ -350,7 +350,7 @@ def _order_faults(
                 spares[row.part_no] = row.spares
     counts = Counter(row["part_no"] for row in orders)
     yield from (f"{n} of the bills is in {counts[n]} packages" for n in needed if counts[n] != 1)
-    yield from (f"{n} of an order stands in no bill" for n in counts if n not in needed)
+    yield from (f"{n} of an order is in no bill" for n in counts if n not in needed)
     for line in orders:
         number, qty = line["part_no"], float(line["qty"])
         least = needed.get(number, 0.0)

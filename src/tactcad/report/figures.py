@@ -74,7 +74,7 @@ class Figure:
     def _scaled(self, value: Any) -> Any:
         return value if self.scale == 1.0 else value * self.scale
 
-    def said(self, **other: Any) -> Figure:
+    def shown_as(self, **other: Any) -> Figure:
         """The same figure with another display."""
         return replace(self, **({"column": ""} | other))
 

@@ -120,7 +120,7 @@ def kept_designs(old: Side, new: Side) -> tuple[CommonTables, CommonTables]:
             raise InputError(
                 side.source, "does not tell its design", legal="a design, an export or a revision"
             )
-    return _kept(old.table or {}), _kept(new.table or {})
+    return _design_of(old.table or {}), _design_of(new.table or {})
 
 
 def _loaded(side: Side) -> CommonTables | str | None:
@@ -128,12 +128,12 @@ def _loaded(side: Side) -> CommonTables | str | None:
     if side.table is None:
         return None
     try:
-        return _kept(side.table)
+        return _design_of(side.table)
     except InputError as error:
         return f"the present code refuses the design of {side.source}: {error}"
 
 
-def _kept(table: Table) -> CommonTables:
+def _design_of(table: Table) -> CommonTables:
     """A design that keeps its rules. Raises InputError if it does not."""
     design = from_table(table)
     refuse_broken(design)
@@ -202,7 +202,7 @@ class _Each:
         return reviewed_effect(old, new, self.together.yield_share is not None)
 
     def _reviewed(self, table: Table) -> Reviewed:
-        return Reviewed(_kept(table), self.before.known)
+        return Reviewed(_design_of(table), self.before.known)
 
 
 def _recorded(old: Side, new: Side, untold: Sequence[str]) -> Meaning:

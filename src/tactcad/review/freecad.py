@@ -36,13 +36,13 @@ SECONDS = 600  # chosen: a large array is imported in seconds, a first start on 
 Row = Sequence[str | float]
 # The spreadsheet's columns: lengths in mm, as the document's.
 ESTIMATES = (
-    ELEMENT["number"].said(heading="element"),
+    ELEMENT["number"].shown_as(heading="element"),
     *ELEMENT.some("arm", "load_arm", "stiffness", "expected_error", "stiffness_ratio", "force"),
-    ELEMENT["deflection"].said(unit="mm", scale=1.0),
-    ELEMENT["gauge_strain"].said(unit="microstrain"),
+    ELEMENT["deflection"].shown_as(unit="mm", scale=1.0),
+    ELEMENT["gauge_strain"].shown_as(unit="microstrain"),
     ELEMENT["stress"],
     ELEMENT["rated_force"],
-    ELEMENT["rated_deflection"].said(heading="rated deflection", unit="mm", scale=1.0),
+    ELEMENT["rated_deflection"].shown_as(heading="rated deflection", unit="mm", scale=1.0),
 )
 
 

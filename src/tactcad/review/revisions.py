@@ -143,12 +143,12 @@ class _Revision:
         their_code(f"runs {CODE} of {self.name} ({self.commit[:12]}) of {str(self.repository.root)!r} as you")
         folder = self.repository.checked_out(self.commit)
         try:
-            side = self._told(table, _record(folder, folder / TREE / self.path))
+            side = self._side_of(table, _record(folder, folder / TREE / self.path))
         except _NotBuilt as why:
             told = (
                 f"geometry of {self.name}, which was not built ({why}): its golden file is compared instead"
             )
-            return replace(self._told(table, self._golden(table, folder, why)), untold=(told,))
+            return replace(self._side_of(table, self._golden(table, folder, why)), untold=(told,))
         if other is None:
             return side
         (folder / "other.toml").write_bytes(other)
@@ -158,7 +158,7 @@ class _Revision:
             told = f"the codes: that of {self.name} refuses the other design ({why})"
             return replace(side, untold=(told,))
 
-    def _told(self, table: dict[str, Any], record: Record) -> Side:
+    def _side_of(self, table: dict[str, Any], record: Record) -> Side:
         """The side with this record by its own code; its values as far as the present code can read them."""
         try:
             values = design_values(flattened(from_table(table)))

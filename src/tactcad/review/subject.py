@@ -48,7 +48,7 @@ def _exported(source: str, folder: Path) -> Subject:
     before = inputs_from_json(manifest.inputs)
     again = "export it again, or review the design file"
     if before is None:
-        raise InputError(source, "its manifest does not say what it was made from", legal=again)
+        raise InputError(source, "its manifest does not name its design", legal=again)
     values = {k.removeprefix("design."): v for k, v in before.values.items() if k.startswith("design.")}
     try:
         design = from_table(nested(values))

@@ -81,7 +81,7 @@ def cantilevers(design: Design) -> Mechanism:
 
 
 def _parted(part: Part, x: float) -> tuple[Part, Part]:
-    """What of an element moves, and what stands: parted where the leaf's middle is."""
+    """The moving and the fixed part of an element, cut at the leaf's middle."""
     whole = part.extrusion
 
     def piece(name: str, side: str, openings: tuple) -> Part:

@@ -54,10 +54,10 @@ class Moving:
     turn       axes of the pad's frame and the element's, as columns, [3, 3]
     joints_at  origin of the element's frame, in the pad's
     joints     one, or three of a cell (sink and two tilts) along its stiffness matrix's own axes
-    parts      what of it moves, at its place
-    box        least and largest corner of what of it can be hit besides the pad, in its frame
-    ball       radius of the ball that stands for the pad where it touches; 0: the flat pad
-    rubs       what touches may push the pad sideways, by its own friction
+    parts      its moving parts, in place
+    box        least and largest corner of its collision box besides the pad, in its frame
+    ball       radius of the ball that replaces the pad in contact; 0: the flat pad
+    rubs       whether an object may push the pad sideways by friction
     """
 
     taxel: Taxel

@@ -36,12 +36,12 @@ class Taxel:
 
     range       of the pad's middle, up to the stop
     signal, noise  over the sink of the pad's middle, and standard deviation of a reading: averaged, of a
-                bridge; one, of a Hall chip; None of what does not read it
+                bridge; one, of a Hall chip; None for the other kind
     joints      by name, and the sink of the pad's middle over each one's motion: mm/rad, or 1000 mm/m of a
                 slide
     shear       force on the pad along x and y of its frame over each joint's motion; empty if none is felt
-    neighbours  numbers of the pads beside it
-    variance, covariance  of K and of how far the pad stands back from the highest, over arrays as made
+    neighbours  numbers of the neighbouring pads
+    variance, covariance  of K and of the pad's distance below the highest, over arrays as made
     """
 
     number: int

@@ -258,7 +258,7 @@ def settles(scene: Scene, number: int) -> tuple[tuple[str, ...], tuple[str, ...]
     sets = [f"{head} to {into}: all, by {' '.join(by)}" for (head, into), by in screwed.items()] + sets
     screwed_on = {n for pair in screwed for n in pair}
     fixed = screwed_on | {n for held in step.held for body in held.bodies for n in body}
-    sets = [*map(_told, step.held), *sets]
+    sets = [*map(_held_text, step.held), *sets]
     leaves: list[str] = []
     for (axis, on), names in laid.items():
         own = tuple(dict.fromkeys(names))
@@ -277,7 +277,7 @@ def settles(scene: Scene, number: int) -> tuple[tuple[str, ...], tuple[str, ...]
     return step.sets or tuple(sets), step.leaves or tuple(leaves)
 
 
-def _told(held: Held) -> str:
+def _held_text(held: Held) -> str:
     each = ", each" if len(held.bodies) > 1 else ""
     names = " ".join(n for body in held.bodies for n in body)
     return f"{names}{each} by {' '.join(held.by)}: {_ways(held.freedoms)}"

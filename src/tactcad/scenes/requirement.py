@@ -30,12 +30,12 @@ class DimensionLimits:
 
     name          part and dimension, as stack and findings call it
     lower, upper  deviations from nominal, of shape (pieces,); mm unless the name says otherwise
-    stated        part number and limit that it is of; empty if it is of elements, or general
-    apart         of no array: drawn by chance of its own, so that an array is the same with and without it
-    element       the limit of an element that it is; empty if it is of another part
-    matters       to what: to the pads on the surface plate and all that stands on them, to the stop plate on
-                  the ledges, to neither, or to a screwed joint alone
-    wire          how it grows where the wire leaves every face of its piece further out, mm a mm
+    stated        its part number and limit; empty for elements, or if general
+    apart         of no array: drawn separately, so that an array is the same with and without it
+    element       its limit on an element; empty for another part
+    matters       to the pads on the surface plate and all that rests on them, to the stop plate on the
+                  ledges, to neither, or to a screwed joint alone
+    wire          its growth by the wire's offset on every face of its piece, mm a mm
     """
 
     name: str

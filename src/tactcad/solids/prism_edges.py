@@ -54,7 +54,7 @@ def prism_edges(shape: TopoDS_Shape) -> list[Segment] | None:
         else:
             return None
     whole = caps == 2 and len(walls) == len(level[0]) == len(level[1])
-    return list(level[0].values()) if whole and all(_alike(*wall) for wall in walls) else None
+    return list(level[0].values()) if whole and all(_same_curve(*wall) for wall in walls) else None
 
 
 def _vertices(edge: TopoDS_Edge) -> list[tuple[float, float, float]]:
@@ -104,7 +104,7 @@ def _is_cap(face: TopoDS_Face) -> bool:
     return surface.GetType() == GeomAbs_Plane and _along_z(surface.Plane().Axis().Direction())
 
 
-def _alike(one: Segment, other: Segment) -> bool:
+def _same_curve(one: Segment, other: Segment) -> bool:
     """Whether two traces are the same curve, whichever way they run."""
     a, b = (sorted((s.start, s.end)) for s in (one, other))
     points = [*zip(a, b), (one.at(0.5), other.at(0.5))]

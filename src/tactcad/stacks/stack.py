@@ -99,7 +99,7 @@ def _summed(r: Requirement, variables: dict[str, DimensionLimits], built: Assemb
     half = sum(float(v.sum()) for v in reach.values())
     value = r.value(built)
     ranked = _ranked({name: float((v**2).sum()) for name, v in reach.items()})
-    return StackLine(r, middle, middle - half, middle + half, _spread(value), _kept(r, value), ranked)
+    return StackLine(r, middle, middle - half, middle + half, _spread(value), _share_kept(r, value), ranked)
 
 
 def _behind_contacts(
@@ -148,7 +148,7 @@ def _behind_contacts(
             float(min(*ends, value.min())),
             float(max(*ends, value.max())),
             _spread(_at(r.value(built), at)),
-            _kept(r, r.value(built)),
+            _share_kept(r, r.value(built)),
             _ranked(effect[r.name]),
         )
 
@@ -213,7 +213,7 @@ def _spread(value: Array) -> float:
     return float(value.std()) if np.ptp(value) > ROUNDING else 0.0
 
 
-def _kept(r: Requirement, value: Array) -> float:
+def _share_kept(r: Requirement, value: Array) -> float:
     return float((r.margin(value).min(axis=1) >= -ROUNDING).mean())
 
 

@@ -200,21 +200,21 @@ def made(
     out = {}
     own_chance, wire_chance = rng.spawn(2)  # which draw nothing from rng itself
     by_wire = _by_wire(variables.values()) if alike else {}
-    wire = _alike(wire_chance, count, max((v.pieces for v in variables.values() if v.wire), default=0))
+    wire = _correlated(wire_chance, count, max((v.pieces for v in variables.values() if v.wire), default=0))
     for name, v in variables.items():
         chance = own_chance if v.apart else rng
         middle, half = (v.upper + v.lower) / 2, (v.upper - v.lower) / 2
         if only is not None and name not in only:
             out[name] = np.broadcast_to(middle, (count, v.pieces))
             continue
-        z = _alike(chance, count, v.pieces, OFFSET_SHARE if alike else 0.0)
+        z = _correlated(chance, count, v.pieces, OFFSET_SHARE if alike else 0.0)
         if name in by_wire:
             z = by_wire[name] * wire + np.sqrt(1.0 - by_wire[name] ** 2) * z
         out[name] = middle + half * within_limits(z, distribution)
     return out
 
 
-def _alike(chance: np.random.Generator, count: int, pieces: int, share: float = OFFSET_SHARE) -> Array:
+def _correlated(chance: np.random.Generator, count: int, pieces: int, share: float = OFFSET_SHARE) -> Array:
     """Standard normal numbers of which the pieces of an array share so much of the variance."""
     shared, own = chance.standard_normal((count, 1)), chance.standard_normal((count, pieces))
     return np.sqrt(share) * shared + np.sqrt(1.0 - share) * own

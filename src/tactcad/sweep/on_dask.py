@@ -141,8 +141,7 @@ def cluster(
     loads
         Modules that these start with; never the CAD kernel, which cannot be forked.
     prepare
-        What is to be
-        done here while they do.
+        Work to do here meanwhile.
     say
         Receives the dashboard's address.
     scratch

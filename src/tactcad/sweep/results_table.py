@@ -67,8 +67,7 @@ def write_tables(folder: Path, chunks: Iterable[pa.Table], with_csv: bool, varie
     with_csv
         Whether CSV is also written.
     varied
-        Columns whose words are the user's: in CSV none of them is a
-        formula.
+        Columns whose words are the user's: in CSV none is a formula.
 
     Raises
     ------

@@ -41,7 +41,7 @@ class StudyHead:
         TextLine(
             r"[^\x00-\x1f]{1,200}",
             "a named design, or a path from the study file's folder",
-            "design whose other values are kept",
+            "design with all other values",
         ),
         DEFAULT_DESIGN,
     )
@@ -53,7 +53,7 @@ class StudyHead:
         GRID,
     )
     count: int | None = given(Whole(1, MOST_DESIGNS, "designs drawn"), None, "as many as the values make")
-    seed: int = given(Whole(0, 2**31 - 1, "of chance, where designs are drawn"), 0)
+    seed: int = given(Whole(0, 2**31 - 1, "seed of the random draw"), 0)
 
 
 @dataclass(frozen=True)
@@ -62,7 +62,9 @@ class Varied:
 
     values: tuple[Any, ...] | None = given(Values("the values it takes"), None, "not so varied")
     range: tuple[float, ...] | None = given(
-        Numbers(Number("", -1e300, 1e300, "the field's unit"), 2, 2, "least and largest value, both taken"),
+        Numbers(
+            Number("", -1e300, 1e300, "the field's unit"), 2, 2, "least and largest value, both included"
+        ),
         None,
         "not so varied",
     )

@@ -85,12 +85,12 @@ def refusals(design: Design) -> dict[str, str]:
     except InputError as error:
         return {error.where: str(error)}
     broken = {f"rule {f.check}": f.broken for f in broken_rules(design)}
-    return broken or {f"check {f.check}": f.said for f in quick_failures(design)}
+    return broken or {f"check {f.check}": f.text for f in quick_failures(design)}
 
 
 def all_refusals(design: Design) -> dict[str, str]:
     """As `refusals`, with the checks that take a second."""
-    return refusals(design) or {f"check {f.check}": f.said for f in slow_failures(design)}
+    return refusals(design) or {f"check {f.check}": f.text for f in slow_failures(design)}
 
 
 def search(

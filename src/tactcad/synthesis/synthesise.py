@@ -386,7 +386,7 @@ def design(
             got, unknown=(f"the search was ended after {searching:.3g} s: more time may find better",)
         )
     tasks = list(_beside(got) if got.met else _changes(got, arrays))
-    answered(_told(got, tasks, {}))
+    answered(_with_results(got, tasks, {}))
     until, done = started + (seconds or in_all) - ending(), dict[int, Any]()
 
     def hear(what: str) -> None:
@@ -398,10 +398,10 @@ def design(
         for n, result in ready:
             done[n] = result
             hear(tasks[n].name)
-    return _told(got, tasks, done)
+    return _with_results(got, tasks, done)
 
 
-def _told(got: Synthesis, tasks: Sequence[Task], done: dict[int, Any]) -> Synthesis:
+def _with_results(got: Synthesis, tasks: Sequence[Task], done: dict[int, Any]) -> Synthesis:
     """The answer with the other results, in the order of the tasks, not of their completion."""
     part = [task.name.partition(": ")[0] for task in tasks]
     found: dict[str, list] = {name: [] for name in part}
@@ -446,7 +446,7 @@ def _solid(got: Synthesis) -> tuple[float, ...] | str:
         return f"solid elements: not known, because {why}"
 
 
-def _near(target: Target, found: Found, goal: Goal = bounds.narrowest) -> Found:
+def _best_nearby(target: Target, found: Found, goal: Goal = bounds.narrowest) -> Found:
     """The best for nearly the same target: near the found one; a full search if there is none."""
     some, until = bounds.near(target, found), bounds.soon(target)
     for evolve in (False,) if target.on_layer else (False, True):
@@ -470,7 +470,7 @@ def _near(target: Target, found: Found, goal: Goal = bounds.narrowest) -> Found:
 
 def _limit(got: Synthesis, name: str, other: Target) -> Limit | None:
     """The field, where easing it by a step narrows the interval."""
-    width, found = got.found.half_width, _near(other, got.found)
+    width, found = got.found.half_width, _best_nearby(other, got.found)
     if not found.accepted or found.half_width >= width * (1.0 - GAIN):
         return None
     values = relax.value_of(got.target, name), relax.value_of(other, name)
@@ -484,7 +484,7 @@ def _front(got: Synthesis) -> Iterator[Task]:
 
     def entry(name: str, what: str, path: str, value: Any, total: int | None = None) -> Task:
         def make() -> Alternative | None:
-            found = _near(wish.with_(path, value), got.found)
+            found = _best_nearby(wish.with_(path, value), got.found)
             fits = found.accepted and total in (None, int(found.candidate.total[0]))
             return Alternative(name, what, found) if fits and not slow_failures(found.design) else None
 
@@ -513,12 +513,12 @@ def _ratio(got: Synthesis, ratio: float) -> tuple[float, float] | None:
         off = np.abs(np.log(K.max(axis=1) / K.min(axis=1) / ratio))
         return np.where(off > SAME_RATIO, FAR * (1.0 + off), c.half_width)
 
-    at = _near(got.target, got.found, goal)
+    at = _best_nearby(got.target, got.found, goal)
     return (ratio, at.half_width) if at.accepted else None
 
 
 def _changes(got: Synthesis, arrays: int) -> Iterator[Task]:
-    """What of the target, changed alone by the least, would make it possible; each shown by a run."""
+    """The least change of each single field that would make the target possible; each shown by a run."""
 
     def change(name: str) -> LeastChange | None:
         near = got.found

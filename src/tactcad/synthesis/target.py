@@ -55,7 +55,7 @@ class Wish:
         TextLine(
             r"[^\x00-\x1f]{1,200}",
             "a named design, or a path from the target file's folder",
-            "design whose other values are kept",
+            "design with all other values",
         ),
         DEFAULT_DESIGN,
     )
@@ -65,7 +65,7 @@ class Wish:
         "the best to be had",
     )
     share: float = given(Number("", 0.5, 0.999, "share of arrays made that meet the target, at least"), 0.95)
-    least: str = given(OneOf(LEAST, "what is made least once the target is met"), "width")
+    least: str = given(OneOf(LEAST, "quantity to minimise once the target is met"), "width")
 
 
 @dataclass(frozen=True)
@@ -84,14 +84,12 @@ class Object:
         Number("mm", 0.1, 1e3, "of the object, bonded to a rigid base"), None, "a half-space"
     )
     poisson: float = given(Number("", 0, 0.5, "Poisson's ratio of a layer or half-space"), SOFT)
-    thickness_limits: float = given(
-        Number("%", 0, 50, "half-width of what the thickness is known within, in use"), 0.0
-    )
+    thickness_limits: float = given(Number("%", 0, 50, "half-width of the thickness in use"), 0.0)
     angle: tuple[float, ...] = given(
         _range(Number("degrees", 0, 30, "inclination"), "least and largest inclination of its face, any way"),
         (0.0, 0.0),
     )
-    reference: str = given(OneOf(REFERENCES, "what the half-width is of"), "stiffness")
+    reference: str = given(OneOf(REFERENCES, "quantity of the half-width"), "stiffness")
 
 
 @dataclass(frozen=True)
@@ -131,7 +129,9 @@ class Stock:
         SomeOf(tuple(ALLOYS), "sheet materials, names of the table"), None, "the base design's material"
     )
     hinge_tolerances: tuple[float, ...] = given(
-        Numbers(_spec(Tolerance, "hinge_thickness"), 1, 6, "what the wire's passes hold of the hinge"),
+        Numbers(
+            _spec(Tolerance, "hinge_thickness"), 1, 6, "tolerances of the hinge that the wire's passes hold"
+        ),
         None,
         "the base design's",
     )
@@ -330,7 +330,7 @@ def _origins(table: dict[str, Any], values: dict[str, Any]) -> dict[str, str]:
     for path, text in table.items():
         if path not in known:
             raise unknown_field(f"origin.{path}", [f"origin.{p}" for p in known], "tactcad schema target")
-        shown_text(text, f"origin.{path}", "where the value is from")
+        shown_text(text, f"origin.{path}", "the value's source")
     return dict(table)
 
 

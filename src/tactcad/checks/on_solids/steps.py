@@ -78,7 +78,7 @@ class Trial:
                 yield from _order(step, move.designators[0], "does not start where it was left")
             yield from self._moved(step, moment)
             if move.by == HAND and len(move.designators) == 1 and move.designators[0] in at:
-                yield from self._held(step, moment)
+                yield from self._finger_room(step, moment)
             at |= dict.fromkeys(move.designators, move.path[-1])
         for n in range(done, len(self.scene.steps)):
             yield from self._needed(n, there)
@@ -251,7 +251,7 @@ class Trial:
                 worst = (cut - allowed, length * (1.0 - float(t)))
         return worst if worst[0] > 0.0 else None
 
-    def _held(self, step: Step, moment: Moment) -> Iterator[Finding]:
+    def _finger_room(self, step: Step, moment: Moment) -> Iterator[Finding]:
         """Fingertips have room, from one side or the other, at the end by which a part is pulled out of its
         hole or left in place."""
         (name,) = moment.move.designators

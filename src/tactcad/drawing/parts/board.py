@@ -83,7 +83,7 @@ class Board:
         self._boxes.append(quad)
         self._bounds.append(bounds(quad))
 
-    def _near(self, box: Box) -> list[Quad]:
+    def _texts_meeting(self, box: Box) -> list[Quad]:
         """Texts and framed letters whose bounds meet the box."""
         b = np.array(self._bounds).reshape(-1, 4)
         x0, y0, x1, y1 = box
@@ -169,12 +169,12 @@ class Board:
 
     def passed(self, leg: Chord) -> float | None:
         """Cost of a line's crossings; None if it would run through a text."""
-        through = any(chord_meets(leg, quad) for quad in self._near(bounds(leg)))
+        through = any(chord_meets(leg, quad) for quad in self._texts_meeting(bounds(leg)))
         return None if through else self._crossings(leg)
 
     def hit(self, quads: Sequence[Quad], box: Box) -> bool:
         """Whether a text or frame would lie over anything that is there."""
-        if any(quads_meet(q, b) for b in self._near(box) for q in quads):
+        if any(quads_meet(q, b) for b in self._texts_meeting(box) for q in quads):
             return True
         a, (x0, y0, x1, y1), m = self._lines(), box, BESIDE_LINE + 0.5
         near = np.flatnonzero(

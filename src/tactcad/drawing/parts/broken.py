@@ -193,7 +193,7 @@ def _zigzag(at: float, k: int, low: float, high: float, z: float, w: float, past
 
 
 def _cut_off(loop: Sequence[Point], band: Box) -> tuple[Point, ...]:
-    """What of a closed polygon lies in a box (Sutherland and Hodgman); empty if nothing does."""
+    """The part of a closed polygon in a box (Sutherland and Hodgman); empty if there is none."""
     points = list(loop)
     for k, limit, way in ((0, band[0], 1), (0, band[2], -1), (1, band[1], 1), (1, band[3], -1)):
         kept: list[Point] = []

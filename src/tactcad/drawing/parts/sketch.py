@@ -83,11 +83,11 @@ class Sketch:
         return False
 
     def _spots(self, features: Iterable[str]) -> set[tuple[int, float]]:
-        return {(k, _alike(self.values[v])) for k, v in places(self.part, tuple(features))}
+        return {(k, _rounded(self.values[v])) for k, v in places(self.part, tuple(features))}
 
     def locates(self, origin: Coordinate, c: Coordinate, k: int) -> bool:
         """Whether a dimension along axis k locates something with a position tolerance from a datum."""
-        start, end = ((k, _alike(spot.at[k])) for spot in (origin, c))
+        start, end = ((k, _rounded(spot.at[k])) for spot in (origin, c))
         if start not in self.bases or end not in self.exact:
             return False
         self.unlocated.discard(end)
@@ -114,7 +114,7 @@ class Sketch:
         return dimension
 
 
-def _alike(value: float) -> float:
+def _rounded(value: float) -> float:
     return round(value, 6) + 0.0
 
 

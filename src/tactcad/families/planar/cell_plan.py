@@ -129,11 +129,11 @@ def cell_plan(part: Part, notes: Sequence[str], spare: bool = False) -> SheetPla
     marked = with_marks(shown, views)
     closed(sketch, marked)
     pitch = [round(abs(last[k].at[k] - cells[0].at[k]) / n, 6) for k in (0, 1) if (n := _count(cells, k) - 1)]
-    told = [*notes, *_told(kinds, pitch)]
+    told = [*notes, *_pattern_notes(kinds, pitch)]
     return SheetPlan(shown, sketch.values, tuple(sketch.conventions), marked, tuple(told))
 
 
-def _told(kinds: Sequence[Sequence[SheetCell]], pitch: Sequence[float]) -> Iterator[str]:
+def _pattern_notes(kinds: Sequence[Sequence[SheetCell]], pitch: Sequence[float]) -> Iterator[str]:
     """What the details hold for."""
     at = f", at a pitch of {pitch[0]:g} exactly" if pitch else ""
     if len(kinds) == 1:

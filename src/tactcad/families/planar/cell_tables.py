@@ -107,7 +107,7 @@ class CellKind:
     island: float = given(Number("mm", 0.3, 40, "side of the square island"))
     beam_width: float = given(Number("mm", 0.03, 20, "width of each of its four beams"))
     fillet: float = given(Number("mm", 0.01, 5, "fillet at the beams' roots"))
-    stop_gap: float = given(Number("mm", 0.01, 3, "way of the island down to the base"))
+    stop_gap: float = given(Number("mm", 0.01, 3, "travel of the island down to the base"))
     ear: float = given(Number("mm", 0.1, 20, "ear from which a pinwheel's beam runs, along the beam"), 0.8)
     slot: float = given(Number("mm", 0.05, 10, "slot between a pinwheel's island and beam"), 0.35)
 
@@ -153,7 +153,7 @@ class Housing:
     border: float = given(Number("mm", 0.5, 30, "foil beyond the outer cells' openings, along x"), 5.0)
     side: float | None = given(Number("mm", 0.5, 30, "the same along y"), None, "border")
     lift: float = given(Number("mm", 0.05, 3, "room over the foot plates below the cover"), 0.3)
-    side_gap: float = given(Number("mm", 0.05, 3, "way of a post sideways to the cover"), 0.3)
+    side_gap: float = given(Number("mm", 0.05, 3, "travel of a post sideways to the cover"), 0.3)
     cover_thickness: float = given(Number("mm", 0.5, 10, "cover; the screws end in its threads"), 3.0)
     well: float = given(Number("mm", 0.1, 5, "room around a magnet in the base"), 0.45)
     plate_alloy: str = given(OneOf(PLATE_ALLOYS, "base and cover"), "6061-T6")
@@ -167,7 +167,7 @@ class PlanarRating:
     shear: float = given(Number("", 0, 2, "largest tangential force, a share of the normal one"), 0.3)
     yield_factor: float = given(Number("", 1, 10, "safety against yield of the rated force"), 1.5)
     linearity: float = given(Number("", 0.001, 0.5, "change of K that counts as linear, relative"), 0.05)
-    slip: float = given(Number("", 0.01, 5, "tangential over normal force from which on a pad slips"), 0.5)
+    slip: float = given(Number("", 0.01, 5, "ratio of tangential to normal force at which a pad slips"), 0.5)
 
 
 @dataclass(frozen=True)
@@ -177,10 +177,12 @@ class PlanarTolerance:
     thickness: float | None = given(
         Number("mm", 1e-4, 0.1, "foil"), None, "5 % of the foil, as rolled precision strip is sold; chosen"
     )
-    stop_gap: float = given(Number("mm", 0.001, 0.2, "way of an island down to the base"), 0.01)
-    magnet_place: float = given(Number("mm", 0.005, 1, "magnet beside its island's middle, each way"), 0.05)
+    stop_gap: float = given(Number("mm", 0.001, 0.2, "travel of an island down to the base"), 0.01)
+    magnet_place: float = given(
+        Number("mm", 0.005, 1, "magnet's offset from its island's middle, each way"), 0.05
+    )
     magnet_tilt: float = given(Number("degree", 0, 10, "magnet's axis"), 2.0)
-    chip_place: float = given(Number("mm", 0.005, 1, "chip beside its place, each way"), 0.1)
+    chip_place: float = given(Number("mm", 0.005, 1, "chip's offset from its place, each way"), 0.1)
 
 
 @dataclass(frozen=True)

@@ -15,7 +15,7 @@ from ..bought.electronic_parts import SET_AMPERE, bridge_resistance, nearest_e19
 from .layout import Layout
 from .leads import boards
 
-RATE = 50.0  # Hz, results while one input is read; chosen: the filter's first notch lies on the mains
+MAINS = 50.0  # Hz, if none is said
 ORDER = 3  # of the filter: it needs so many of its periods after each change of input
 HEAT_LEFT = 0.98  # of what the backing bears: the LT3042's 100 uA may be 1 % more
 ANALOGUE_OHM = 33.2e3  # sets the converter's own supply: 3.32 V
@@ -59,10 +59,10 @@ def bridge_supply(layout: Layout) -> float:
 def converter_noise(layout: Layout, converter: Converter, gain: float) -> float:
     """Of one result at the bridge, V rms: the converter's own, which is white and grows as the gain falls,
     and Johnson noise of the bridge up to half the rate."""
-    own = converter.noise * converter.noise_gain / gain * (RATE / converter.noise_rate) ** 0.5
+    own = converter.noise * converter.noise_gain / gain * (rate(layout) / converter.noise_rate) ** 0.5
     from tactcad.mechanics.readout import BOLTZMANN, ROOM
 
-    return hypot(own, (4 * BOLTZMANN * ROOM * layout.design.gauge.resistance * RATE / 2) ** 0.5)
+    return hypot(own, (4 * BOLTZMANN * ROOM * layout.design.gauge.resistance * rate(layout) / 2) ** 0.5)
 
 
 def fullest(layout: Layout) -> int:
@@ -70,9 +70,14 @@ def fullest(layout: Layout) -> int:
     return max(len(board.places) for board in boards(layout))
 
 
-def settling() -> float:
+def rate(layout: Layout) -> float:
+    """Results while one input is read, Hz; chosen: the filter's first notch lies on the mains."""
+    return layout.design.readout.mains or MAINS
+
+
+def settling(layout: Layout) -> float:
     """From one input's result to the next one's, s."""
-    return ORDER / RATE
+    return ORDER / rate(layout)
 
 
 def warm_up(layout: Layout) -> float:
@@ -88,7 +93,7 @@ def warm_up(layout: Layout) -> float:
 
 def round_time(layout: Layout) -> float:
     """Until every element of the fullest board has one result, s."""
-    return fullest(layout) * settling()
+    return fullest(layout) * settling(layout)
 
 
 def on_time(layout: Layout) -> float:

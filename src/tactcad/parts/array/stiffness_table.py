@@ -31,13 +31,13 @@ ROUNDING = 1e-9
 class Deflection:
     """One part under one load.
 
-    scene       where it stands under this load
-    part, model what bends, and the model of it
+    scene       its scene with this load
+    part, model the bending part, and its model
     load        N, and `origin`, why so much
-    gives       um; negative where that closes a gap
+    gives       um; negative if that closes a gap
     allowed     um, and `why`
     fields      paths of the design's fields that make it bend less, the most useful first
-    severity    `flag`: the array works all the same, but whoever builds or holds it has to know
+    severity    `flag`: the array works, but its builder or user must know
     """
 
     scene: str

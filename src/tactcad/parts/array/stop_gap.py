@@ -237,16 +237,13 @@ def overloads(layout: Layout) -> list[Overload]:
 
 
 def endurance(layout: Layout, states: Sequence[Overload]) -> str:
-    """Which elements do not bear their rated force for ever, and what they bear; "" if all do."""
+    """Endured forces of the elements with finite life at their rated force; "" if there are none."""
     tired = [state for state in states if state.endured < state.rated_force]
     if not tired:
         return ""
     row = ALLOYS.get(layout.design.material.alloy)
-    cycles = (
-        f"{row.fatigue_cycles:.0e}".replace("e+0", "e")
-        if row and row.fatigue_cycles
-        else "its fatigue life's"
-    )
+    known = row and row.fatigue_cycles
+    cycles = f"{known:.0e}".replace("e+0", "e") if known else "the fatigue strength's"
     return (
         f"finite life at the rated force (Goodman factor below 1); {cycles} cycles are borne up to "
         + by_force(tired, lambda state: state.endured)

@@ -19,6 +19,7 @@ from ..bought.electronic_parts import (
     converter_of,
     gain_resistance,
     lead_part,
+    nearest_e192,
     supply_resistance,
     value_code,
 )
@@ -77,16 +78,18 @@ def electronic_supplies(layout: Layout) -> tuple[Supply, ...]:
     d, r = layout.design, layout.design.readout
     n, count = len(layout.elements), len(boards(layout))
     kind, tolerance, drift = COMPLETIONS[r.completion], completion_tolerance(d), completion_drift(d)
-    own = tolerance == kind.tolerance and drift == kind.drift
+    arm, scheme = completion_resistance(d), "{code}" in kind.mpn
+    own = tolerance == kind.tolerance and drift == kind.drift and (not scheme or arm == nearest_e192(arm))
+    mpn = kind.mpn.format(code=value_code(arm))
     completion = supplies(
         "completion",
         {"arms": 3 * n},
         kind=kind,
-        order=kind if own else replace(kind, maker="", mpn="", verified=False),
-        ohm=completion_resistance(d),
+        order=replace(kind, mpn=mpn) if own else replace(kind, maker="", mpn="", verified=False),
+        ohm=arm,
         percent=100 * tolerance,
         ppm=1e6 * drift,
-        end=f" ({kind.mpn}); or equal" if kind.mpn and own else "; any maker's",
+        end=f" ({mpn}); or equal" if own and not scheme else "; any maker's",
     )
     part, outline, converter = MULTIPLEXERS[r.multiplexer], board_outline(layout), converter_of(d)
     free, small = channels_of(layout) * count - n, kind.package == "0805"

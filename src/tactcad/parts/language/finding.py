@@ -42,7 +42,7 @@ class Finding:
         return f"{self.part} ({self.part_no})" if self.part_no else self.part
 
     @property
-    def said(self) -> str:
+    def text(self) -> str:
         """All but the severity."""
         at = " at (" + ", ".join(f"{v:.3f}" for v in self.place) + ")" if self.place else ""
         return f"{self.about}: {self.check}{at}: {self.message}"
@@ -53,7 +53,7 @@ class Finding:
         return f"{self.part}: {self.message}; found {self.value}; legal: {self.limit}"
 
     def __str__(self) -> str:
-        return f"{self.severity}: {self.said}"
+        return f"{self.severity}: {self.text}"
 
     def as_record(self) -> dict[str, Any]:
         """Plain data for JSON."""
@@ -71,7 +71,7 @@ def grouped(findings: Iterable[Finding]) -> list[str]:
     for first, *others in alike.values():
         about = list(dict.fromkeys(f.about for f in others if f.about != first.about))
         more = f" (and of {', '.join(about[:3])}{f' and {len(about) - 3} more' if len(about) > 3 else ''})"
-        lines.append(first.said + (more if about else ""))
+        lines.append(first.text + (more if about else ""))
     return lines
 
 

@@ -231,7 +231,7 @@ class BondingLayout:
 
     @property
     def pad_area(self) -> float:
-        """mm2 of rubber on the gauge: what of the carrier lies on the element."""
+        """mm2 of rubber on the gauge: the carrier's area on the element."""
         before, behind = self.pad_x
         return (behind - before) * self.pad_width
 

@@ -35,7 +35,7 @@ def gauge_fits_face(layout: Layout) -> Iterator[Finding]:
             f"carrier reaches the pad of element {p.number}",
             d.gauge.carrier_arm_side,
             flat,
-            f"at most {flat:g} mm there",
+            f"at most {flat:g} mm there" if flat > 0.0 else "a longer arm, or a shorter pad",
         )
         behind = layout.recess_start - p.hinge_x
         yield from at_most(

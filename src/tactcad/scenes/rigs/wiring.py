@@ -100,8 +100,8 @@ def wiring(design: Design, pose: Pose = REST) -> Scene:
         "Boards",
         (0, 0, 60),
         "Lay each board, its parts soldered and its flux washed off, on its stand-offs, J2 towards the "
-        "array's place, and screw it down crosswise. Plug the cable to card or controller on its J1, the "
-        "other end still free.",
+        f"array's place, and screw it down crosswise.{_fitted(layout)} Plug the cable to card or controller "
+        "on its J1, the other end still free.",
     )
     b.subassembly(whole, DOWN, (0, 0, carrier_top(layout)))
     b.step(
@@ -183,6 +183,15 @@ def _in_order(layout: Layout) -> str:
         if len(own) > 1
     ]
     return f" A row's boards stand in the order of their elements: {', '.join(told)}." if told else ""
+
+
+def _fitted(layout: Layout) -> str:
+    """Which board has how many channels fitted, where they differ: its files are named by that."""
+    fitted: dict[int, list[str]] = {}
+    for b in boards(layout):
+        fitted.setdefault(len(b.places), []).append(f"A{b.number}")
+    told = [f"{' '.join(names)} of board-{used}" for used, names in fitted.items()]
+    return f" Parts are fitted as in the files {', '.join(told)}." if len(told) > 1 else ""
 
 
 RIG = Rig(
