@@ -75,6 +75,44 @@ def test_segments_of_labview_follow_each_other(tmp_path):
     assert log.columns["V_0"].tolist() == [1, 3, 5, 7] and log.columns["V_1"].tolist() == [2, 4, 6, 8]
 
 
+@pytest.mark.parametrize("layout", ["No", "Multi"])
+def test_labview_writes_no_time_or_one_before_every_channel(layout, tmp_path):
+    """As LabVIEW does: X_Value is in the line of names, and where it is empty the rows begin with a tab."""
+    head = f"LabVIEW Measurement\t\nSeparator\tTab\nDecimal_Separator\t,\nX_Columns\t{layout}\n"
+    head += "***End_of_Header***\t\n\t\nChannels\t2\t\t\nX0\t0,0E+0\t0,0E+0\t\nDelta_X\t0,5\t0,5\t\n"
+    names, rows = "X_Value\tV_0\tV_1\tComment", ["\t1,5\t2", "\t3\t4"]
+    if layout == "Multi":
+        names, rows = "X_Value\tV_0\tX_Value\tV_1\tComment", ["0,0\t1,5\t0,0\t2", "0,5\t3\t0,5\t4"]
+    text = head + "***End_of_Header***\t\t\t\n" + "\n".join([names, *rows]) + "\n"
+    (tmp_path / "a.lvm").write_text(text)
+    log = read_log(tmp_path / "a.lvm")
+    assert log.time.tolist() == [0, 0.5]
+    assert log.columns["V_0"].tolist() == [1.5, 3] and log.columns["V_1"].tolist() == [2, 4]
+    if layout == "Multi":
+        (tmp_path / "a.lvm").write_text(text.replace("3\t0,5", "3\t0,6"))
+        with pytest.raises(log_readings.InputError, match="a.lvm:13: channels of different times"):
+            read_log(tmp_path / "a.lvm")
+
+
+def test_a_date_may_be_written_as_in_german(tmp_path):
+    rows = "30.11.2026 23:59:59,5;1;2\n01.12.2026 00:00:00,25;2;3\n"
+    (tmp_path / "a.csv").write_text("Zeit;ai1;ai2\n" + rows)
+    assert np.diff(read_log(tmp_path / "a.csv").columns["Zeit"]).tolist() == [0.75]
+
+
+def test_a_plateau_ends_where_the_next_run_or_element_begins(tmp_path):
+    """The stage is at zero at the end of a run and at the beginning of the next one."""
+    lab = labs.calibration(np.random.default_rng(4))
+    by_marks = log_readings.take(in_memory(lab), mapped(tmp_path, lab, "calibration"))
+    plateau = labs.map_text(lab, "calibration", "Time").replace(
+        'by = "marks"\ncolumn = "mark"', 'by = "plateau"\ncolumn = "stage"\napart = 10.0\nhold = 4.0'
+    )
+    (tmp_path / "plateau.toml").write_text(plateau)
+    by_plateau = log_readings.take(in_memory(lab), read_map(tmp_path / "plateau.toml"))
+    left, right = rows_of(by_marks.table), rows_of(by_plateau.table)
+    assert left.shape == right.shape and np.abs(left - right)[:, :3].max() < 1e-9
+
+
 def test_the_mean_is_over_whole_periods_of_the_mains(tmp_path):
     """10 mV of hum at 50 Hz in steps of 0.507 s: over 0.5 s nothing of it is left."""
     t = np.arange(4056) / 1000.0
@@ -189,6 +227,34 @@ def test_a_dead_and_a_saturated_channel_are_named_and_left_out(tmp_path, capsys)
     assert "element 4" in said.err and "element 6" in said.err and len(said.err.splitlines()) == 2
     assert set(rows_of(out.read_text())[:, 1]) == set(labs.array().element) - {4, 6}
     assert out.with_suffix(".svg").read_text().startswith("<svg")
+
+
+@pytest.mark.parametrize("kind", ["grasp", "calibration"])
+def test_a_dead_channel_that_has_noise_and_drift_is_left_out(kind, tmp_path):
+    rng = np.random.default_rng(9)
+    lab = (labs.grasp if kind == "grasp" else labs.calibration)(rng)
+    noise = 0.25 + 5e-4 * rng.standard_normal(len(lab.time)) + 1e-3 * lab.time / lab.time[-1]
+    bad = broken(lab, ai4=noise)
+    taken = log_readings.take(in_memory(bad), mapped(tmp_path, bad, kind))
+    assert set(taken.left_out) == {4} and taken.left_out[4].startswith("dead: its signal changes by")
+    assert set(rows_of(taken.table)[:, int(kind == "grasp")]) == set(labs.array().element) - {4}
+    assert not log_readings.take(in_memory(lab), mapped(tmp_path, lab, kind)).left_out
+
+
+def test_a_tdms_that_is_cut_off_is_one_line(tmp_path, capsys):
+    lab = labs.grasp(np.random.default_rng(7))
+    labs.tdms(tmp_path / "a.tdms", lab)
+    (tmp_path / "a.tdms").write_bytes((tmp_path / "a.tdms").read_bytes()[:60_000])
+    mapped(tmp_path, lab, "grasp")
+    asked = [
+        str(tmp_path / "a.tdms"),
+        "--map",
+        str(tmp_path / "grasp.toml"),
+        "--out",
+        str(tmp_path / "o.csv"),
+    ]
+    assert main(["readings", *asked]) == 2
+    assert len(capsys.readouterr().err.splitlines()) == 1
 
 
 def test_two_channels_at_one_limit_are_saturated_not_one_channel(tmp_path):

@@ -162,7 +162,7 @@ def _names(cells: Sequence[str], path: str, line: int) -> list[str]:
 
 
 def _column(cells: Sequence[str], read: Callable[[str], float]) -> np.ndarray:
-    """Numbers (an empty cell is not a number), seconds of the day's times, or the texts."""
+    """Numbers (an empty cell is none), seconds of the day's times, or the texts."""
     values = np.array([read(cell) if cell else nan for cell in cells])
     written = np.array([bool(cell) for cell in cells])
     if not (written & np.isnan(values)).any() and written.any():
@@ -179,6 +179,7 @@ def _seconds(text: str) -> float | None:
     if re.fullmatch(r"\d{1,2}:\d{2}(:\d{2}(\.\d+)?)?", plain):
         parts = [float(p) for p in plain.split(":")] + [0.0]
         return 3600 * parts[0] + 60 * parts[1] + parts[2]
+    plain = re.sub(r"^(\d{2})\.(\d{2})\.(\d{4})(?=[ T])", r"\3-\2-\1", plain)
     if not re.match(r"\d{4}-\d{2}-\d{2}[ T]\d{2}:\d{2}", plain):
         return None
     plain = re.sub(r"(\.\d{1,6})\d*", lambda m: m[1].ljust(7, "0"), plain)
@@ -188,7 +189,7 @@ def _seconds(text: str) -> float | None:
         return None
 
 
-END = "***End_of_Header***"
+END, X = "***End_of_Header***", "X_Value"
 
 
 def _lvm(path: str, text: str) -> LabLog:
@@ -210,15 +211,15 @@ def _lvm(path: str, text: str) -> LabLog:
     whole, at = header(1)
     comma = whole.get("Decimal_Separator", ["."])[0].strip() == ","
     layout = whole.get("X_Columns", ["One"])[0].strip()
-    if layout == "Multi":
-        raise InputError(path, "X_Columns Multi: a time column for each channel", legal="One or No")
     parts: list[tuple[LabLog, dict[str, list[str]]]] = []
     while (start := next((i for i in range(at, len(lines)) if lines[i].strip()), None)) is not None:
         own, at = header(start)
         stop = next((i for i in range(at + 1, len(lines)) if not lines[i].strip()), len(lines))
         rows = [(n + 1, lines[n]) for n in range(at, stop)]
         if layout == "No":  # its rows begin with an empty cell, or with none
-            rows = [(n, line.removeprefix(separator)) for n, line in rows]
+            rows = [(n, line.removeprefix(X).removeprefix(separator)) for n, line in rows]
+        if layout == "Multi":
+            rows = _with_one_time(path, rows, separator)
         if len(rows) < 2:
             raise InputError(f"{path}:{at + 1}", "a segment without rows", legal=KIND)
         parts.append((_table(path, rows, separator, comma), own))
@@ -236,17 +237,30 @@ def _lvm(path: str, text: str) -> LabLog:
     columns = {
         name: np.concatenate([log.columns[name] for log, _ in parts])
         for name in parts[0][0].columns
-        if name not in ("X_Value", "Comment")
-        or (name == "Comment" and parts[0][0].columns[name].dtype.kind == "U")
+        if name not in (X, "Comment") or (name == "Comment" and parts[0][0].columns[name].dtype.kind == "U")
     }
     return LabLog(path, columns, np.concatenate(times), np.concatenate([log.line for log, _ in parts]))
+
+
+def _with_one_time(path: str, rows: list[tuple[int, str]], separator: str) -> list[tuple[int, str]]:
+    """Rows in which every channel has its time before it, with the first channel's alone. Raises InputError
+    where another differs."""
+    names = _cells(rows[0][1], separator)
+    more = [i for i, name in enumerate(names) if name == X][1:]
+    kept = []
+    for n, line in rows:
+        cells = _cells(line, separator)
+        if any(i < len(cells) and cells[i] != cells[0] for i in more):
+            raise InputError(f"{path}:{n}", "channels of different times", legal="one time in each row")
+        kept.append((n, separator.join(cell for i, cell in enumerate(cells) if i not in more)))
+    return kept
 
 
 def _lvm_time(
     log: LabLog, own: dict[str, list[str]], layout: str, read: Callable[[str], float]
 ) -> np.ndarray:
-    if layout != "No" and "X_Value" in log.columns:
-        return log.columns["X_Value"]
+    if layout != "No" and X in log.columns:
+        return log.columns[X]
     step = read(own.get("Delta_X", ["1"])[0])
     start = read(own.get("X0", ["0"])[0])
     return start + step * np.arange(len(log.line))
@@ -261,10 +275,13 @@ def _lvm_start(own: dict[str, list[str]]) -> float:
 def _tdms(path: str | Path) -> LabLog:
     refuse_missing(str(path), "logs")
     from io import BytesIO
+    from logging import ERROR
 
     from nptdms import TdmsFile
+    from nptdms.log import log_manager
 
     data = read_bytes(path, LARGEST_LOG, KIND)
+    log_manager.set_level(ERROR)  # what is wrong is said in one line below
     try:
         file = TdmsFile.read(BytesIO(data))
         groups = [(group, channel) for group in file.groups() for channel in group.channels() if len(channel)]

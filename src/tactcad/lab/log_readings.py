@@ -30,10 +30,15 @@ FROM_MIDDLE = (
     4.0  # standard deviations of a plateau's middle half from which on a row belongs to the way there
 )
 STUCK = 8  # samples of a step at a channel's own limit from which the channel counts as saturated; chosen
+STATES = ("element", "run", "sample")
+TIMES = "numbers, or hh:mm:ss, yyyy-mm-dd hh:mm:ss or dd.mm.yyyy hh:mm:ss"
 NO_MARK = ("", "0", "-", "nan")
 # By how much more another channel changes than that of the pressed element, from which on they are swapped;
 # chosen: neighbours feel each other by a few per cents through what holds them.
 SWAPPED = 5.0
+# Share of the middle channel's slope over the load below which a channel tells nothing; chosen: elements of
+# one array differ by ten times at most.
+UNMOVED = 0.01
 
 
 @dataclass(frozen=True)
@@ -107,10 +112,6 @@ def take(log: LabLog, by: LogMap) -> Taken:
     kept = {n: v for n, v in volts.items() if n not in left_out}
     used = np.concatenate([np.arange(a, b + 1) for a, b in spans])
     _refuse_doubled(log, kept, columns, used)  # only these: two channels at one limit are equal, not doubled
-    least = 1 if by.log.kind == "calibration" else 2
-    if len(kept) < least:
-        why = "; ".join(f"{n}: {w}" for n, w in left_out.items())
-        raise InputError(f"{log.path}: channels", f"too few tell anything ({why})", legal=f"{least} at least")
     for n, v in kept.items():
         for a, b in spans:
             if np.isnan(v[a : b + 1]).any():
@@ -120,6 +121,12 @@ def take(log: LabLog, by: LogMap) -> Taken:
                 )
     if by.log.kind == "calibration":
         _refuse_swapped(log, steps, kept, columns)
+    left_out |= _unmoved(by.log.kind, steps, kept)
+    kept = {n: v for n, v in kept.items() if n not in left_out}
+    least = 1 if by.log.kind == "calibration" else 2
+    if len(kept) < least:
+        why = "; ".join(f"{n}: {w}" for n, w in left_out.items())
+        raise InputError(f"{log.path}: channels", f"too few tell anything ({why})", legal=f"{least} at least")
     noise = {
         n: float(np.median([np.std(v[s.rows], ddof=1) if s.samples > 1 else 0.0 for s in steps]))
         for n, v in kept.items()
@@ -133,20 +140,20 @@ def _pressed(kind: str, steps: tuple[LogStep, ...], element: int) -> tuple[LogSt
     return tuple(s for s in steps if kind == "calibration" and s.values["element"] == element)
 
 
-def _numbers(log: LabLog, name: str, by: LogMap) -> np.ndarray:
+def _numbers(log: LabLog, name: str, by: LogMap, legal: str = "numbers alone") -> np.ndarray:
     if name not in log.columns:
         raise InputError(f"{log.path}", f"has no column {name!r}", legal=one_of(name, log.columns))
     values = log.columns[name]
     if values.dtype.kind == "U":
         row = next((i for i, v in enumerate(values) if v and np.isnan(number(v.replace(",", ".")))), 0)
-        raise InputError(log.where(row, name), "no number", value=str(values[row]), legal="numbers alone")
+        raise InputError(log.where(row, name), "no number", value=str(values[row]), legal=legal)
     return values
 
 
 def _time(log: LabLog, by: LogMap) -> np.ndarray:
     """Seconds from the first row."""
     if by.log.time is not None:
-        time = _numbers(log, by.log.time, by) * SECONDS[by.log.time_unit]
+        time = _numbers(log, by.log.time, by, TIMES) * SECONDS[by.log.time_unit]
     elif log.time is not None:
         time = log.time
     elif by.log.rate is not None:
@@ -183,7 +190,11 @@ def _spans(log: LabLog, by: LogMap, time: np.ndarray, drive: np.ndarray | None) 
         found = _marked(log, str(rule.column), by)
     else:
         assert drive is not None
-        found = _plateaus(time, drive, rule.apart or 0.0, rule.hold)
+        found = [
+            part
+            for a, b in _plateaus(time, drive, rule.apart or 0.0, rule.hold)
+            for part in _of_one_state(log, by, time, a, b)
+        ]
         if not found:
             what = "no plateau: it changes all the time, or never" if np.ptp(drive) else "never changes"
             legal = "plateaus of steps.hold seconds within steps.apart"
@@ -234,6 +245,17 @@ def _plateaus(time: np.ndarray, drive: np.ndarray, apart: float, hold: float) ->
     return [_trimmed(drive, int(a) - left, int(b) - 1 + right) for a, b in zip(edges[::2], edges[1::2])]
 
 
+def _of_one_state(log: LabLog, by: LogMap, time: np.ndarray, a: int, b: int) -> list[tuple[int, int]]:
+    """A plateau cut where its element, run or sample changes: the stage is back at zero when a run begins.
+    Parts shorter than `hold` are left out."""
+    names = [by.quantities[n].column for n in STATES if n in by.quantities]
+    columns = [np.round(_numbers(log, name, by)[a : b + 1]) for name in names if name is not None]
+    cuts = [a, *(i for i in range(a + 1, b + 1) if any(c[i - a] != c[i - a - 1] for c in columns)), b + 1]
+    if len(cuts) == 2:
+        return [(a, b)]
+    return [(i, j - 1) for i, j in zip(cuts, cuts[1:]) if time[j - 1] - time[i] >= by.steps.hold]
+
+
 def _trimmed(drive: np.ndarray, a: int, b: int) -> tuple[int, int]:
     """A plateau without the ends on which the column comes and goes, by its middle half."""
     core = drive[a + (b - a) // 4 : b - (b - a) // 4 + 1]
@@ -261,7 +283,7 @@ def _values(
     scale = q.scale(name, by.path)
     if q.values is not None:
         cycle = np.repeat(np.array(q.values), q.each)
-        if len(spans) % len(cycle) and name not in ("element", "run", "sample") or len(cycle) > len(spans):
+        if len(spans) % len(cycle) and name not in STATES or len(cycle) > len(spans):
             what = f"{len(cycle)} steps by its values, and {len(spans)} found in the log"
             raise InputError(f"{by.path}: {name}.values", what, legal="as many, or the same again and again")
         return _scaled(np.resize(cycle, len(spans)), q, scale)
@@ -321,15 +343,38 @@ def _silent(v: np.ndarray, steps: tuple[LogStep, ...], by: LogMap) -> str:
     return ""
 
 
+def _unmoved(kind: str, steps: tuple[LogStep, ...], kept: Mapping[int, np.ndarray]) -> dict[int, str]:
+    """Channels that have noise or drift and no signal: their slope over the load is next to none beside the
+    other channels'."""
+    slopes = {}
+    for n, v in kept.items():
+        own = _pressed(kind, steps, n) if kind == "calibration" else steps
+        force = np.array([s.values["force" if kind == "calibration" else "load"] for s in own])
+        if len(own) and np.ptp(force):
+            means = np.array([v[s.rows].mean() for s in own])
+            away = force - force.mean()
+            slopes[n] = abs(float(away @ means / (away @ away)))
+    middle = float(np.median([*slopes.values()])) if slopes else 0.0
+    return {
+        n: f"dead: its signal changes by {slope * 1e3:.2g} mV/N, the middle channel's by {middle * 1e3:.3g}"
+        for n, slope in slopes.items()
+        if slope < UNMOVED * middle
+    }
+
+
 def _refuse_swapped(
     log: LabLog, steps: tuple[LogStep, ...], kept: Mapping[int, np.ndarray], columns: Mapping[int, str]
 ) -> None:
-    """Refuse a calibration in which another channel answers to an element's being pressed."""
+    """Refuse a calibration in which another channel answers to an element's being pressed. A channel that
+    only drifts meanwhile does not answer: it changes by far less than the middle element's answer."""
+    changes: dict[int, dict[int, float]] = {}
     for n in sorted({int(s.values["element"]) for s in steps} & set(kept)):
         own = _pressed("calibration", steps, n)
-        change = {m: float(np.ptp([v[s.rows].mean() for s in own])) for m, v in kept.items()}
+        changes[n] = {m: float(np.ptp([v[s.rows].mean() for s in own])) for m, v in kept.items()}
+    answer = float(np.median([max(change.values()) for change in changes.values()] or [0.0]))
+    for n, change in changes.items():
         most = max(change, key=lambda m: change[m])
-        if change[most] > SWAPPED * change[n]:
+        if change[most] > max(SWAPPED * change[n], answer / SWAPPED):
             who = f"{columns[most]} (element {most}) changes, not {columns[n]}"
             what = f"while element {n} is pressed, {who}: swapped?"
             raise InputError(
