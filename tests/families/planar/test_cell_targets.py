@@ -121,9 +121,17 @@ def test_a_target_that_cannot_be_met_writes_nothing_but_on_demand(file, tmp_path
     assert (tmp_path / "out" / "design.toml").exists()
 
 
-def test_room_for_no_pair_is_impossible(tmp_path, capsys):
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ("length = 28.0           # mm along x\nwidth = 10.0", "length = 6.0\nwidth = 5.0"),
+        ("pitch = [3.6, 4.4]", "pitch = [1.0, 1.2]"),
+    ],
+)
+def test_room_for_no_pair_is_impossible(old, new, tmp_path, capsys):
     path = tmp_path / "small.toml"
-    path.write_text(TEXT.replace("length = 28.0", "length = 6.0").replace("width = 10.0", "width = 5.0"))
+    assert old in TEXT
+    path.write_text(TEXT.replace(old, new))
     assert main(["design", str(path), "--out", str(tmp_path / "out"), "--best"]) == 1
     assert "no design keeps every rule" in capsys.readouterr().out and not (tmp_path / "out").exists()
 

@@ -111,7 +111,8 @@ class CellTarget:
     @property
     def points(self) -> Array:
         """N/mm"""
-        return np.geomspace(*self.object.stiffness, POINTS)
+        low, high = self.object.stiffness
+        return np.geomspace(low, high, POINTS)
 
 
 def read_target(path: str | Path) -> CellTarget:
@@ -262,11 +263,12 @@ def evaluated(t: CellTarget, c: Choice) -> Found | list[Finding]:
     if d is None:
         return [wrong("planar.length", "no room for two cells", t.planar.length, "more")]
     layout = PlanarLayout(d)
+    rules: list[Any] = [*design_rules().values()]
     if not all(fits(layout, name) for name in KINDS):
-        return [f for rule in design_rules().values() for f in rule(layout)][:1]
+        return next(b for rule in rules if (b := rule(layout)))
     d = with_stops(d)
     layout = PlanarLayout(d)
-    if broken := next((b for rule in design_rules().values() if (b := list(rule(layout)))), None):
+    if broken := next((b for rule in rules if (b := rule(layout))), None):
         return broken
     soft, stiff = (of_kind(layout, name) for name in KINDS)
     return Found(c, d, soft, stiff, float(half_width(soft, stiff, t.planar, t.points).max()))
@@ -276,8 +278,9 @@ def grid(t: CellTarget) -> Iterator[tuple[float, Choice]]:
     """Coarse choices with their half-widths: every kind by itself, then all pairs."""
     b, half = t.base, WIDTHS // 2
     gaps = [round(float(b.hall.gap * f), 2) for f in np.linspace(0.8, 1.2, half)]
+    low, high = t.planar.pitch
     for foil in t.planar.foils or ():
-        for pitch in sorted({round(float(p), 2) for p in np.linspace(*t.planar.pitch, half)}):
+        for pitch in sorted({round(float(p), 2) for p in np.linspace(low, high, half)}):
             widths = [round(float(w), 2) for w in np.geomspace(max(2.0 * foil, 0.1), 0.16 * pitch, WIDTHS)]
             islands = [round(float(i), 2) for i in np.linspace(b.reference.island, 0.55 * pitch, half)]
             first = Choice(foil, pitch, widths[0], widths[0], islands[0], gaps[0])
