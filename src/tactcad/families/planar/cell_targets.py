@@ -86,6 +86,7 @@ class Means:
     pitch: tuple[float, ...] = given(_range(1, 50, "mm", "distance of neighbouring cells"))
     length: float = given(Number("mm", 2, 2000, "room along x"))
     width: float = given(Number("mm", 2, 2000, "room along y"))
+    cells: int = given(Whole(2, 1600, "cells, at least; the room is filled"), 2)
     foils: tuple[float, ...] | None = given(
         Numbers(Planar.__dataclass_fields__["thickness"].metadata["spec"], 1, 8, "foils at hand"),
         None,
@@ -161,14 +162,14 @@ class Read:
 
 def designed(t: CellTarget, c: Choice) -> PlanarDesign | None:
     """The base design with this choice, as many cells as the room takes, and roots as its process leaves
-    them; None where there is no room for two cells."""
+    them; None if the room is too small."""
     b, h, m = t.base, t.base.housing, t.planar
     borders = (h.border, h.border if h.side is None else h.side)
     columns, rows = (
         min(40, floor((room - 2.0 * border + b.planar.web) / c.pitch + 1e-9))
         for room, border in zip((m.length, m.width), borders)
     )
-    if min(columns, rows) < 1 or columns * rows < 2:
+    if min(columns, rows) < 1 or columns * rows < m.cells:
         return None
     planar = replace(b.planar, rows=rows, columns=columns, pitch=c.pitch, thickness=c.foil)
     d = replace(
@@ -261,7 +262,7 @@ def evaluated(t: CellTarget, c: Choice) -> Found | list[Finding]:
     """What a choice gives, or the rules that it breaks."""
     d = designed(t, c)
     if d is None:
-        return [wrong("planar.length", "no room for two cells", t.planar.length, "more")]
+        return [wrong("planar.length", f"no room for {t.planar.cells} cells", t.planar.length, "more")]
     layout = PlanarLayout(d)
     rules: list[Any] = [*design_rules().values()]
     if not all(fits(layout, name) for name in KINDS):
