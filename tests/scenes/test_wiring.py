@@ -172,3 +172,10 @@ def test_solder_is_ordered_once_whether_gauges_are_bonded_in_a_fixture_or_not():
         design = variant(changes)
         lines = [s for n in scene_names(design) for s in make_scene(design, n).supplies]
         assert [s.qty for s in lines if s.part_no == "SOLDER"] == [1]
+
+
+def test_leads_are_cut_and_bonded_before_they_are_pulled_at():
+    """As long as the wiring plan's strain relief, whether there is a bonding fixture or not."""
+    for name, changes in (("bonding", {}), ("array", {"bonding": DROP})):
+        said = " ".join(s.text for s in make_scene(variant({**changes, "wiring.bonded": 3.7}), name).steps)
+        assert "wiring list" in said and "over its last 3.7 mm" in said

@@ -4,9 +4,12 @@ the upper left corner, seen on the component side, as in KiCad.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from math import cos, pi, radians, sin
+
+from tactcad.parts.array.board_outline import THICKNESS
 
 from .footprints import Footprint, Pad, footprint
 from .netlist import GROUND, Component, Netlist
@@ -14,7 +17,7 @@ from .read_board import EXCITATION
 
 Point = tuple[float, float]
 TOP, BOTTOM = "F.Cu", "B.Cu"
-PLANES = {"In1.Cu": GROUND, "In2.Cu": EXCITATION}  # whole planes: the net of each
+PLANES = {"In1.Cu": GROUND, "In2.Cu": EXCITATION}  # whole planes of a bridges' board: the net of each
 LAYERS = (TOP, *PLANES, BOTTOM)
 CLEARANCE = 0.2  # mm between copper of two nets: KiCad's default; board houses ask for 0.10 to 0.13
 TRACK, WIDE = 0.2, 0.3  # mm; the wide ones carry a bridge's current
@@ -73,7 +76,8 @@ def rounded(p: Point) -> Point:
 
 @dataclass(frozen=True)
 class BoardCopper:
-    """The board of a netlist. `holes` without copper: x, y, diameter."""
+    """The board of a netlist. `holes` without copper: x, y, diameter; `planes`: the net of each inner layer;
+    `label`: the middle of its printed name, if not at the usual place."""
 
     netlist: Netlist
     width: float
@@ -82,6 +86,9 @@ class BoardCopper:
     tracks: tuple[Track, ...] = field(repr=False)
     vias: tuple[Via, ...] = field(repr=False)
     holes: tuple[tuple[float, float, float], ...] = field(repr=False)
+    planes: Mapping[str, str] = field(default_factory=lambda: PLANES)
+    thickness: float = THICKNESS
+    label: Point | None = None
 
     @cached_property
     def pads(self) -> tuple[tuple[Placed, Pad, Point, str], ...]:
@@ -91,7 +98,7 @@ class BoardCopper:
     @cached_property
     def outlines(self) -> dict[str, tuple[Point, ...]]:
         """Of each plane: one closed line around its copper, with slits of no width to its openings."""
-        return {layer: self._outline(net) for layer, net in PLANES.items()}
+        return {layer: self._outline(net) for layer, net in self.planes.items()}
 
     def corners(self, inside: bool = False) -> tuple[Point, ...]:
         """Of the board, or of its planes inside it."""

@@ -179,6 +179,14 @@ FOOTPRINTS = {
             "LFCSP-32", 8, 0.5, (4.9, 5.1), (0.3, 0.5), (0.18, 0.30), 3.6, 0.8,
             "Package_CSP:LFCSP-32-1EP_5x5mm_P0.5mm_EP3.6x3.6mm", "JEDEC MO-220 VHHD",
         ),
+        no_leads(
+            "QFN-16", 4, 0.5, (2.9, 3.1), (0.3, 0.5), (0.18, 0.30), 1.45, 0.9,
+            "Package_DFN_QFN:QFN-16-1EP_3x3mm_P0.5mm_EP1.45x1.45mm", "JEDEC MO-220 VEED",
+        ),
+        chip(
+            "0603", (1.45, 1.75), (0.2, 0.5), (0.65, 0.95), 0.95,
+            "Capacitor_SMD:C_0603_1608Metric", "EIA 0603",
+        ),
         chip(
             "0805", (1.8, 2.2), (0.3, 0.7), (1.1, 1.4), 1.3,
             "Resistor_SMD:R_0805_2012Metric", "EIA 0805, IEC 60115-8",

@@ -7,8 +7,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 from uuid import NAMESPACE_OID, uuid5
 
-from tactcad.parts.array.board_outline import THICKNESS
-
 from .copper import (
     BOTTOM,
     CLEARANCE,
@@ -38,7 +36,7 @@ def board_bytes(board: BoardCopper, name: str, title: str, date: str, revision: 
     """The file (UTF-8); `name` is printed on the board; equal boards give equal bytes."""
     head = (
         f"(kicad_pcb (version {VERSION}) (generator tactcad)",
-        f'(general (thickness {THICKNESS})) (paper "A4" portrait)',
+        f'(general (thickness {board.thickness:g})) (paper "A4" portrait)',
         f"(title_block (title {_quoted(title)}) (date {_quoted(date)}) (rev {_quoted(revision)}))",
         f"(layers {' '.join(_layers())})",
         '(setup (pad_to_mask_clearance 0.05)) (net 0 "")',
@@ -153,7 +151,7 @@ class _Writer:
 
     def zones(self) -> Iterator[str]:
         inside = " ".join(_xy("xy", p) for p in self.board.corners(inside=True))
-        for layer, net in PLANES.items():
+        for layer, net in self.board.planes.items():
             yield f'(zone (net {self.codes[net]}) (net_name "/{net}") (layer "{layer}") {self.own(layer)}'
             yield f"(hatch edge 0.508) (connect_pads (clearance {CLEARANCE})) (min_thickness 0.1)"
             yield f"(filled_areas_thickness no) (fill yes (thermal_gap {GAP}) (thermal_bridge_width {SPOKE}))"

@@ -27,6 +27,7 @@ Kind = Literal[
     "regulator",
     "supply",
     "diode",
+    "sensor",
 ]
 GROUND = "GND"
 

@@ -15,7 +15,7 @@ HIGH = 0.8  # mm; board houses print letters from 0.8 on
 AROUND = 0.07  # mm from pads and drills: the mask's opening is 0.05 larger
 CHANNEL_PINS = {"RED": "R", "PLUS": "W", "FOOT": "B"}
 SHORT = {"ENABLE": "EN"}
-MARKED = ("amplifier", "multiplexer", "converter", "decoder", "regulator", "supply", "diode")
+MARKED = ("amplifier", "multiplexer", "converter", "decoder", "regulator", "supply", "diode", "sensor")
 Box = tuple[float, float, float, float]
 
 
@@ -29,7 +29,10 @@ def printed(board: BoardCopper, name: str) -> Iterator[tuple[Point, Point]]:
             a, b = _mark(placed)
             taken.append((min(a[0], b[0]), min(a[1], b[1]), max(a[0], b[0]), max(a[1], b[1])))
             yield a, b
-    for text, at, upright in (*_pins(board), (name, (board.width / 4, board.height - 8.0), False)):
+    for text, at, upright in (
+        *_pins(board),
+        (name, board.label or (board.width / 4, board.height - 8.0), False),
+    ):
         taken.append(_box(text, at, upright))
         yield from _lines(text, at, upright)
     for placed in board.placed:
@@ -92,7 +95,8 @@ def _beside(placed: Placed, text: str) -> Iterator[tuple[Point, bool]]:
 def _pins(board: BoardCopper) -> Iterator[tuple[str, Point, bool]]:
     places = {p.component.designator: p for p in board.placed}
     for name, side in (("J1", 1), ("J2", -1)):
-        placed = places[name]
+        if (placed := places.get(name)) is None:
+            continue
         for pad, pin in zip(placed.footprint.pads, placed.component.pins, strict=True):
             x, y = placed.pad_at(pad)
             said = pin.role.partition(" ")[2].removesuffix("_IN")

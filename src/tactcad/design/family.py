@@ -79,21 +79,29 @@ class FamilyReadout:
     """What reads the elements.
 
     netlist  (layout) to the circuit
-    boards   (layout) to every different board, laid out
     tracks   (layout, circuit) to the circuit with the resistance of its boards' tracks
-    supplies (layout) to the lines of the bill of what the read-out takes
     wiring   (layout, circuit) to the bytes of the table of leads to cut
     sheets   orders of the circuit's drawing to what is written
     signals  (design) to V/N of every element
     """
 
     netlist: Late
-    boards: Late
     tracks: Late
-    supplies: Late
     wiring: Late
     sheets: Late
     signals: Late
+
+
+@dataclass(frozen=True)
+class FamilyBoards:
+    """The boards that carry what reads the elements.
+
+    made      (layout) to every different board, laid out; none: the family says why in a finding
+    supplies  (layout) to the lines of the bill with what is fitted on them
+    """
+
+    made: Late
+    supplies: Late
 
 
 @dataclass(frozen=True)
@@ -155,6 +163,7 @@ class Family:
     stack      its tolerance stack
     pads       their contact with an object; None: unknown
     readout    its electronics; None: it has none
+    boards     its circuit boards; None: no files of boards are made
     readings   functions for `calibrate` and `stiffness`; None: they refuse the design
     variables  the search of `tactcad design`, (target, arrays, seconds, tell); None: none,
                and sweeps measure no rung
@@ -181,6 +190,7 @@ class Family:
     checks: str
     robot: FamilyRobot | None = None
     targets: Late | None = None
+    boards: FamilyBoards | None = None
 
     def __post_init__(self) -> None:
         if not (isinstance(self.spec, type) and issubclass(self.spec, CommonTables)):

@@ -12,7 +12,6 @@ from tactcad.circuit.copper import BoardCopper
 from tactcad.circuit.footprints import Footprint
 from tactcad.contour import circle, rectangle
 from tactcad.design.messages import CheckFailure
-from tactcad.parts.array.board_outline import THICKNESS
 from tactcad.parts.language.description import Extrusion, Material, Part
 from tactcad.scenes.scene import UPRIGHT, Placement, Scene, rotation
 
@@ -30,6 +29,7 @@ TURNED = {
 LAST = 1e-3  # mm, KiCad's last digit as written
 NUMBER = r"([-\d.]+)"
 EDGE = re.compile(rf'\(gr_line \(start {NUMBER} {NUMBER}\) \(end {NUMBER} {NUMBER}\) \(layer "Edge.Cuts"\)')
+THICK = re.compile(rf"\(general \(thickness {NUMBER}\)\)")
 HOLE = re.compile(rf'\(footprint "tactcad:hole" .*?\(at {NUMBER} {NUMBER}\)\n.*\n\(pad .*?\(drill {NUMBER}\)')
 
 
@@ -41,7 +41,7 @@ def board_scene(board: BoardCopper, name: str) -> Scene:
         Placement(
             p.component.designator,
             blocks[p.footprint],
-            (p.at[0], board.height - p.at[1], THICKNESS),
+            (p.at[0], board.height - p.at[1], board.thickness),
             TURNED[p.turn],
         )
         for p in board.placed
@@ -52,7 +52,7 @@ def board_scene(board: BoardCopper, name: str) -> Scene:
 
 def _bare(board: BoardCopper, part_no: str) -> Part:
     holes = tuple(circle((x, board.height - y), d) for x, y, d in board.holes)
-    body = Extrusion(rectangle(0.0, 0.0, board.width, board.height), THICKNESS, holes)
+    body = Extrusion(rectangle(0.0, 0.0, board.width, board.height), board.thickness, holes)
     return Part(part_no, "bare board", "reference", FR4, body, colour="#1f6b3a")
 
 
@@ -81,9 +81,10 @@ def check_bare_board(
 ) -> None:
     """Raises CheckFailure if a solid's box or its holes (x, y, diameter) are not those of KiCad's file."""
     text = kicad.decode()
+    (thick,) = (float(found) for found in THICK.findall(text))
     ends = [tuple(map(float, found)) for found in EDGE.findall(text)]
     xs, ys = ({v for e in ends for v in (e[k], e[k + 2])} for k in (0, 1))
-    low, high = (min(xs), min(ys), 0.0), (max(xs), max(ys), THICKNESS)
+    low, high = (min(xs), min(ys), 0.0), (max(xs), max(ys), thick)
     if max(abs(a - b) for got, meant in zip(box, (low, high)) for a, b in zip(got, meant)) > LAST:
         raise CheckFailure(f"{name}: the STEP file reads back in a box of {box}, not {low} to {high}")
     holes = [(float(x), max(ys) - float(y), float(d)) for x, y, d in HOLE.findall(text)]

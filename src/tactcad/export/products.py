@@ -223,15 +223,15 @@ def circuit_files(plan: Plan) -> Iterator[Batch]:
         yield _one(Output(path, "netlist", "", made_of), written)
 
 
-@product(_read)
+@product(lambda plan: ARRAY in plan.options.scenes and family_of(plan.design).boards is not None)
 def board_files(plan: Plan) -> Iterator[Batch]:
     """The boards that read the array: fitted, and bare for the board maker."""
     from . import board_files as files
 
     design, family = plan.design, family_of(plan.design)
     layout = family.layout(design)
-    readout = family.must("readout", "export")
-    made, supplies = readout.boards(layout), readout.supplies(layout)
+    boards = family.must("boards", "export")
+    made, supplies = boards.made(layout), boards.supplies(layout)
     key = digest(("boards", plan.shapes.made_by, made, supplies, design.design))
 
     def batch(stem: str, ends: Sequence[str], make: Callable[[], Sequence[bytes]]) -> Batch:
@@ -244,7 +244,8 @@ def board_files(plan: Plan) -> Iterator[Batch]:
         head = plan.header(board.netlist.name, f"{design.design.title}: {board.netlist.name}")
         make = partial(files.files_of, board, design, supplies, plan.shapes, head)
         yield batch(f"{board.netlist.name}_{plan.revision}", files.ENDS, make)
-    yield batch("", files.BARE, partial(files.bare_files, made[0], design))
+    if made:
+        yield batch("", files.BARE, partial(files.bare_files, made[0], design))
 
 
 @product(lambda plan: plan.options.guides)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from tactcad.design.family import (
     Family,
+    FamilyBoards,
     FamilyEstimate,
     FamilyPads,
     FamilyReadings,
@@ -46,9 +47,7 @@ FAMILY = Family(
     ),
     readout=FamilyReadout(
         netlist=Late("tactcad.circuit.bridges:netlist"),
-        boards=Late("tactcad.circuit.boards:laid_out"),
         tracks=Late("tactcad.circuit.tracks:with_tracks"),
-        supplies=Late("tactcad.parts.array.supplies:electronic_supplies"),
         wiring=Late("tactcad.circuit.netlist_files:wiring"),
         sheets=Late("tactcad.drawing.circuit_sheets.sheets:circuit_written"),
         signals=Late("tactcad.review.effect:signals"),
@@ -61,5 +60,9 @@ FAMILY = Family(
     checks="tactcad.checks.facing_rows",
     robot=FamilyRobot(
         mechanism=Late("tactcad.robot.cantilevers:cantilevers"), jobs=Late("tactcad.robot.robot_files:jobs")
+    ),
+    boards=FamilyBoards(
+        made=Late("tactcad.circuit.boards:laid_out"),
+        supplies=Late("tactcad.parts.array.supplies:electronic_supplies"),
     ),
 )

@@ -155,7 +155,7 @@ BROKEN = {
     "beams_in_range": ("beam_width = 0.9", "beam_width = 1.3"),
     "island_takes_post": ("spigot = 0.8", "spigot = 1.5"),
     "island_lands_on_base": ("border = 5.0", "border = 5.0\nwell = 1.3"),
-    "chips_fit": ("gap = 1.8", "gap = 1.8\nbuses = 2"),
+    "chips_fit": ("buses = 3", "buses = 2"),
     "screws_fit": ("cover_thickness = 3.0", "cover_thickness = 1.0"),
     "stop_protects": ("stop_gap = 0.2", "stop_gap = 0.6"),
     "field_in_scale": ("gap = 1.8", "gap = 1.0"),

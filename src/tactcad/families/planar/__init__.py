@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from tactcad.design.family import (
     Family,
+    FamilyBoards,
     FamilyEstimate,
     FamilyPads,
     FamilyReadings,
@@ -58,4 +59,5 @@ FAMILY = Family(
     robot=FamilyRobot(
         mechanism=Late(f"{HERE}.cell_joints:cells"), jobs=Late("tactcad.robot.robot_files:jobs")
     ),
+    boards=FamilyBoards(made=Late(f"{HERE}.cell_board:made"), supplies=Late(f"{HERE}.cell_board:ordered")),
 )

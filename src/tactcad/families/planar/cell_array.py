@@ -17,7 +17,7 @@ from tactcad.scenes.requirement import LEAST_PRESS, Deviations, DimensionLimits,
 from tactcad.scenes.rig import ARRAY, Rig, none
 from tactcad.scenes.scene import Scene
 
-from . import parts
+from . import cell_board, parts
 from .cell_layout import PlanarLayout
 from .cell_tables import PlanarDesign
 
@@ -35,11 +35,12 @@ def scene(design: PlanarDesign, _pose: object = None) -> Scene:
     """Base down; posts and magnets are bonded to the foil before the foil goes in."""
     b, layout = Builder(), PlanarLayout(design)
     t = design.planar.thickness
-    board = b.place("PCB", parts.board(layout), (0, 0, layout.board_z - design.hall.board))
+    board = b.place("PCB", cell_board.board(layout), (0, 0, layout.board_z - design.hall.board))
     b.step("Board", (0, 0, -45), "Lay the board down, its pads for the chips up.")
-    chip = parts.chip(layout)
-    for e in layout.elements:
-        b.meet(b.place("U", chip, (e.x, e.y, layout.board_z)), board)
+    orders = [cell_board.order_of(layout, e.number) for e in layout.elements]
+    chips = {order: cell_board.chip(layout, order) for order in orders}
+    for e, order in zip(layout.elements, orders, strict=True):
+        b.meet(b.place("U", chips[order], (e.x, e.y, layout.board_z)), board)
     b.step("Chips", (0, 0, -35), "Solder the chips: the board comes with them from who makes it.")
     frame = b.place("FR", parts.frame(layout), (0, 0, layout.board_z))
     b.meet(frame, board)
@@ -107,6 +108,7 @@ def scene(design: PlanarDesign, _pose: object = None) -> Scene:
         )
     else:
         b.supplies.append(ADHESIVE)
+    b.supplies += cell_board.supplies(layout)
     return b.scene(ARRAY, cover=(cover,))
 
 

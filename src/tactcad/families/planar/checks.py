@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from tactcad.checks.check import Check
 from tactcad.parts.language.finding import Finding
 
+from .cell_board import why_none
 from .cell_layout import PlanarLayout
 from .cell_tables import PlanarDesign
 from .sensor import kind_figures, rated_force, rows
@@ -39,4 +40,13 @@ def check_strength(design: PlanarDesign) -> Iterator[Finding]:
             yield Finding("planar-linear", "flag", first, (), row.linear_force, rated, message)
 
 
-CHECKS = (Check("planar strength", "design", lambda design, _: check_strength(design), place=10, quick=True),)
+def check_board(design: PlanarDesign) -> Iterator[Finding]:
+    """A flag where no board is laid out, with the reason."""
+    if why := why_none(PlanarLayout(design)):
+        yield Finding("planar-board", "flag", design.name, (), 0, 1, f"no circuit board is laid out: {why}")
+
+
+CHECKS = (
+    Check("planar board", "design", lambda design, _: check_board(design), place=11, quick=True),
+    Check("planar strength", "design", lambda design, _: check_strength(design), place=10, quick=True),
+)

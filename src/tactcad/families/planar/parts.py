@@ -56,9 +56,8 @@ FOOT_INSET = (
 WEB = 0.8  # mm of base left over the chips' pocket, at least: checks/data/shop.toml's floor of a pocket
 FRAME_CORNER = 0.5  # mm; chosen: a cutter of 1 mm, and room for the outer chips
 CHIP_ROOM = 0.2  # mm above and around a chip; chosen: soldered boards' usual tolerance
-SPRING_STEEL, GLASS_EPOXY = Material("1.4310", 7900, "+C1300", "EN 10151"), Material("FR4", 1850)
+SPRING_STEEL = Material("1.4310", 7900, "+C1300", "EN 10151")
 NEODYMIUM = Material("NdFeB, nickel plated", 7500)
-PACKAGE = Material("moulded package", 1800)
 STAINLESS_BAR = Material("X8CrNiS18-9 (1.4305)", 7900, standard="EN 10088-3", magnetic="no")
 
 
@@ -422,43 +421,6 @@ def cover(layout: PlanarLayout) -> Part:
         [*_through(layout, t, bore, tapped=True), *_round_holes(layout, "post_opening", opening, t)],
         {"dowel_hole": PLATE_ZONE, "screw": PLACE, "post_opening": PLACE},
         bores=(bore,),
-    )
-
-
-def board(layout: PlanarLayout) -> Part:
-    """The chips' board, z = 0 its lower face."""
-    d = layout.design
-    t = d.hall.board
-    m = METRIC[SCREW]
-    holes = tuple(
-        Hole("screw", (x, y, 0.0), (0, 0, 1), m.clearance, t, True) for x, y in screw_places(layout)
-    )
-    return Part(
-        part_no=f"{d.name}-board",
-        name="Board",
-        process="bought",
-        material=GLASS_EPOXY,
-        body=Extrusion(_outline(layout), t),
-        features=holes,
-        colour="#3f6b4b",
-        purchase=Purchase(f"board of {d.name}, {len(layout.elements)} x {layout.chip.name}"),
-    )
-
-
-def chip(layout: PlanarLayout) -> Part:
-    """A chip's body, z = 0 on the board."""
-    c = layout.chip
-    return Part(
-        part_no=f"{c.name}-chip",
-        name=f"Hall chip {c.name}",
-        process="bought",
-        material=PACKAGE,
-        body=Extrusion(rectangle(-c.length / 2, -c.width / 2, c.length / 2, c.width / 2), c.height),
-        colour="#2b2d31",
-        purchase=Purchase(
-            f"three-axis Hall chip {c.name}", manufacturer=c.maker, mpn=c.name, source_verified=False
-        ),
-        spares=max(1, len(layout.elements) // 10),
     )
 
 

@@ -282,17 +282,26 @@ def _gauges(layout: Layout) -> str:
     bonded = d.bonding is not None and misfit(layout, BONDING_FITS) is None
     how = (
         f"Bond a gauge on {face} in the bonding fixture, by the guide of scene bonding, and check it as that "
-        "says; lay its leads in the wire recess towards the rear end."
+        "says; its leads lie in the wire recess, bonded at the rear end."
         if bonded
         else f"Bond a gauge on {face}, its grid centred on the hinge within 0.1 mm, carrier trimmed to "
-        f"{d.gauge.carrier_arm_side + d.gauge.carrier_body_side:g} mm; cure, coat, solder three leads, "
-        "and lay them in the wire recess towards the rear end."
+        f"{d.gauge.carrier_arm_side + d.gauge.carrier_body_side:g} mm; cure, coat, solder its leads. "
+        f"{laying_leads(layout)}"
     )
     return (
         f"Hold and lift an element by its rear body only, never by its arm: the hinge is {thinnest:g} mm "
         "thick. Keep each apart from the others, rear body held, arm free. Measure and record the hinge "
         "thickness of every element, and mark its rear body with its number: equal elements differ in what "
         f"was measured. {how}"
+    )
+
+
+def laying_leads(layout: Layout) -> str:
+    """How an element's leads are cut, and laid in its wire recess with their strain relief."""
+    return (
+        "Cut the leads as long as the wiring list in circuit/ says and number both ends. Lay them in the "
+        "recess to the rear end and bond them there with the gauges' adhesive, over its last "
+        f"{layout.design.wiring.bonded:g} mm: no pull reaches the terminals."
     )
 
 

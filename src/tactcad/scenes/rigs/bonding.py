@@ -23,6 +23,7 @@ from ..builder import Builder
 from ..rig import Rig, none
 from ..rig_requirements import bonding_requirements
 from ..scene import AGAINST_Y, REST, UPRIGHT, Placement, Pose, Rotation, Scene
+from .array import laying_leads
 
 FACE_UP: Rotation = ((1, 0, 0), (0, 0, 1), (0, -1, 0))  # local y runs along -z, the thickness along +y
 BETWEEN = 20.0  # mm between the fixtures of several kinds of hinge; chosen: a hand's room
@@ -215,7 +216,7 @@ def solder(rig: BondingLayout) -> str:
     return (
         "Tin tabs and terminals, then join each tab to its terminal with one insulated strand, bare at "
         "its ends, in a loose arc, so "
-        f"that no lead pulls on the gauge. Solder {to_terminals}Lay them in the recess to the rear end. "
+        f"that no lead pulls on the gauge. Solder {to_terminals}{laying_leads(rig.array)} "
         "Each joint within 2 s; clean off all flux."
     )
 
