@@ -5,7 +5,7 @@
     python benchmarks/bench.py --out bench --only rungs --only meshes
     python benchmarks/bench.py --out bench --smoke        does everything run? its figures mean nothing
 
-What is compared is measured in turns, in one run. CalculiX and FreeCAD are measured too if they are
+Alternatives are measured alternately, in one run. CalculiX and FreeCAD are measured too if they are
 installed, and reported as missing if not. Written are report.json, report.md, tables/*.csv and plots/*.svg,
 all from the JSON.
 """
@@ -88,7 +88,7 @@ def _kernel() -> bool:
     return all(importlib.util.find_spec(name) for name in ("OCP", "build123d", "manifold3d"))
 
 
-# --- what is shown of it ---
+# --- the results shown ---
 
 
 def to_json(result: dict) -> str:

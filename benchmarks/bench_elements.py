@@ -110,7 +110,7 @@ def plane_of(columns: Columns) -> np.ndarray:
 
 
 def solid_of(columns: Columns) -> np.ndarray:
-    """K of unit modulus; NaN where no solid was solved."""
+    """K of unit modulus; NaN if no solid was solved."""
     return plane_of(columns) * columns["width_factor"]
 
 
@@ -167,7 +167,7 @@ def rungs(plan: RunPlan) -> dict:
 
 def errors(K: np.ndarray, exact: np.ndarray, label: str, own: np.ndarray | float = 0.0) -> dict:
     """Mean and worst size of the relative error, over the designs that have a result; none smaller than the
-    `own` estimated error of what it is measured against."""
+    `own` estimated error of the reference."""
     error = np.maximum(np.abs(K / exact - 1.0), own)
     error = error[np.isfinite(error)]
     mean, worst = (float(error.mean()), float(error.max())) if len(error) else (None, None)

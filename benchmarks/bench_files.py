@@ -1,7 +1,7 @@
 """Benchmarks of files: detail levels, prototypes, growth with the array, one element, exports, sheets.
 
-Tasks whose memory and imports are to be measured apart run in a process of their own:
-`python benchmarks/bench_files.py TASK ARGUMENTS.json` prints its result as JSON on its last line.
+Tasks with separately measured memory and imports run in their own process: `python benchmarks/bench_files.py
+TASK ARGUMENTS.json` prints its result as JSON on its last line.
 """
 
 from __future__ import annotations
@@ -299,7 +299,7 @@ def prototypes(plan: RunPlan) -> dict:
 
 # --- growth with the number of elements ---
 
-# Why a stage may grow faster than its array; what is not named here is reported as unexplained.
+# Reasons why a stage may grow faster than its array; others are reported as unexplained.
 _PICTURES = (
     "hidden lines: up to 300 shapes exactly, every edge against every face near it; beyond, strip by strip "
     "on triangles, but plates as long as the picture reach into every strip with all their holes"

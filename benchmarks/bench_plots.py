@@ -264,7 +264,7 @@ def _drawn(figure: MplFigure, shown: dict[Axes, Panel], name: str, caption: str)
 
 
 def error_against_time(ax: Axes, panel: Panel) -> None:
-    """Markers at the worst error, a line down to the mean; the efficient front joined, what it dominates
+    """Markers at the worst error, a line down to the mean; the efficient front joined, dominated points
     hollow."""
     points = panel.points
     front = efficient([(p.seconds, p.worst) for p in points])
@@ -337,7 +337,7 @@ def _scale(ax: Axes, axis: str, names: dict[float, str]) -> None:
 def place_labels(
     figure: MplFigure, ax: Axes, labels: list[tuple[str, float, float]], size: float = 10.0
 ) -> None:
-    """Write labels beside their points, each on the side where it covers least.
+    """Write labels next to their points, each on the side where it covers least.
 
     To be called when the axes have their limits, since it depends on where the points are on the page.
 
@@ -376,7 +376,7 @@ def place_labels(
         note(ax, text, (place[0], place[1]), (dx, dy), ha=ha, va=va, fontsize=size, zorder=4)
 
 
-# dx, dy in points and which corner of the text stands there, in the order of preference
+# dx, dy in points and the text's corner there, in the order of preference
 _PLACES = (
     (9, 0, "left", "center"),
     (-9, 0, "right", "center"),

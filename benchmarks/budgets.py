@@ -3,9 +3,9 @@
     python benchmarks/budgets.py benchmarks/results/budgets.md --designs 200 --commands 12    an hour
 
 Each of the first gets a P or a time by chance and is answered by `tactcad estimate --batch` in a process
-of its own; its K is held against solid elements on a mesh finer than any that was chosen, its processor time
-against the time stated. Each of the second, whole designs of tests/sound_designs.py, is checked and exported.
-What is done is kept in .cache/budgets.jsonl: run again it goes on.
+of its own; its K is compared with solid elements on a mesh finer than any chosen, and its processor time with
+the stated time. Each of the second, whole designs of tests/sound_designs.py, is checked and exported. Results
+are kept in .cache/budgets.jsonl: another run continues.
 """
 
 from __future__ import annotations

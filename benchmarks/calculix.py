@@ -32,7 +32,7 @@ _BRICK = (
 
 
 def executable() -> str | None:
-    """Path of ccx, None where it is not installed."""
+    """Path of ccx, None if it is not installed."""
     return shutil.which("ccx")
 
 
@@ -144,7 +144,7 @@ def _on(values: Array, at: float) -> NDArray[np.int64]:
 
 
 def _supports(points: Array, mesh: PlaneMesh, dim: int) -> list[tuple[int, int]]:
-    """Held unknowns (node, direction), as in `plane_elements.fixed_unknowns`."""
+    """Fixed unknowns (node, direction), as in `plane_elements.fixed_unknowns`."""
     held = [(n, i) for n in _on(points[:, 0], mesh.clamp_x) for i in range(dim)]
     if mesh.half:
         held += [(n, i) for n in _on(points[:, 1], mesh.middle) for i in range(dim) if i != 1]

@@ -1,4 +1,4 @@
-"""Eight designs in the corners of the accepted range by CalculiX's C3D20R beside the program's own rungs.
+"""Eight designs in the corners of the accepted range by CalculiX's C3D20R and by the program's own rungs.
 
     python benchmarks/calculix_corners.py benchmarks/results/calculix_corners.md    15 minutes; needs ccx
 
@@ -49,8 +49,8 @@ CORNERS = tuple(
 
 @dataclass(frozen=True)
 class Compared:
-    """One quantity at a corner: CalculiX's, its relative error by refinement, and by how much the program's
-    rungs differ from it, each with what is stated of it."""
+    """One quantity at a corner: CalculiX's, its relative error by refinement, and the deviations of the
+    program's rungs, each with its stated error."""
 
     quantity: str
     calculix: float

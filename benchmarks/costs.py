@@ -3,9 +3,9 @@
     python benchmarks/costs.py                    all of it, some 20 minutes of one core
     python benchmarks/costs.py elements meshes    these parts alone, the others kept
 
-Processor seconds of one core, with this machine's calibration beside them (costs/grades.py), so that
-other load moves them little. Costs are fitted on counts (a mesh's elements, parts, candidates) by least
-squares of the relative error, none negative.
+Processor seconds of one core, with this machine's calibration (costs/grades.py), so that other load changes
+them little. Costs are fitted on counts (a mesh's elements, parts, candidates) by least squares of the
+relative error, none negative.
 """
 
 from __future__ import annotations
@@ -195,7 +195,7 @@ def _extra(source: str, chosen: list[str], option: str, folder: str, without: fl
 
 
 def builds() -> dict[str, Any]:
-    """`build`: what is done once, and an array of each distribution."""
+    """`build`: the fixed work, and an array of each distribution."""
     from tactcad.stacks.virtual_build import sensor
 
     sizes, once, each = [], [], []

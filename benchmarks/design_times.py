@@ -6,8 +6,8 @@ docs/benchmarks.md and docs/stack.md.
     python benchmarks/design_times.py docs/stack.md         a few minutes
 
 Processor time of one process, each case in turn: arrays of ten and forty elements against the number of free
-numbers; arrays made against the width of the yield's interval; arrays built against their elements, an
-element's time level where time goes with the elements.
+numbers; arrays made against the width of the yield's interval; arrays built against their elements, a
+constant time an element means time in proportion to the elements.
 """
 
 from __future__ import annotations
@@ -102,7 +102,7 @@ def virtual_builds() -> str:
     rows, first = [], 0.0
     for elements in SIZES:
         made, count = sensor(array_of(elements), ()), ELEMENTS // elements
-        made.built(2)  # loads what is loaded once
+        made.built(2)  # load all modules once
         seconds = processor_seconds(lambda: made.built(count))
         each = seconds / (3 * count * elements)
         first = first or each
@@ -149,7 +149,7 @@ def processors() -> float:
 
 
 def answers() -> str:
-    """The twenty targets by `design`, beside what the version before answered first took of them."""
+    """The twenty targets by `design`, with the times of the earlier version."""
     rows = []
     with open(BEFORE, encoding="utf-8") as file:
         for before in csv.DictReader(file):

@@ -34,8 +34,8 @@ class Health:
     """Quality of one plane mesh and of its system of equations. Angles in degrees, at the corners of the
     elements.
 
-    condition: of the stiffness matrix without the held unknowns, in the 1-norm (by Hager's estimate, which is
-    deterministic). rounding: relative change of the compliance by one step of iterative refinement, an
+    condition: of the stiffness matrix without the fixed unknowns, in the 1-norm (by Hager's estimate, which
+    is deterministic). rounding: relative change of the compliance by one step of iterative refinement, an
     estimate of its rounding error.
     """
 

@@ -6,9 +6,8 @@
 
 The errors are those of stiffness, and of strain and stress at mid-width, against fem-solid. A climb starts
 at the
-worst design known, of the samples and of earlier climbs, changes it by chance and keeps what errs more.
-The file
-grows by the designs that did; strain_fit.py and ladder_fit.py make the stated errors of it.
+worst design known, of the samples and of earlier climbs, changes it at random and keeps larger errors. The
+file grows by those designs; strain_fit.py and ladder_fit.py derive the stated errors from it.
 """
 
 from __future__ import annotations
@@ -53,7 +52,7 @@ def solved(s: HingeSection) -> Row:
 
 
 def errors(rows: Columns) -> dict[str, np.ndarray]:
-    """Largest |relative error| of the shipped closed forms for every design, by what errs; NaN where
+    """Largest |relative error| of the shipped closed forms for every design, by what errs; NaN if
     unknown.
     """
     s = section(rows)
@@ -107,7 +106,7 @@ def start() -> Columns:
 
 
 def varied(parent: Row, way: dict[str, float], rng: np.random.Generator, target: Target) -> Row | None:
-    """Another design of the target's zone, as far from `parent` as the zone lets it; None where it stays."""
+    """Another design of the target's zone, as far from `parent` as the zone lets it; None if it stays."""
     sigma = math.exp(rng.uniform(*np.log(STEP)))
     chosen = rng.random(len(SIZES)) < rng.choice([0.2, 0.5, 1.0])
     step = np.where(chosen, rng.normal(0.0, sigma, len(SIZES)), 0.0)
@@ -126,9 +125,8 @@ def varied(parent: Row, way: dict[str, float], rng: np.random.Generator, target:
 
 
 def climb(known: Columns, seed: int, goals: list[Target]) -> Iterator[tuple[Target, float, Row | None]]:
-    """Tries without end, of one goal after the other: the goal, the try's error, and the solved design
-    where it
-    errs more than any known before."""
+    """Tries without end, of one goal after the other: the goal, the try's error, and the solved design if its
+    error exceeds all known ones."""
     rng = np.random.default_rng(seed)
     best: dict[Target, tuple[float, Row]] = {}
     ways: dict[Target, dict[str, float]] = {}

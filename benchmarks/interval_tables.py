@@ -2,8 +2,8 @@
 
     python benchmarks/interval_tables.py benchmarks/results/intervals.md
 
-Every row is hundreds of simulated labs with known truth, from a seed: the same bytes each time. A reason
-stands beside a figure where it is not what one expects of 95 %; which one is chosen by the figure.
+Every row is hundreds of simulated labs with known truth, from a seed: the same bytes each time. A figure that
+differs from the expected 95 % has a reason, chosen by the figure.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from tactcad.lab.simulate import Noise, Truth
 from tactcad.paper.examples import truth
 
 SEED = 20261122
-LABS = 500  # of every row; twice as many where what is counted happens once in a hundred
+LABS = 500  # of every row; twice as many for events of one in a hundred
 THREE = (4, 3, 8)  # Table 1's softest element, a middle one and its stiffest
 EXPECTED = (0.93, 0.97)
 WIDE = 1.5  # median width over that of who knows the variances; more wants its reason
@@ -116,7 +116,7 @@ def share(held: int, of: int) -> str:
 
 
 def reason(cover: float, ratio: float, lab: Lab, why: str) -> str:
-    """What must be said of a row, by its figures."""
+    """The remark on a row, by its figures."""
     said = [why] if why and (cover > EXPECTED[1] or ratio > WIDE) else []
     if ratio > WIDE and 1 < lab.runs < 5:
         said.append(f"t with {lab.runs - 1} degrees of freedom")

@@ -1,5 +1,5 @@
-"""Labs with known truth, which calibrate an array and press it on an object of known stiffness: what they
-read, what is made of it, and how wide the interval of somebody would be who knows every variance.
+"""Labs with known truth, which calibrate an array and press it on an object of known stiffness: their
+readings, the results, and the interval's width if every variance were known.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ GAPS = (np.arange(40) + 0.5) / 40  # of the largest gap, evenly
 
 @dataclass(frozen=True)
 class Lab:
-    """What a lab's calibration is like, and what it says of itself (cell, run_scatter)."""
+    """A lab's calibration, and its own statements (cell, run_scatter)."""
 
     runs: int = 3
     noise: Noise = Noise()
@@ -213,8 +213,7 @@ def coupled_deflection(
 @dataclass(frozen=True)
 class Touched:
     """By lab: whether the intervals of all elements together and of every pair held the truth, their widths
-    over those of somebody who knows every variance and the coupling, [lab, interval]; whether "disagree" was
-    said.
+    over those with known variances and coupling, [lab, interval]; whether "disagree" was reported.
     """
 
     held: np.ndarray

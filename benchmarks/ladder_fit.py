@@ -47,7 +47,7 @@ HALF_FILLET = 1.0  # grids on two-sided hinges are fitted up to straight part + 
 MID_WIDTH = {"grid": "mid_grid_ratio", "fillet": "mid_peak_ratio"}
 PEAKS = {"fillet": (strain.fillet_factor, "slot_peak"), "face": (strain.face_factor, "flat_peak")}
 
-# Where the search starts: the order of magnitude that beam theory and the first look at the data gave.
+# Start of the search: orders of magnitude by beam theory and a first look at the data.
 START = {
     "root": {
         "two": dict(p0=0.19, p1=0.015, p2=3.0, p3=0.65, p4=0.0, p5=-0.3, p6=-0.01, p7=0.0, p8=3.0)
@@ -353,7 +353,7 @@ def accuracy_table(samples: dict[str, Columns], ladder_data: dict) -> dict:
 
 
 def candidate_errors(columns: Columns, ladder_data: dict) -> Errors:
-    """|K/K_solid - 1| of every candidate for every design, NaN where it was not measured.
+    """|K/K_solid - 1| of every candidate for every design, NaN if it was not measured.
 
     K_solid is that of fem-solid on the finest meshes on which the design was solved. A closed form that
     models the width is made of the plane rung's parts; where only the plane was solved, the error of these

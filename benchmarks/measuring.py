@@ -43,8 +43,8 @@ Mode = Literal["smoke", "short", "full"]
 
 @dataclass(frozen=True)
 class RunPlan:
-    """Plan of a run: mode; seed of everything random; a scratch folder; `say` receives what is being
-    measured.
+    """Plan of a run: mode; seed of everything random; a scratch folder; `say` receives the name of each
+    measurement.
 
     smoke: does everything run? Its figures mean nothing. short: four minutes on two quiet cores. full: for
     publication, some 40 minutes.
@@ -83,7 +83,7 @@ def benchmark(name: str, title: str, question: str, kernel: bool = True) -> Call
     return register
 
 
-# --- times of things that are compared, in turns, so that other load on the machine affects all alike ---
+# --- times of alternatives, measured alternately, so that other load on the machine affects all equally ---
 
 LEAST_SAMPLE = 0.005  # s: shorter actions run several times a sample, to reduce the error of clock and loop
 

@@ -3,7 +3,7 @@
     python benchmarks/object_ladder.py src/tactcad/contact/data/errors.json docs/accuracy.md
 
 An error is the largest difference of a pad's force over the mean force of the pads that touch. Held-out
-scenes draw arrays by chance; climbs change one scene at a time and keep what pushes the error up.
+scenes draw arrays by chance; climbs change one scene at a time and keep changes that raise the error.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ HARDNESS = (0.0, 0.01, 0.03, 0.1, 0.3, 1.0)  # zones of K/(K + K_obj), of the st
 DEPTHS = (0.05, 0.1, 0.2, 0.3)  # of the lesser of a pad's radius and the thickness
 THICKNESSES = (0.44, 1.0, 3.0, 20.0)  # zones, in radii; rung layer reaches no thinner layer
 STEPS = 25  # of a climb
-MARGIN = 1.25  # of what is stated over the largest that was found
+MARGIN = 1.25  # factor of the stated over the largest error found
 
 
 def array(rng: np.random.Generator) -> Pads:
@@ -105,7 +105,7 @@ def climb_of_springs(low: float, high: float, seed: int = 7) -> float:
 
 def climb_of_strain(low: float, high: float, seed: int = 3, steps: int = STEPS) -> list[float]:
     """The largest departure from linear theory found, by depth, with thicknesses of low to high radii. A law
-    that ends before a depth, where an element folds, says nothing of that depth: the rung refuses it."""
+    that ends before a depth, where an element folds, gives no error for that depth: the rung refuses it."""
     rng = np.random.default_rng(seed)
     best, kept = np.zeros(len(DEPTHS)), (0.49, low)
     for step in range(steps):

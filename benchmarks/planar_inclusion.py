@@ -3,8 +3,8 @@
     python benchmarks/planar_inclusion.py DESIGN FILE.svg    two minutes
 
 The layer by closed forms, what the inclusion changes by solid elements under the cells around it; rigid pads
-without friction on their cells' springs; readings of every chip with its noise; and then what `tactcad
-stiffness --picture` makes of them.
+without friction on their cells' springs; readings of every chip with its noise; and then the result of
+`tactcad stiffness --picture`.
 """
 
 from __future__ import annotations

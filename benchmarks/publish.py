@@ -48,7 +48,7 @@ def duration(seconds: float) -> str:
 
 
 def choice(result: dict) -> str:
-    """What there is to choose, how wrong it is at worst, what it costs, and when to take it."""
+    """The choices, their worst errors, costs, and uses."""
 
     def rows(name: str) -> list[dict]:
         return result["benchmarks"][name]["tables"][name]["rows"]
@@ -75,7 +75,7 @@ def choice(result: dict) -> str:
 
 
 def load(*paths: Path) -> dict:
-    """The JSON of a report, with that of further ones in its place. Raises InputError where one is no report,
+    """The JSON of a report, with that of further ones in its place. Raises InputError if one is no report,
     they do not belong together, or a benchmark is lacking or failed."""
     result, *further = map(_read, paths)
     for more in further:
@@ -97,7 +97,7 @@ def _read(path: Path) -> dict:
 def replaced(result: dict, more: dict) -> dict:
     """The report with what `more` measured in the place of its own, under "further" from which run.
 
-    Raises InputError where they are not from one machine with the same versions.
+    Raises InputError if they are not from one machine with the same versions.
     """
     for key in ("machine", "versions", "peers"):
         ours, theirs = ({k: v for k, v in r[key].items() if k != "load"} for r in (result, more))

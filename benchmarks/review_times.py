@@ -1,5 +1,5 @@
 """Seconds to see a design, as the tables of benchmarks/results/review.md: its page, live in a browser,
-beside OCP CAD Viewer.
+compared with OCP CAD Viewer.
 
     python benchmarks/review_times.py benchmarks/results/review.md [review] [live] [ocp-vscode]
 
@@ -118,7 +118,7 @@ def saved(elements: int) -> tuple[list[float], list[float]]:
     return known, drawn
 
 
-# --- beside OCP CAD Viewer ---
+# --- compared with OCP CAD Viewer ---
 
 RUNS = 5
 PAGE, VIEWER = "page", "viewer"

@@ -99,7 +99,7 @@ THICK = 6.0  # b/t under which the hinge is a bar, no leaf
 
 
 def as_written(rows: list[Row]) -> Columns:
-    """Columns rounded to the digits that `write` keeps, so that what is solved is what the file holds."""
+    """Columns rounded to the digits that `write` keeps, so that the solved design is the one in the file."""
     return {k: np.array([float(f"{row[k]:.8g}") for row in rows]) for k in rows[0]}
 
 
@@ -134,7 +134,7 @@ def write(columns: Columns, path: Path) -> None:
 
 
 def load(path: Path) -> Columns:
-    """The columns that `write` wrote. Raises InputError where the file is something else."""
+    """The columns that `write` wrote. Raises InputError if the file is something else."""
     try:
         rows = list(csv.DictReader(path.read_text("utf-8").splitlines()))
         return {name: np.array([float(row[name] or "nan") for row in rows]) for name in rows[0]}
@@ -153,7 +153,7 @@ def shipped() -> dict[str, Columns]:
 
 
 def solved(columns: Columns, results: Callable[[int, HingeSection], Row], what: str = "") -> Columns:
-    """The designs with `results` of each (its number, its scalars) in further columns, NaN where it has none.
+    """The designs with `results` of each (its number, its scalars) in further columns, NaN if it has none.
 
     Progress goes to standard error under the name `what`.
     """
@@ -335,7 +335,7 @@ def draw_corners(count: int, seed: int) -> Columns:
 
 
 def _corner(rng: np.random.Generator, two_sided: bool) -> Row:
-    """One design; it holds NaN where the first parameters leave no interval for the rest."""
+    """One design; it holds NaN if the first parameters leave no interval for the rest."""
     sampled = ladder_data()["range"]
     g, low_block = sampled["groups"], sampled["least_height"]
 

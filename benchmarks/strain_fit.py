@@ -208,7 +208,7 @@ def errors(rows: Columns, s: HingeSection, data: dict) -> dict[str, list[Array]]
 
 
 def _measured(errors: dict[str, list[Array]], own: Array) -> dict:
-    """Worst error of each quantity in a zone and what is stated for it, None where none was read."""
+    """Worst and stated error of each quantity in a zone, None if none was read."""
     worst: dict[str, float | None] = {}
     for name, arrays in errors.items():
         e = np.abs(np.concatenate([a[own] for a in arrays]))

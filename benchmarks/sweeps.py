@@ -1,4 +1,4 @@
-"""What a sweep costs beside what it computes, as the tables of benchmarks/results/sweeps.md.
+"""A sweep's overhead, as the tables of benchmarks/results/sweeps.md.
 
     python benchmarks/sweeps.py benchmarks/results/sweeps.md --designs 10000000    some quiet minutes
 
@@ -87,7 +87,7 @@ def swept(study: Study, folder: Path, workers: int) -> run_sweep.Swept:
 
 def bare(study: Study) -> float:
     """Processor seconds of the same calls, one design each, in this process, nothing kept."""
-    one_task.measured(study, 0, 1, Path())  # loads what is loaded once
+    one_task.measured(study, 0, 1, Path())  # load all modules once
     return processor_seconds(lambda: [one_task.measured(study, i, i + 1, Path()) for i in range(study.count)])
 
 
@@ -163,7 +163,7 @@ def whole_sweep(folder: Path, designs: int, name: str) -> tuple[run_sweep.Swept,
 
 
 def in_fresh_process(folder: Path, designs: int, name: str) -> tuple[run_sweep.Swept, float]:
-    """`whole_sweep` where no Dask was loaded before. Its store, no longer needed, takes no memory then."""
+    """`whole_sweep` in a process without Dask. Its store, no longer needed, takes no memory then."""
     with ProcessPoolExecutor(1, get_context("spawn")) as pool:
         found = pool.submit(whole_sweep, folder, designs, name).result()
     shutil.rmtree(folder / name / "store")

@@ -48,7 +48,7 @@ def _column(text: str) -> dict:
 
 
 def cell(column: dict, row: dict) -> str:
-    """A value as it is shown: three digits, integers whole, nothing if it was not measured."""
+    """A value as shown: three digits, integers whole, nothing if it was not measured."""
     value = row.get(column["key"])
     if value is None:
         return ""
@@ -137,7 +137,7 @@ def dominators(points: Sequence[tuple[float, float]]) -> dict[int, int]:
 
 
 def told(names: Sequence[str], points: Sequence[tuple[float, float]]) -> str:
-    """One sentence: what is on the front, and what is dominated by what."""
+    """One sentence: the front, and the dominated ones."""
     front = ", ".join(names[i] for i in efficient(points))
     beaten = "; ".join(f"{names[i]} by {names[j]}" for i, j in dominators(points).items())
     return f"On the efficient front, quickest first: {front}." + (f" Dominated: {beaten}." if beaten else "")

@@ -3,7 +3,7 @@ takes a whole site.
 
 Staged are docs/, README as the first page, CONTRIBUTING and CHANGELOG, what pages link to outside docs/, and
 the reference made from the program: the design file's fields, the commands' parsers. Finishing follows every
-link, and refuses what a page would fetch from elsewhere.
+link, and refuses pages that fetch from elsewhere.
 """
 
 from __future__ import annotations
@@ -97,7 +97,7 @@ def _choices(action: argparse.Action) -> str:
 
 
 class Page(HTMLParser):
-    """What a page refers to, and where one can jump to in it."""
+    """A page's references and anchors."""
 
     def __init__(self, text: str) -> None:
         super().__init__()
@@ -116,7 +116,7 @@ class Page(HTMLParser):
 
 
 def finish(site: Path) -> list[str]:
-    """What is wrong with the site: links that lead nowhere, files that would be fetched from elsewhere.
+    """Faults of the site: broken links, files that would be fetched from elsewhere.
 
     The generator's help for searching from the disk would be fetched; it is replaced by our own.
     """

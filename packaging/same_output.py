@@ -4,8 +4,8 @@
 
 Both trees, each with its .venv, work on the designs of hardware/ here and on three drawn by chance; with
 WORDs only the runs whose name contains one. Archives are compared by their members, JSON by its values; a
-difference that MUST_DIFFER explains is named, any other gives exit status 1. What the other tree wrote is
-kept under its commit in .cache/same-output, and used again.
+difference that MUST_DIFFER explains is named, any other gives exit status 1. The other tree's output is kept
+under its commit in .cache/same-output, and reused.
 """
 
 from __future__ import annotations

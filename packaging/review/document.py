@@ -1,5 +1,5 @@
-"""FreeCAD's own document of a design (`tactcad review --freecad`), opened again and held against the bills of
-materials, the manifest and the parts' colours."""
+"""FreeCAD's own document of a design (`tactcad review --freecad`), opened again and compared with the bills
+of materials, the manifest and the parts' colours."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ AGREES = 1e-6  # share of a volume
 
 
 def colours(path: Path) -> dict | None:
-    """Colour of every part as the window program shows it; None where it ended without telling."""
+    """Colour of every part as the window program shows it; None if it ended without telling."""
     return window.asked(program(), INSIDE, path, profile())
 
 
@@ -29,14 +29,14 @@ def document_faults(
     parts: dict[str, dict],
     want: dict[str, str],
 ) -> list[str]:
-    """What is wrong.
+    """Faults of the document.
 
     Parameters
     ----------
     found
-        What `in_freecad.py` says of the document.
+        Output of `in_freecad.py` for the document.
     shown
-        What `colours` says of it.
+        Output of `colours`.
     bills
         Rows of the bill of materials by scene.
     parts

@@ -1,10 +1,9 @@
-"""ezdxf reads every cut file of an export: closed chains, entity types, area, and the hinge as it stands in
-the file.
+"""ezdxf reads every cut file of an export: closed chains, entity types, area, and the hinge in the file.
 
 No tactcad in here: areas and thicknesses are computed anew from the entities, the design is read from its
 TOML file.
 
-usage: in_ezdxf.py FOLDER...    exit status 1 where something differs
+usage: in_ezdxf.py FOLDER...    exit status 1 if something differs
 """
 
 from __future__ import annotations
@@ -29,7 +28,7 @@ def main() -> int:
 
 
 def review(folder: Path) -> int:
-    """1 where something differs or nothing is there, else 0; says so line by line."""
+    """1 if something differs or nothing is there, else 0; says so line by line."""
     manifest = json.loads((folder / "manifest.json").read_text(encoding="utf-8"))
     parts = {part["part_no"]: part for part in manifest["parts"]}
     element = element_table(manifest["design"])

@@ -57,7 +57,7 @@ def dxf(path):
 
 
 def document(path):
-    """Every place of each assembly with its part, and where it stands assembled and apart."""
+    """Every place of each assembly with its part, assembled and apart."""
     held = FreeCAD.openDocument(path)
     links = [o for o in held.Objects if o.TypeId == "App::Link"]
     placed = [

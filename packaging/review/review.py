@@ -1,7 +1,7 @@
 """make review: opens every exported STEP and DXF file in real FreeCAD, headless, and compares it with the
 bill of materials and the manifest; and every assembly in FreeCAD's window program, for the tree and the
-colours that a person sees; and FreeCAD's own document of each design. Installs nothing; says what is missing
-and how to get it.
+colours that a person sees; and FreeCAD's own document of each design. Installs nothing; reports missing
+programs and how to get them.
 
 usage: python review.py exports/NAME...
 """
@@ -59,7 +59,7 @@ def answers(command: list[str]) -> bool:
 
 
 def open_files(command: list[str], paths: list[str]) -> dict | None:
-    """What FreeCAD says of the files; None where it cannot be asked."""
+    """FreeCAD's output for the files; None if it cannot be asked."""
     run = subprocess.run([*command, str(INSIDE), *paths], capture_output=True, text=True, check=False)
     lines = [line for line in run.stdout.splitlines() if line.startswith("REVIEW ")]
     return json.loads(lines[-1].removeprefix("REVIEW ")) if lines else None
@@ -191,7 +191,7 @@ def assembly_faults(path: str, found: dict, bill: list[dict], parts: dict[str, d
 
 
 def name_faults(path: str, labels: list[str], rows: list[dict]) -> list[str]:
-    """Every part stands in FreeCAD's tree under its part number, as often as the bill says.
+    """Every part is in FreeCAD's tree under its part number, in the bill's quantity.
 
     FreeCAD makes labels unique by a running number: macro-array-spacer, macro-array-spacer001, ...
     """

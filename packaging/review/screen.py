@@ -1,4 +1,4 @@
-"""What a person sees of FreeCAD's own document: its window program on a screen that Xvfb holds in memory."""
+"""FreeCAD's own document as a person sees it: its window program on an Xvfb screen in memory."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ LEAST = 0.03  # share of the screen that the parts cover; chosen: the array fitt
 
 
 def command() -> str | None:
-    """The program that gives another one a screen, None where there is none."""
+    """The program that gives another one a screen, None if there is none."""
     return shutil.which("xvfb-run")
 
 

@@ -39,7 +39,7 @@ def settings() -> str:
 
 
 def command() -> str | None:
-    """FreeCAD's window program, None where there is none."""
+    """FreeCAD's window program, None if there is none."""
     try:
         return program()
     except CheckFailure:
@@ -47,12 +47,12 @@ def command() -> str | None:
 
 
 def shown(program: str, path: Path) -> dict | None:
-    """What the tree shows of an assembly; None where FreeCAD ended without telling."""
+    """The tree of an assembly; None if FreeCAD ended without telling."""
     return asked(program, INSIDE, path, settings())
 
 
 def asked(program: str, script: Path, path: Path, user: str) -> dict | None:
-    """What a script in FreeCAD's window program says of a file, under a user's settings; None where it ended
+    """Output of a script in FreeCAD's window program for a file, under a user's settings; None if it ended
     without telling."""
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
@@ -72,7 +72,7 @@ def asked(program: str, script: Path, path: Path, user: str) -> dict | None:
 
 
 def tree_faults(path: str, tree: dict | None, bill: list[dict]) -> list[str]:
-    """Every placed part stands in the tree once, under its reference designator, and shows its part, in
+    """Every placed part is in the tree once, under its reference designator, and shows its part, in
     colour."""
     if tree is None:
         return [f"{path}: FreeCAD's window program ended without a report"]

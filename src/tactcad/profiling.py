@@ -43,13 +43,13 @@ class Made:
 
 @dataclass
 class Profile:
-    """What one run made; `made` in the order of finishing."""
+    """Products of one run; `made` in the order of finishing."""
 
     made: list[Made] = field(default_factory=list)
     started: float = field(default_factory=time.perf_counter)
 
     def record(self) -> dict:
-        """As JSON holds it: loaded packages with their number of modules, what was made, time and memory."""
+        """The profile for JSON: loaded packages with their number of modules, products, time and memory."""
         by_kind: dict[str, dict[str, dict]] = {}
         for m in self.made:
             entry = by_kind.setdefault(m.kind, {}).setdefault(m.name, {"times": 0, "seconds": 0.0})

@@ -426,6 +426,7 @@ def test_a_calibration_is_read_back_as_written(tmp_path):
             [r.signal_per_deflection.standard_error for r in rows], rel=1e-8
         )
         assert known.correlation == pytest.approx([r.correlation for r in rows], rel=1e-8)
+        assert known.zero == pytest.approx([r.zero_signal for r in rows], rel=1e-8)
 
 
 def test_no_calibration_is_written_that_the_readings_do_not_give():

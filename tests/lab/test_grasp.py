@@ -49,6 +49,18 @@ def grasped(x, noise=0.0, seed=0, heights=None, truth=TRUTH, load=LOAD) -> Grasp
     return GraspReadings(1, truth.element, load, np.zeros(len(load), int), signal)
 
 
+def test_two_elements_that_have_each_others_zero_are_refused():
+    """An array whose zeros are all new is not."""
+    read = grasped(3.85, 1e-4, load=np.concatenate([[0.0], LOAD]))
+    known = replace(exact(), zero=TRUTH.zero_signal)
+    assert grasp.evaluate(read, known).combined.estimate == pytest.approx(3.85, rel=0.01)
+    swapped = replace(read, signal=read.signal[[0, 2, 1, 3]])
+    with pytest.raises(InputError, match="element 2 has the zero of element 3 .* that of 2: swapped"):
+        grasp.evaluate(swapped, known)
+    grasp.evaluate(swapped, exact())
+    grasp.evaluate(swapped, replace(known, zero=np.array([0.7, -0.2, -1.4, 0.4])))
+
+
 @pytest.mark.parametrize("x", [1e-3, 0.5, 3.85, 40.0, 2000.0, 1e5])
 def test_without_noise_the_truth_comes_back(x):
     found = grasp.evaluate(grasped(x, 1e-12), exact())

@@ -272,6 +272,7 @@ def _refused(lab, kind="grasp"):
     yield "gap", replace(lab, time=late), "missing within a step"
     yield "back", replace(lab, time=np.where(np.arange(n) == 500, 0.0, lab.time)), "time goes back"
     yield "hole", broken(lab, ai3=np.where(np.arange(n) == 321, np.nan, v["ai3"])), "no number"
+    yield "infinite", broken(lab, ai3=np.where(np.arange(n) == 321, np.inf, v["ai3"])), "323: ai3: no number"
     yield "doubled", broken(lab, ai3=v["ai2"]), "same samples as ai2"
     yield "constant", broken(lab, load=np.full(n, 4.0)), "never changes"
     yield "moving", broken(lab, load=np.linspace(0, 500, n)), "no plateau"

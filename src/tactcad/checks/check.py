@@ -103,7 +103,7 @@ def declared(folder: str) -> tuple[Check, ...]:
 
 
 def ordered(checks: Iterable[Check]) -> tuple[Check, ...]:
-    """By place, then name. Raises TypeError if two have one name."""
+    """Ordered by place, then name. Raises TypeError if two have one name."""
     found = sorted(checks, key=lambda c: (c.place, c.name))
     names = [c.name for c in found]
     if twice := sorted({name for name in names if names.count(name) > 1}):

@@ -79,7 +79,7 @@ class Machining:
 
 @dataclass(frozen=True)
 class Feed:
-    """How quickly the wire cuts, all positive.
+    """Cutting speeds of the wire, all positive.
 
     area        mm2 of cut face a minute in the main cut
     most        mm a minute that the main cut does not pass, however thin the sheet

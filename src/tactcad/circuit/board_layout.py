@@ -363,7 +363,7 @@ class Strip:
 
 
 def _rows(columns: Iterable[BusColumn]) -> dict[str, int]:
-    """Of a bus: each net's row, by the left-edge rule."""
+    """Each net's row on a bus, by the left-edge rule."""
     reach: dict[str, tuple[float, float]] = {}
     for c in columns:
         low, high = reach.get(c.net, (c.x, c.x))

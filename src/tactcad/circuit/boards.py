@@ -15,7 +15,7 @@ from .read_board import board_netlist
 
 
 def netlist_of_board(layout: Layout, used: int) -> Netlist:
-    """Of the board that reads so many elements: by amplifier and card, or by a converter."""
+    """Netlist of the board for so many elements: with amplifier and card, or with a converter."""
     converter = converter_of(layout.design)
     if converter:
         return digital_netlist(layout, converter, used)

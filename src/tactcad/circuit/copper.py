@@ -101,7 +101,7 @@ class BoardCopper:
         return {layer: self._outline(net) for layer, net in self.planes.items()}
 
     def corners(self, inside: bool = False) -> tuple[Point, ...]:
-        """Of the board, or of its planes inside it."""
+        """Corners of the board, or of its planes."""
         e = EDGE if inside else 0.0
         return ((e, e), (self.width - e, e), (self.width - e, self.height - e), (e, self.height - e))
 

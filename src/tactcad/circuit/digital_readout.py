@@ -167,7 +167,7 @@ def registers(found: DigitalReadout, chip: int) -> list[Register]:
 
 
 def when_on(layout: Layout, found: DigitalReadout) -> str:
-    """What the line ON does."""
+    """The function of the line ON."""
     if not found.on:
         return "always high"
     return (
@@ -180,7 +180,7 @@ PINS_FROM = "unread: the sheet's pin table; two layout libraries of others' that
 
 
 def pin_map(layout: Layout, converter: Converter) -> list[tuple[str, str, str]]:
-    """Of every board's converter: pin, its role, and the board's net on it; "" if it stays open."""
+    """For every board's converter: pin, its role, and the board's net on it; "" if it stays open."""
     board = digital_netlist(layout, converter, converter.inputs)
     (part,) = board.of_kind("converter")
     return [(p.number, p.role, p.net) for p in sorted(part.pins, key=lambda p: int(p.number))]

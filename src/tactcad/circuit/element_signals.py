@@ -70,7 +70,7 @@ def element_signals(layout: Layout) -> list[ElementSignal]:
     lead, arm = longest_lead_resistance(layout), completion_tolerance(design)
 
     def extremes(x: float) -> tuple[float, float]:
-        """Of either sign: a load's sign depends on the arm of the bridge."""
+        """Signals of either sign: a load's sign depends on the arm of the bridge."""
         least = max(-x, -1.0)  # no resistance is negative
         return amplified(design, lead, least, -1.0, arm), amplified(design, lead, x, 1.0, arm)
 

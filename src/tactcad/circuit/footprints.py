@@ -54,7 +54,7 @@ class Footprint:
 
     @cached_property
     def half(self) -> tuple[float, float]:
-        """Of the courtyard, mm."""
+        """Half sides of the courtyard, mm."""
         return (
             max(self.body[0] / 2, *(abs(p.x) + p.w / 2 for p in self.pads)) + COURTYARD,
             max(self.body[1] / 2, *(abs(p.y) + p.h / 2 for p in self.pads)) + COURTYARD,
@@ -213,5 +213,6 @@ FOOTPRINTS = {
 
 
 def footprint(name: str) -> Footprint:
-    """By name; pin headers by `pin-header-` and their pins. Raises KeyError for one that is not known."""
+    """The footprint of a name; pin headers by `pin-header-` and their pins. Raises KeyError for one that is
+    not known."""
     return pin_header(int(name.rpartition("-")[2])) if name.startswith("pin-header-") else FOOTPRINTS[name]

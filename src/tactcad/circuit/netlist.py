@@ -101,7 +101,7 @@ class Netlist:
         return (c for c in self.components if c.kind == kind and c.fitted)
 
     def pin_at(self, place: str) -> Pin:
-        """By designator and number: X1.2. Raises StopIteration if there is none."""
+        """A pin by designator and number: X1.2. Raises StopIteration if there is none."""
         name, _, number = place.rpartition(".")
         return next(p for c in self.components if c.designator == name for p in c.pins if p.number == number)
 

@@ -105,7 +105,7 @@ def two(
 
 
 def bridge_arms(design: Design, c: int, used: bool, wires: int, foot: str) -> Iterator[Component]:
-    """Of channel c: the bridge's three resistors, the third down to `foot`; and the link of red and plus."""
+    """Channel c: the bridge's three resistors, the third down to `foot`; and the link of red and plus."""
     package, arm = COMPLETIONS[design.readout.completion].package, completion_resistance(design)
     red, plus, minus = (f"CH{c}_{end}" for end in ("RED", "PLUS", "MINUS"))
     for k, nets in enumerate(((red, EXCITATION), (minus, EXCITATION), (foot, minus)), start=1):

@@ -81,7 +81,7 @@ def run(args: argparse.Namespace) -> int:
 
 
 def calibrate_rows(args: argparse.Namespace, design: Design | None) -> int:
-    """Of facing rows: one component an element."""
+    """Calibrate facing rows: one component an element."""
     from tactcad.design.files import write_whole
     from tactcad.lab import calibration, calibration_file, column_units, log_readings, readings
 

@@ -100,7 +100,7 @@ def run(args: argparse.Namespace) -> int:
 
 
 def plain_estimate(args: argparse.Namespace, asked: Allowance, design: CommonTables) -> int:
-    """Of a family with one model: its elements' figures as they are."""
+    """Estimate a family with one model: its elements' figures."""
     from tactcad.design.family import family_of
     from tactcad.scenes import overall_size, stated_size
 
@@ -122,7 +122,7 @@ def plain_estimate(args: argparse.Namespace, asked: Allowance, design: CommonTab
 
 
 def estimate_design(args: argparse.Namespace, asked: Allowance, design: Design) -> int:
-    """Of facing rows: by any rung, with tolerances; or as made, by the inspection sheet."""
+    """Estimate facing rows: by any rung, with tolerances; or as made, by the inspection sheet."""
     from tactcad.lab.array_estimate import compare_uncut, estimate
     from tactcad.parts.array.layout import Layout
 

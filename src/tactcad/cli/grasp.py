@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 EXAMPLES = """\
   tactcad grasp --object E=0.5,nu=0.49,thickness=6
-  tactcad grasp soft-tissue --object E=0.05,nu=0.49,thickness=10 --load 1 --angle 0.5,1
+  tactcad grasp soft-tissue --object E=0.05,nu=0.49,thickness=10 --load 0.2 --angle 0.5,1
   tactcad grasp --object E=0.5,nu=0.49,thickness=inf --rung springs --json
   tactcad grasp --object E=0.5,nu=0.49,thickness=6,base=frictionless --out pressure.svg
 

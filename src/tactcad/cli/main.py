@@ -172,7 +172,7 @@ def parser_of(command: str, raises: bool = False) -> Parser:
 
 
 def overview() -> str:
-    """What `tactcad` alone prints: the commands by task, and what they share."""
+    """The output of `tactcad` alone: the commands by task, and their common options."""
     groups = [
         "\n".join([f"{group}:", *(f"  {name:10} {text}" for name, text in commands.items())])
         for group, commands in GROUPS.items()

@@ -88,7 +88,7 @@ def run(args: argparse.Namespace) -> int:
 
 
 def stiffness_rows(args: argparse.Namespace, design: Design) -> int:
-    """Of facing rows: one component an element."""
+    """Evaluate facing rows: one component an element."""
     from tactcad.design.messages import InputError
     from tactcad.lab import calibration_file, grasp, log_readings, pads, readings
 

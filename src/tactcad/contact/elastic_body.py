@@ -35,8 +35,8 @@ GRID = 2001  # of q in the table of G: 1e-9 against the integral
 
 @dataclass(frozen=True)
 class Body:
-    """What is pressed: Young's modulus (MPa), Poisson's ratio, thickness (mm; inf for a half-space), and
-    whether its base is bonded or slips without friction.
+    """The object: Young's modulus (MPa), Poisson's ratio, thickness (mm; inf for a half-space), and whether
+    its base is bonded or slips without friction.
 
     Raises
     ------
@@ -145,7 +145,7 @@ def influence(
 
 
 def _apart(first: Rectangles, second: Rectangles) -> tuple[np.ndarray, np.ndarray, tuple, tuple]:
-    """How far their centres are apart along x and y, [n, m], and both's sides along x and along y."""
+    """Distances of their centres along x and y, [n, m], and both's sides along x and along y."""
     (x, y, a, b), (x2, y2, a2, b2) = first, second
     return x[:, None] - x2, y[:, None] - y2, (a[:, None], a2), (b[:, None], b2)
 

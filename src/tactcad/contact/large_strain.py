@@ -70,8 +70,8 @@ class _Rings:
         self.held = np.concatenate(held + [2 * bottom] if body.base == "bonded" else held)
 
     def forces(self, u: np.ndarray) -> tuple[np.ndarray, csc_matrix]:
-        """What holds the displacements u: forces on the nodes, and their derivative. Raises
-        FloatingPointError if an element is turned inside out."""
+        """Forces on the nodes for displacements u, and their derivative. Raises FloatingPointError if an
+        element is turned inside out."""
         F = np.broadcast_to(np.eye(3), (*self.volume.shape, 3, 3)).copy()
         for k, (i, j) in enumerate(AXES):
             F[:, :, i, j] += np.einsum("eqn,en->eq", self.B[:, :, k], u[self.dofs])

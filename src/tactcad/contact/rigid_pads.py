@@ -163,7 +163,7 @@ def _powers(x: np.ndarray, y: np.ndarray) -> np.ndarray:
 
 @lru_cache(maxsize=2)
 def _mean_inverses(x: bytes, y: bytes, length: float, width: float) -> list[np.ndarray]:
-    """What every layer under these pads has in common: for each pair of pads, [patch, patch]."""
+    """Mean inverses common to every layer under these pads: for each pair of pads, [patch, patch]."""
     at = np.stack([np.frombuffer(x), np.frombuffer(y)], -1)
     one = patches(length, width, False, COARSE)
     return [
@@ -232,9 +232,7 @@ class ManyPresses:
         self.whole = np.einsum("pa,ipjq,qb->iajb", whole, self.field, whole).reshape(3 * n, 3 * n)
 
     def lifted(self, r: np.ndarray) -> np.ndarray:
-        """What pads at depths r change in the part that they have in each other's depth, [..., 3 pad, 3
-        pad].
-        """
+        """Change, for pads at depths r, of their effects on each other's depth, [..., 3 pad, 3 pad]."""
         n = len(self.x)
         own = self.law.moments(r)
         by = np.einsum("ipjq,...jqb->...ipjb", self.field, own, optimize=True)

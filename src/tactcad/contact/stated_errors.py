@@ -31,13 +31,13 @@ def errors() -> dict:
 
 
 def pad_radius(pads: Pads) -> float:
-    """Of a disc of the pads' area, mm."""
+    """Radius of a disc of the pads' area, mm."""
     return (pads.length * pads.width * (0.25 if pads.disc else 1 / pi)) ** 0.5
 
 
 def depth_share(pads: Pads, body: Body, force: np.ndarray) -> float:
-    """How deep the deepest pad's own force presses it into a linear body, over the lesser of its radius
-    and the thickness."""
+    """Depth of the deepest pad in a linear body under its own force, over the lesser of its radius and the
+    thickness."""
     alone = pad_stiffness(body, pads.length, pads.width, pads.disc)
     return float(force.max() / alone / min(pad_radius(pads), body.thickness))
 

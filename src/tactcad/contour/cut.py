@@ -68,7 +68,7 @@ def between(contour: Contour, x0: float, x1: float, names: tuple[str, str] = ("c
 
 
 def crossings(contour: Contour, axis: Literal["x", "y"], at: float) -> list[float]:
-    """Where a line parallel to an axis crosses a contour.
+    """Crossings of a contour with a line parallel to an axis.
 
     Parameters
     ----------

@@ -52,7 +52,7 @@ class _Piece:
 
 
 def necks(outer: Contour, openings: Sequence[Contour] = (), below: float = float("inf")) -> list[Neck]:
-    """Where material or the space around it is narrow.
+    """Narrow places of the material or of the space around it.
 
     Parameters
     ----------

@@ -84,7 +84,7 @@ def meshing_of(grade: Grade) -> Meshing:
 
 
 def counts(design: CommonTables, scenes: Sequence[str]) -> tuple[Mapping[str, float], list[Part]]:
-    """How many elements, scenes, parts, parts made and placed parts; and the parts, each once."""
+    """Numbers of elements, scenes, parts, parts made and placed parts; and the parts, each once."""
     made = [make_scene(design, name) for name in scenes]
     parts = list({part.part_no: part for scene in made for part in scene.parts}.values())
     numbers = {
@@ -111,7 +111,7 @@ def _triangles(angular: float) -> str:
 
 
 def _meshing_seconds(parts: Sequence[Part], angular: float) -> float:
-    """By each part's features: a face with many holes costs more than as many faces."""
+    """Seconds of meshing by each part's features: a face with many holes costs more than as many faces."""
     features = np.array([1.0 + len(part.features) for part in parts])
     return float(power_law(published()["mesh"]["seconds"][f"{angular:g}"], features).sum())
 

@@ -1,4 +1,4 @@
-"""How much error and how much time an answer may take, and which way of answering that allows.
+"""Error and time allowed for an answer, and the method that they allow.
 
 A command lists its methods as grades, in the order of their work; `pick` takes one. Only costs are computed
 for that, so an impossible request is refused before any work.

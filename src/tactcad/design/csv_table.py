@@ -50,7 +50,7 @@ class Field:
         return kind + low + high
 
     def allowed(self, value: np.ndarray) -> np.ndarray:
-        """Which values are finite and within the range."""
+        """Mask of the values that are finite and within the range."""
         low = value > self.low if self.above else value >= self.low
         return (
             np.isfinite(value) & low & (value <= self.high) & (not self.integer or value == np.floor(value))

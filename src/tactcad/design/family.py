@@ -40,7 +40,7 @@ class Late:
 
 @dataclass(frozen=True)
 class FamilyEstimate:
-    """What closed forms or elements tell of the numbered elements.
+    """Estimates of the numbered elements by closed forms or finite elements.
 
     rows      (layout, rung, force or None) to records by number: `number`, `stiffness` N/mm, `force`,
               `rated_force` N, `gauge_strain`, `peak_strain`; None for what is not known
@@ -60,7 +60,7 @@ class FamilyEstimate:
 
 @dataclass(frozen=True)
 class FamilyStack:
-    """How limits add up.
+    """The family's tolerance stack.
 
     limits    (layout, scenes) to the variables by name, and the requirements
     built     (layout, deviations) to arrays that were put together from parts as made
@@ -76,7 +76,7 @@ class FamilyStack:
 
 @dataclass(frozen=True)
 class FamilyReadout:
-    """What reads the elements.
+    """The electronics that read the elements.
 
     netlist  (layout) to the circuit
     tracks   (layout, circuit) to the circuit with the resistance of its boards' tracks
@@ -106,7 +106,7 @@ class FamilyBoards:
 
 @dataclass(frozen=True)
 class FamilyPads:
-    """How the pads meet an object.
+    """The pads' contact with an object.
 
     places   (design) to x, y, number, length and width of the pads, mm
     springs  (design) to those pads on their springs, `tactcad.contact.press.Pads`, and the signal of each

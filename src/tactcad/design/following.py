@@ -59,7 +59,7 @@ def _filled(table: Any, **left_out: float | str) -> Any:
 
 
 def _as_bought(material: SheetMaterial, sheet: Sheet) -> dict[str, float]:
-    """What the sheet may differ by: Young's modulus and thickness."""
+    """The sheet's tolerances: Young's modulus and thickness."""
     row = ALLOYS.get(material.alloy)
     return {
         "youngs_modulus": row.spread["youngs_modulus"] if row else LOT_SPREAD,
@@ -82,8 +82,8 @@ def _side(array: Array, sheet: Sheet, element: Element) -> float:
 
 
 def _moving(array: Array, sheet: Sheet, density: float) -> float:
-    """What moves with the array, N: the published weight, more for a longer stack or a denser sheet (kg/m3),
-    in whole 0.1 N."""
+    """Weight that moves with the array, N: the published weight, more for a longer stack or a denser sheet
+    (kg/m3), in whole 0.1 N."""
     spacer = array.spacer if array.spacer is not None else array.pitch - sheet.thickness
     count = max(map(len, array.row_arms))
     stack = count * sheet.thickness + (count + 1) * spacer

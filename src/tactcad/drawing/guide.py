@@ -120,7 +120,7 @@ def torque(part: Part, design: CommonTables) -> float | None:
 
 
 def tools(design: CommonTables, scene: Scene) -> list[str]:
-    """What the steps need: drivers of the screws and nuts that they place, torques, and their other tools."""
+    """Tools of the steps: drivers of the screws and nuts that they place, torques, and their other tools."""
     ready = {d for step in scene.steps for d in step.ready}
     drivers: dict[tuple[str, float], list[str]] = {}
     torques: set[float] = set()

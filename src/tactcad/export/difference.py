@@ -1,4 +1,4 @@
-"""What changed between two records of geometry: added, removed, changed, with old and new value.
+"""Changes between two records of geometry: added, removed, changed, with old and new value.
 
 Tolerances, stated once: lengths 1e-6 mm; volumes, areas, masses, stiffness and forces a share of 1e-6 (the
 kernel's agreement with the closed forms); everything else has to be equal.
@@ -51,7 +51,7 @@ class Change:
         return shown(self.old), shown(self.new)
 
     def remark(self) -> str:
-        """How large the change is: per cent of a number, millimetres of a contour."""
+        """The change's size: per cent of a number, millimetres of a contour."""
         if self.moved is not None:
             return f"up to {self.moved:.6g} mm apart"
         if _is_number(self.old) and _is_number(self.new) and self.old:

@@ -80,7 +80,7 @@ class PartFormat:
 
     @property
     def folder(self) -> str:
-        """Of the path, with its "/"."""
+        """The path's folder, with its "/"."""
         return self.path.partition("/")[0] + "/"
 
 

@@ -164,7 +164,7 @@ def _round_openings(part: Part) -> list[Record]:
 
 
 def _numbered(features: list[Record]) -> Record:
-    """By name and a count over equal names: "screw_hole 2"."""
+    """Entries by name and a count over equal names: "screw_hole 2"."""
     seen: dict[str, int] = {}
     named = {}
     for feature in features:

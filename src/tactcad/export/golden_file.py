@@ -40,7 +40,8 @@ def golden_record(design: CommonTables) -> Record:
 
 
 def golden_bytes(record: Record) -> bytes:
-    """As JSON with a value a line and a list of numbers on one, so that a reviewer reads git's diff."""
+    """The record as JSON with a value a line and a list of numbers on one, so that a reviewer reads git's
+    diff."""
     return (_lines(record, "") + "\n").encode()
 
 
@@ -91,7 +92,7 @@ def check_golden(design: CommonTables, path: Path) -> list[Finding]:
 
 
 def judge(old: Record, new: Record) -> list[Finding]:
-    """What the differences between golden file and design mean."""
+    """Judgement of the differences between golden file and design."""
     changes = [c for c in differences(old, new) if c.path[0] != "revision"]
     same_revision = old["revision"] == new["revision"]
     if not changes and same_revision:

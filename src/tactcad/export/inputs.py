@@ -1,4 +1,4 @@
-"""What an output depends on, as digests that are the same in every process, and why it is rebuilt, in words.
+"""An output's inputs, as digests that are the same in every process, and the reasons for a rebuild, in words.
 
 An output depends on values (the design, a part's description), on the source of the rooms that make it, and
 on the libraries they use. All three go into the key: a key of values alone would serve stale geometry after a
@@ -148,7 +148,7 @@ def nested(values: Mapping[str, Any]) -> dict[str, Any]:
 
 @dataclass(frozen=True)
 class Inputs:
-    """What one export was made from: values by path, source digests by room, versions by library."""
+    """Inputs of one export: values by path, source digests by room, versions by library."""
 
     values: Mapping[str, Any]
     sources: Mapping[str, str]

@@ -1,4 +1,4 @@
-"""What to measure, as CSV to fill in and send back: every dimension of every numbered element, and of the
+"""The measurements, as CSV to fill in and send back: every dimension of every numbered element, and of the
 other parts every limit on which a requirement of the assembled sensor depends, the largest share of a
 requirement's variance first.
 
@@ -152,6 +152,6 @@ def _plain(feature: str) -> str:
 
 
 def _reads(width: float) -> str:
-    """What the instrument reads to, mm: a tenth of the limits' width, of what instruments read."""
+    """The instrument's resolution, mm: a tenth of the limits' width, rounded to a usual one."""
     read = next((r for r in READS if r <= width / 10 + 1e-9), READS[-1])
     return f"{read:g} or better"

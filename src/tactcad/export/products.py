@@ -74,7 +74,7 @@ class Plan:
         return self.design.design.revision
 
     def header(self, name: str, description: str) -> Header:
-        """Of a STEP file."""
+        """Header of a STEP file."""
         d = self.design.design
         return Header(name, description, d.revision, d.date, d.author or "", d.organisation or "")
 
@@ -163,8 +163,8 @@ def _scene_step(scene: Scene, shapes: Shapes, head: Header) -> bytes:
 
 @product()
 def stack_files(plan: Plan) -> Iterator[Batch]:
-    """How the limits of all parts add up: a table, a page with bars, and what to measure on which part of the
-    scenes; from one run of virtual builds. Envelopes and poses have no limits of their own."""
+    """The tolerance stack of all parts: a table, a page with bars, and the measurements on the scenes' parts;
+    from one run of virtual builds. Envelopes and poses have no limits of their own."""
     design, scenes = plan.design, [make_scene(plan.design, name) for name in plan.options.scenes]
 
     def run() -> Sequence[bytes]:
@@ -193,7 +193,7 @@ def _read(plan: Plan) -> bool:
 
 
 def _converter(design: CommonTables) -> str:
-    """What reads its bridges."""
+    """The converter of its bridges."""
     return getattr(getattr(design, "readout", None), "converter", "card")
 
 
@@ -366,7 +366,7 @@ def circuit_sheets(plan: Plan) -> Iterator[Batch]:
 
 
 def _tables(design: CommonTables, *names: str) -> tuple:
-    """Of these tables those that the family's designs have."""
+    """The ones of these tables that the family's designs have."""
     return tuple(getattr(design, name, None) for name in names)
 
 
@@ -392,7 +392,7 @@ def solid(part: Part, shapes: Shapes) -> bool:
 
 
 def part_facts(part: Part, shapes: Shapes) -> dict:
-    """What the kernel measures on a part (mm): surface area, volume, centre, box; compared with the closed
+    """The kernel's measurements on a part (mm): surface area, volume, centre, box; compared with the closed
     forms."""
     key = f"facts {shapes.made_by} {digest(part)}"
     return json.loads(shapes.cache.get_or_make(key, lambda: json.dumps(_measured(part, shapes)).encode()))

@@ -47,7 +47,7 @@ def _print(text: str) -> None:
 
 
 def looked_at(directory: str | Path, schema: str, others: str = REFUSE) -> Contents:
-    """What lies in DIR now; changes nothing.
+    """The present contents of DIR; changes nothing.
 
     Raises InputError if DIR is not a place for a folder, or holds what tactcad did not write there and
     `others` is REFUSE.
@@ -77,8 +77,8 @@ def looked_at(directory: str | Path, schema: str, others: str = REFUSE) -> Conte
 
 
 def _contents_of_one(out: Path, schema: str) -> Contents:
-    """What lies in DIR; read again where another run put its folder there meanwhile, or the files of one
-    would be compared with the manifest of the other.
+    """The contents of DIR; read again if another run put its folder there meanwhile, so that one's files are
+    never compared with the other's manifest.
     """
     while True:
         before = _which(out)
@@ -93,7 +93,7 @@ def _contents_of_one(out: Path, schema: str) -> Contents:
 
 
 def _which(out: Path) -> tuple[int, int] | None:
-    """Which folder it is: a number, which a later one may have again, and when it was last renamed."""
+    """The folder's identity: a number, which a later one may have again, and when it was last renamed."""
     try:
         found = os.lstat(out)
     except FileNotFoundError:
@@ -202,7 +202,7 @@ def replacing(directory: str | Path, schema: str, others: str = REFUSE, say: Say
     out = absolute(directory)
 
     def recover(left: Path) -> None:
-        """Of a run that was ended: put DIR back if it is missing, settle what else is there."""
+        """Recover from a killed run: put DIR back if it is missing, settle the other folders."""
         if os.path.lexists(left / EARLIER) and not os.path.lexists(out):
             os.rename(left / EARLIER, out)
         for name in (FINISHED, EARLIER):

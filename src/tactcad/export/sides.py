@@ -166,7 +166,7 @@ def _plain(value: Any) -> Any:
 
 
 def compare_sides(old: Side, new: Side) -> list[Change]:
-    """What changed, as far as both sides record it: names, the design's values, then the geometry."""
+    """Changes, as far as both sides record them: names, the design's values, then the geometry."""
     records = []
     for side, record in zip((old, new), comparable(old, new)):
         head: Record = {"design": side.design, "revision": side.revision}

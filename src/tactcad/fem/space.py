@@ -85,8 +85,8 @@ class PlaneSpace:
         return _joined([[q["xx"], q["xz"]], [q["xz"].T, q["zz"]]], lam, mu)
 
     def swept_stiffness(self, across: AcrossSpace, lam: float, mu: float) -> csc_matrix:
-        """Of the solid; unknown 3 (n m + k) + i is component i (x, z, y) of node n at the k-th of m places
-        across."""
+        """Stiffness of the solid; unknown 3 (n m + k) + i is component i (x, z, y) of node n at the k-th of m
+        places across."""
         q = {name: csr_matrix(matrix) for name, matrix in self._integrals.items()}
         mass, stretch, slope = (csr_matrix(m) for m in across.integrals)
         xy, zy = kron(q["x"], slope, "csr"), kron(q["z"], slope, "csr")
@@ -100,7 +100,7 @@ class PlaneSpace:
 
     @cached_property
     def _integrals(self) -> dict[str, csr_matrix]:
-        """Of a b ("1"), d_i a b ("x", "z") and d_i a d_j b ("xx", "xz", "zz") over the plane."""
+        """Integrals of a b ("1"), d_i a b ("x", "z") and d_i a d_j b ("xx", "xz", "zz") over the plane."""
         points, weights = gauss(self.order + 1)
         value, slope = lagrange(self.order, points)
 
@@ -146,7 +146,7 @@ class AcrossSpace:
 
     @property
     def integrals(self) -> tuple[Array, Array, Array]:
-        """Of f g, f' g' and f g' over half the width."""
+        """Integrals of f g, f' g' and f g' over half the width."""
         points, weights = gauss(self.order + 1)
         value, slope = lagrange(self.order, points)
         size = len(self.nodes)

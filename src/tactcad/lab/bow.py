@@ -77,7 +77,7 @@ def common(bows: Sequence[Bow | None]) -> Bow | None:
 
 
 def off_the_chord(height: float, x: np.ndarray, start: float) -> float:
-    """By how much, relative, a bow of that height puts the slope of readings at x (mm) off that of the chord
+    """Relative deviation, for a bow of that height, of the slope of readings at x (mm) from that of the chord
     from `start`, where contact began, to the largest x.
 
     The slope of a parabola is linear in x: over evenly spread readings the line has that of their middle, the

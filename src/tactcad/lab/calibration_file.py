@@ -65,6 +65,7 @@ FIELDS = tuple(Field(f.column, f.unit, *READ[f.name], integer=f.digits == "d") f
 NUMBER, STIFFNESS, STIFFNESS_SE, SENSITIVITY, SENSITIVITY_SE, CORRELATION, DOF = FIELDS
 LOAD_CELL = Field("load_cell_N_per_mm", "N/mm", 1e-6, RIGID)
 LOAD_CELL_HALF_WIDTH = Field("load_cell_half_width", "N/mm", 0, 1e9)
+ZERO = Field("zero_signal_V", "V", -1e6, 1e6)
 
 
 @dataclass(frozen=True)
@@ -81,6 +82,7 @@ class Sensitivity:
     load_cell: np.ndarray  # stiffness of the load cell that was in series, N/mm
     load_cell_half_width: np.ndarray  # of its limits, N/mm
     path: str = "calibration"
+    zero: np.ndarray | None = None  # unloaded signals, V, where the file has them
 
     def of(self, numbers: np.ndarray) -> Sensitivity:
         """The calibration of these elements, in their order. Raises InputError if one is not in it."""
@@ -90,8 +92,8 @@ class Sensitivity:
                 legal = str(self.element.tolist())
                 raise InputError(self.path, f"element {n} of the grasp is not in it", legal=legal)
         rows = np.array([place[int(n)] for n in numbers])
-        kept = {f.name: getattr(self, f.name)[rows] for f in fields(self) if f.name != "path"}
-        return Sensitivity(**kept, path=self.path)
+        own = {f.name: getattr(self, f.name) for f in fields(self) if f.name != "path"}
+        return Sensitivity(**{n: v[rows] for n, v in own.items() if v is not None}, path=self.path)
 
     def at_load_cell_limit(self, sign: float) -> Sensitivity:
         """The calibration that the same readings give with the load cell at its lower (sign -1) or upper (1)
@@ -218,7 +220,7 @@ def read(path: str) -> Sensitivity:
     rows = read_table(
         path,
         (NUMBER, STIFFNESS, SENSITIVITY),
-        (STIFFNESS_SE, SENSITIVITY_SE, CORRELATION, DOF, LOAD_CELL, LOAD_CELL_HALF_WIDTH),
+        (STIFFNESS_SE, SENSITIVITY_SE, CORRELATION, DOF, LOAD_CELL, LOAD_CELL_HALF_WIDTH, ZERO),
     )
     refuse_duplicates(rows, ("element",))
     for i in np.flatnonzero(np.abs(rows.values(SENSITIVITY.name)) < LEAST_SENSITIVITY)[:1]:
@@ -229,7 +231,7 @@ def read(path: str) -> Sensitivity:
         rows.columns.get(f.name, np.full(count, absent.get(f.name, 0.0)))
         for f in (*FIELDS, LOAD_CELL, LOAD_CELL_HALF_WIDTH)
     ]
-    return _sensitivity(columns, path)
+    return _sensitivity(columns, path, rows.columns.get(ZERO.name))
 
 
 def _from_json(path: str) -> Sensitivity:
@@ -242,6 +244,7 @@ def _from_json(path: str) -> Sensitivity:
             min(float(data["load_cell_stiffness_N_per_mm"]), RIGID),
             float(data.get("load_cell_half_width_N_per_mm", 0.0)),
         )
+        zeros = [float(e["zero_signal"]) for e in elements if e.get("zero_signal") is not None]
         values = np.array([[*(float(f.of(e)) for f in ELEMENT.some(*READ)), *in_series] for e in elements])
     except (KeyError, TypeError, ValueError, AttributeError, OverflowError):
         raise InputError(
@@ -257,13 +260,13 @@ def _from_json(path: str) -> Sensitivity:
     number = values[:, 0].astype(int)
     if len(set(number.tolist())) != len(number):
         raise InputError(path, "an element is listed twice", value=number.tolist(), legal="each once")
-    return _sensitivity(list(values.T), path)
+    return _sensitivity(list(values.T), path, np.array(zeros) if len(zeros) == len(number) else None)
 
 
-def _sensitivity(columns: list[np.ndarray], path: str) -> Sensitivity:
+def _sensitivity(columns: list[np.ndarray], path: str, zero: np.ndarray | None) -> Sensitivity:
     """From the columns of FIELDS and the load cell's, which are its fields."""
     named = dict(zip((f.name for f in fields(Sensitivity)), columns))
-    return Sensitivity(**(named | {"element": columns[0].astype(int)}), path=path)
+    return Sensitivity(**(named | {"element": columns[0].astype(int)}), path=path, zero=zero)
 
 
 def _no_sensitivity(where: str) -> InputError:

@@ -153,7 +153,7 @@ def _moderated(slopes: Slopes, m: list[int]) -> np.ndarray:
 
 
 def scatter(slopes: Slopes, m: list[int], c: np.ndarray, x: float) -> tuple[float, float]:
-    """By how much weights from c understate the variance of x, and that variance's degrees of freedom.
+    """Factor by which weights from c understate the variance of x, and that variance's degrees of freedom.
 
     Parameters
     ----------

@@ -20,6 +20,7 @@ from __future__ import annotations
 import json
 from contextlib import suppress
 from dataclasses import dataclass, replace
+from itertools import combinations
 from math import inf, isinf
 from typing import Any
 
@@ -38,6 +39,9 @@ from .layer_fit import WILD, LayeredArray, fit
 
 SCHEMA = "tactcad-stiffness-1"
 STRAY = 1e-4  # probability, over all elements, below which an element is reported not to follow the others
+SWAPPED = (
+    5.0  # times nearer to each other's zero than to their own, from which on channels are swapped; chosen
+)
 SURELY = 3.0  # standard errors below zero from which an element's force is reported to fall; chosen
 TOUCHES = 1e-3  # of the largest force on a pad, from which a pad counts as touching
 ROUNDED = 1e-9  # below which a singular value of unit columns is nought but rounding
@@ -87,7 +91,7 @@ class Grasp:
 
 @dataclass(frozen=True)
 class OnLayer:
-    """What the readings say of a layer.
+    """Results of the readings for a layer.
 
     modulus    MPa; None if the thickness is not known
     angle      of its face along x and y, degrees: estimate, low, high of each
@@ -140,10 +144,11 @@ def evaluate(
     ------
     InputError
         An element without calibration or with a constant signal, a reference that was not read, fewer than
-        two elements or than three loads above zero.
+        two elements or than three loads above zero, two elements whose channels are swapped.
     """
     require_level(level)
     touching = readings.load > 0
+    _refuse_swapped(readings, calibration)
     if touching.sum() < 3 or len(readings.element) < 2:
         raise InputError(
             f"{readings.path}: sample {readings.sample}",
@@ -223,6 +228,26 @@ def evaluate(
         tuple(notes),
         tuple(unlikely(what, {load_name: -1, signal_name: 1}, sums, "N", LOAD)),
     )
+
+
+def _refuse_swapped(readings: GraspReadings, calibration: Sensitivity) -> None:
+    """Refuse two elements each of which has the other's zero while all others keep theirs."""
+    zero, resting = calibration.of(readings.element).zero, readings.load == 0
+    if zero is None or not resting.any() or len(zero) < 3:
+        return
+    away = np.abs(readings.signal[:, resting].mean(1)[:, None] - zero)  # [element read, element calibrated]
+    own, change = np.diag(away), np.ptp(readings.signal, axis=1)
+    for a, b in combinations(range(len(own)), 2):
+        others, least = np.delete(own, [a, b]), min(own[a], own[b]) / SWAPPED
+        if least > max(away[a, b], away[b, a], *others) and least > max(change[a], change[b]) / SWAPPED**2:
+            n, m = readings.element[[a, b]].tolist()
+            raise InputError(
+                f"{readings.path}: sample {readings.sample}",
+                f"without load, element {n} has the zero of element {m} in the calibration, and {m} that of "
+                f"{n}: swapped?",
+                value=readings.signal[:, resting].mean(1)[[a, b]].round(4).tolist(),
+                legal=str(zero[[a, b]].round(4).tolist()),
+            )
 
 
 def below_stops(

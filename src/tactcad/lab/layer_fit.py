@@ -173,7 +173,7 @@ class _Model:
     def signals(
         self, q: np.ndarray, start: np.ndarray | None = None, lifted: np.ndarray | None = None
     ) -> tuple:
-        """Of parameters q [grasp, parameter]: signal [grasp, element, load], total force [grasp, load],
+        """For parameters q [grasp, parameter]: signal [grasp, element, load], total force [grasp, load],
         depths, forces [grasp, load, pad], and the derivatives of the first two."""
         at, part, rows = self.at, self.part, self.rows
         G, T, n, m = len(q), len(self.load), len(at.number), len(rows)
@@ -502,8 +502,8 @@ def _errors(
     variance: np.ndarray,
     known: np.ndarray,
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Of a quantity whose covariance with all parameters is `row` [grasp, parameter]: standard error,
-    Student's quantile, and how far the load cell's limits shift it."""
+    """For a quantity with covariance `row` [grasp, parameter] with all parameters: standard error, Student's
+    quantile, and how far the load cell's limits shift it."""
     pull = np.einsum("eij,gej->gei", priors.of_element, row[:, priors.calibrated])
     stated = np.einsum("gei,gei->g", pull, row[:, priors.calibrated])
     actual = np.einsum("gei,eij,gej->ge", pull, priors.own, pull)
@@ -607,7 +607,7 @@ def _even_in_ratio(
 
 @dataclass(frozen=True)
 class Expected:
-    """What `fit` will say of grasps, before any is made; arrays with one entry a grasp first.
+    """Expected results of `fit` before any grasp; arrays with one entry a grasp first.
 
     object_     K_obj, N/mm, [estimate, low, high]; modulus: E, MPa, likewise
     force       on each pad at the largest load, N; sink of its middle, mm, [grasp, pad]

@@ -174,7 +174,7 @@ def _column(cells: Sequence[str], read: Callable[[str], float]) -> np.ndarray:
 
 
 def _seconds(text: str) -> float | None:
-    """Of a time of day or a date with one, s; None if it is neither."""
+    """Seconds of a time of day, or of a date with one; None if it is neither."""
     plain = text.strip().replace(",", ".").replace("/", "-")
     if re.fullmatch(r"\d{1,2}:\d{2}(:\d{2}(\.\d+)?)?", plain):
         parts = [float(p) for p in plain.split(":")] + [0.0]

@@ -61,7 +61,7 @@ class LogStep:
 
 @dataclass(frozen=True)
 class Taken:
-    """What was taken for what.
+    """The reading of a log: channels, steps and table.
 
     volts     signal of every kept element's channel, V, [element, row of the log]
     left_out  elements whose channel has no information, each with the reason
@@ -84,7 +84,7 @@ class Taken:
         start = next(i for i, line in enumerate(lines) if not line.startswith("#"))
         header = lines[start].strip().split(",")
         numbers = range(start + 2, len(lines) + 1)
-        return Table(self.log.path, ",", start + 1, header, lines[start + 1 :], numbers)
+        return Table(f"readings of {self.log.path}", ",", start + 1, header, lines[start + 1 :], numbers)
 
 
 def take(log: LabLog, by: LogMap) -> Taken:
@@ -172,7 +172,8 @@ def _time(log: LabLog, by: LogMap) -> np.ndarray:
 
 def _volts(log: LabLog, name: str, by: LogMap) -> np.ndarray:
     own = by.channels[name]
-    raw = _numbers(log, name, by) * VOLTAGES[by.signal.unit]
+    raw = _numbers(log, name, by)
+    raw = np.where(np.isfinite(raw), raw, np.nan) * VOLTAGES[by.signal.unit]
     return raw * by.signal.factor * own.factor + own.offset
 
 
@@ -295,7 +296,7 @@ def _values(
             log.where(row, str(q.column)), "no number within a step", legal="a number in every row"
         )
     if name in ("displacement", "force", "load"):
-        if len(spans) > 1 and not np.ptp(found):
+        if len(spans) > 1 and not np.ptp(_scaled(found, q, scale)):
             raise InputError(f"{log.path}: {q.column}", "never changes", value=float(found[0]))
         return _scaled(found, q, scale)
     whole = np.round(found)
@@ -435,7 +436,7 @@ def _require_kind(taken: Taken, kind: str) -> None:
 
 
 def to_text(taken: Taken) -> str:
-    """What was taken for what, for people."""
+    """The reading of the log as text."""
     steps = taken.steps
     names = [n for n in NEEDED[taken.kind] if n in steps[0].values]
     lines = [

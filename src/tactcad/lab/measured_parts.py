@@ -26,7 +26,7 @@ MOST_WAYS = 50_000  # orders of equal elements that are all tried; beyond, neigh
 
 @dataclass(frozen=True)
 class Reissued:
-    """What follows from the readings.
+    """The design that follows from the readings.
 
     design      with sheet and spacer as measured, its revision followed by M
     sheet       mean thickness of the elements, mm, and their number

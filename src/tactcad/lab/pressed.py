@@ -79,7 +79,7 @@ PAIR = Figures(
 
 @dataclass(frozen=True)
 class PressedArray:
-    """By which rung, what was pressed how, K_obj under a single level pad (N/mm), and who felt what."""
+    """Rung, object and load, K_obj under a single level pad (N/mm), and each element's figures."""
 
     rung: str
     body: Body

@@ -241,7 +241,7 @@ def _grasp(
 
 
 def _visits(element: np.ndarray, load: np.ndarray, time: np.ndarray) -> np.ndarray:
-    """Of every reading how many changes of load its element saw before, by time."""
+    """For every reading the number of its element's earlier changes of load, by time."""
     order = np.lexsort((time, element))
     another, changed = np.diff(element[order]) != 0, load[order][1:] != load[order][:-1]
     visit = np.concatenate([[0], np.cumsum(changed & ~another)])

@@ -48,7 +48,7 @@ CANDIDATES = tuple(Candidate(rung.name, mesh) for rung in rungs().values() for m
 
 @dataclass(frozen=True)
 class Choice:
-    """What was chosen: the promised worst error |K/K_reference - 1|, and the zones of the envelope that the
+    """The choice: its promised worst error |K/K_reference - 1|, and the zones of the envelope that the
     designs lie in."""
 
     candidate: Candidate
@@ -176,7 +176,7 @@ def expected_error_of(s: HingeSection, rung: str, mesh: int | None = None) -> Ar
 
 
 def stated(error: float) -> str:
-    """How an expected error is worded for a reader."""
+    """The wording of an expected error."""
     return f"K within {100.0 * error:.2g} % of solid elements refined to their limit (docs/accuracy.md)"
 
 

@@ -1,4 +1,4 @@
-"""How an element as built differs from its drawing, and what each difference does to its stiffness.
+"""Differences of an element as built from its drawing, and their effects on its stiffness.
 
 All differences are half-widths of `[tolerance]`, by the names of its fields: parts lie anywhere between their
 limits. Two of them can only soften the element: a surface layer that carries no load, and a clamp that turns.

@@ -162,7 +162,7 @@ def error(s: HingeSection, grid_length: Array | float, shift: Array | float) -> 
 
 
 def allowed(s: HingeSection, grid_length: float, share: float) -> Array:
-    """How far off the hinge's middle a grid may lie for its reading to err by `share` at most, mm.
+    """Largest offset of a grid from the hinge's middle with an error of reading of at most `share`, mm.
 
     The error grows with the distance. Distances beyond a grid's length are not searched; on a two-sided hinge
     it may not climb its fillets. Raises CheckFailure if it does even in the middle.
@@ -183,7 +183,7 @@ BACKING_HEAT = 1.55e6  # J/(m3 K), polyimide: 1420 kg/m3 x 1090 J/(kg K)
 
 @dataclass(frozen=True)
 class Power:
-    """What heats a gauge. resistance ohm; conductivity of the backing W/(m K); on_time and period s.
+    """The power in a gauge. resistance ohm; conductivity of the backing W/(m K); on_time and period s.
 
     resistance_per_kelvin: dR/R of a grid warmer than its leaf, 1/K. reference_mismatch: share of it that
     the bridge's three other arms do not cancel. leaf_resistance: from under the grid to the body, K/W

@@ -1,4 +1,4 @@
-"""How the pads feel each other through one continuous rubber sample.
+"""Coupling of the pads through one continuous rubber sample.
 
 The sample is an elastic layer bonded to a rigid base (or a half-space), each pad a rectangle of even
 pressure. In the plane of wave numbers a normal load gives the surface 2 (1 - nu^2)/E phi(k h)/k, with

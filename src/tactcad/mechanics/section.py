@@ -100,7 +100,7 @@ class HingeSection:
 
     @property
     def notch_sides(self) -> Array:
-        """How many faces the slot is cut from: 1 or 2."""
+        """Number of faces from which the slot is cut: 1 or 2."""
         return np.where(self.two_sided, 2.0, 1.0)
 
     def with_(self, **changes: ArrayLike) -> HingeSection:

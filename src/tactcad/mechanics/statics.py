@@ -135,7 +135,7 @@ def _inside_sides(polygon: Sequence[Point], point: Point) -> list[float]:
 
 
 def tipping_margin(contacts: Sequence[Point], half: float) -> float:
-    """How far a vertical load anywhere on the square |x|, |y| <= half stays inside the wheels' contacts, mm.
+    """Least distance inside the wheels' contacts of a vertical load on the square |x|, |y| <= half, mm.
 
     A vertical load inside their polygon leaves every wheel pressed, however large it is; the cart's own
     weight only helps. The square's corners are the critical places.

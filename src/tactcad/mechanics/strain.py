@@ -256,7 +256,7 @@ def fillet_factor(s: HingeSection, k: Constants | None = None) -> Array:
 
 
 def peak_position(s: HingeSection, k: Constants | None = None) -> Array:
-    """How far the peak sits from the hinge's centre towards the body, mm: lc/2 + a sqrt(r t) - b r."""
+    """Distance of the peak from the hinge's centre towards the body, mm: lc/2 + a sqrt(r t) - b r."""
     k = k or by_sides("fillet", s.two_sided)
     t, r = s.hinge_thickness, s.fillet_radius
     return s.straight_length / 2.0 + k["a"] * np.sqrt(r * t) - k["b"] * r

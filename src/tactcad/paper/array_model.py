@@ -1,4 +1,4 @@
-"""What the studies of the paper need from a design: hinge sections, gauge, read-out, tolerances, rig."""
+"""A design's data for the studies of the paper: hinge sections, gauge, read-out, tolerances, rig."""
 
 from __future__ import annotations
 

@@ -178,7 +178,7 @@ def _reference(pair: BudgetPair, study: Table2Study, data: Published, array: Arr
 
 
 def _as_built(pair: BudgetPair, array: ArrayModel) -> list[Effect]:
-    """What [tolerance] holds, by the model's own derivatives."""
+    """Effects of [tolerance], by the model's own derivatives."""
     short, long = (half_widths(s, array.tolerance) for s in (pair.short, pair.long))
     found = []
     for field in AS_BUILT:
@@ -203,7 +203,7 @@ def _contact(pair: BudgetPair, array: ArrayModel) -> list[Effect]:
 
 
 def _bonded(pair: BudgetPair, array: ArrayModel) -> list[Effect]:
-    """What the bond line adds to K, and what the gauge on it does, by elements with a layer of each."""
+    """Effects of the bond line and of the gauge on K, by elements with a layer of each."""
 
     def stiffer(more: int, fewer: int) -> tuple[float, float]:
         over, under = array.layers[:more], array.layers[:fewer]

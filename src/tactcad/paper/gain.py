@@ -39,7 +39,8 @@ LENGTHS = np.linspace(0.7, 1.5, 17)  # mm
 
 @dataclass(frozen=True)
 class GainFit:
-    """By element: printed and predicted |K_v| (V/mm), K_v/K (V/N). Gains in V per unit of foil strain."""
+    """For each element: printed and predicted |K_v| (V/mm), K_v/K (V/N). Gains in V per unit of foil
+    strain."""
 
     element: np.ndarray
     arm: np.ndarray

@@ -1,4 +1,4 @@
-"""Which hinge fits Table 1 and the paper's two strains best, and what they cannot distinguish.
+"""The hinge that fits Table 1 and the paper's two strains best, and the ambiguities left.
 
 The thickness is the paper's. Length, fillet radius and notch form, which the paper leaves out, are varied: ln
 K has one unknown standard error, so the regions are those of least squares (F). The strains are weighted by

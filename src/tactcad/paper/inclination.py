@@ -86,7 +86,7 @@ class _Samples:
         self.last: tuple[np.ndarray, np.ndarray] | None = None  # approach and depths to begin with
 
     def ln_ratio(self, K_r: float, x: np.ndarray, slope: np.ndarray, height: np.ndarray) -> np.ndarray:
-        """Of K_r (N/mm), K_obj [sample], slopes [sample, 2] and heights of the pads (mm, [pad])."""
+        """ln R from K_r (N/mm), K_obj [sample], slopes [sample, 2] and heights of the pads (mm, [pad])."""
         S, T, n = len(x), len(self.load), len(self.K)
         K = np.broadcast_to(self.K, (S, T, n)).copy()
         K[..., self.r] = K_r

@@ -33,7 +33,7 @@ class Inverted:
         return self.estimate / x[None, :] - 1
 
     def physical(self) -> np.ndarray:
-        """Where the estimate is positive and finite."""
+        """Mask of positive and finite estimates."""
         return np.isfinite(self.estimate) & (self.estimate > 0)
 
     def holds(self, x: np.ndarray) -> np.ndarray:
@@ -168,7 +168,8 @@ def _without_its_own(v: Inversion) -> str:
 
 
 def _without_reading(v: Inversion) -> str:
-    """How many would be right with the samples' geometric mean as the answer to all, without any reading."""
+    """Number that would be right with the samples' geometric mean as the answer to all, without any
+    reading."""
     x, elements = v.object_stiffness, len(v.measuring)
     log = np.log(x)
     one = np.exp(log.mean())

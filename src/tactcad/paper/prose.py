@@ -31,7 +31,7 @@ def section(
     headline: tuple[str, ...] = (),
     **said: object,
 ) -> ReportSection:
-    """Of that key; `said` is what its title and question leave open, as below."""
+    """The section of that key; `said` fills the blanks of its title and question, as below."""
     title, question = (_pages()["section"][key][part].format(**said) for part in ("title", "question"))
     return ReportSection(key, title, question, findings, tables, figures, values, headline)
 
@@ -56,6 +56,6 @@ def drawn(figure: Canvas, name: str, **said: object) -> Picture:
 
 
 def effect_text(key: str, **said: object) -> tuple[str, str, str]:
-    """Of an effect of the uncertainty budget: its name, how its size is found, and what helps."""
+    """Texts of an effect of the uncertainty budget: its name, the origin of its size, and its remedy."""
     text = _pages()["effect"][key]
     return text["name"], text["how"].format(**said), text["remedy"].format(**said)

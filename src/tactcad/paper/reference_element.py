@@ -314,7 +314,7 @@ ACCOUNTS = {
 
 
 def _loads(e: ReferenceElement) -> str:
-    """Which account of Table 2 the printed deflections and signals go with."""
+    """The explanation of Table 2 that agrees with the printed deflections and signals."""
     first = e.readings[0]
     said = "; ".join(
         f"{ACCOUNTS[r.name][0]}, {interval(*r.deflection)} µm and {interval(*r.signal, 2)} V"

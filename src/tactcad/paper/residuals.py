@@ -41,7 +41,7 @@ BAND = (0.025, 0.975)
 
 @dataclass(frozen=True)
 class Residuals:
-    """By element of Table 1 that the design has too. Stiffness N/mm, lengths mm."""
+    """Residuals for each element of Table 1 that is in the design. Stiffness N/mm, lengths mm."""
 
     element: np.ndarray
     arm: np.ndarray
@@ -86,11 +86,11 @@ class Residuals:
         return self.load_arm_needed - self.load_arm
 
     def outside(self, band: np.ndarray) -> np.ndarray:
-        """Which elements' measured stiffness lies outside a band, further than EDGE."""
+        """Mask of elements with a measured stiffness outside a band by more than EDGE."""
         return np.minimum(np.log(self.measured / band[0]), np.log(band[1] / self.measured)) < -EDGE
 
     def at_edge(self, band: np.ndarray) -> np.ndarray:
-        """Which elements' measured stiffness lies within EDGE of an end of a band."""
+        """Mask of elements with a measured stiffness within EDGE of an end of a band."""
         return np.abs(np.log(self.measured / band)).min(0) <= EDGE
 
 

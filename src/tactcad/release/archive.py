@@ -106,7 +106,7 @@ Foreign = tuple[str, int, int, int]  # its fault; inode, size and time (ns) show
 
 
 def looked_at(places: Sequence[Path], others: str) -> dict[str, Foreign]:
-    """What lies in the places of zips and is not as tactcad wrote it, by name; changes nothing.
+    """Files in the places of zips that are not as tactcad wrote them, by name; changes nothing.
 
     Raises InputError if there is any and `others` is REFUSE, or any is no file that can be read.
     """

@@ -48,8 +48,8 @@ class Released:
 
 @dataclass(frozen=True)
 class Terms:
-    """As a draft although checks fail or not, as a sample without owner or not, for how many sets, and what
-    becomes of zips in the way that are not as tactcad wrote them (places.py)."""
+    """Terms of a release: whether a draft (checks may fail), whether a sample (no owner), the number of sets,
+    and the treatment of existing zips that are not as tactcad wrote them (places.py)."""
 
     draft: bool = False
     sample: bool = False

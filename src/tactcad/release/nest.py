@@ -83,7 +83,7 @@ class Nest:
 
     @cached_property
     def tabs(self) -> list[Line]:
-        """Of every outline the stretch that is cut last."""
+        """The stretch of every outline that is cut last."""
         return [_tab(p.contours[-1]) for p in self.pieces]
 
     @property

@@ -287,8 +287,8 @@ PASSES = {"one pass": 1, "three passes": 3, "four passes": 4}
 
 @dataclass(frozen=True)
 class WireTime:
-    """Of one piece: length of all contours mm, height mm of the stack cut at once, and its pieces, contours,
-    passes, minutes."""
+    """Wire time of one piece: length of all contours mm, height mm of the stack cut at once, and its pieces,
+    contours, passes, minutes."""
 
     length: float
     height: float

@@ -112,7 +112,7 @@ def _what(contents: ReleaseContents) -> list[str]:
 
 
 def facing_rows(layout: Layout) -> str:
-    """What an array of facing rows is, for the shop."""
+    """Description of an array of facing rows, for the shop."""
     design, count = layout.design, len(layout.elements)
     thinnest = min(layout.elements, key=lambda place: place.hinge.t)
     per_hundredth = thickness_elasticity(layout, thinnest) * 0.01 / thinnest.hinge.t

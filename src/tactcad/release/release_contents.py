@@ -50,7 +50,7 @@ class ReleaseContents:
         return ordered(self.scenes, self.design.design.revision, self.sets)
 
     def quantity(self, part: Part) -> float:
-        """How many of a made part the set-ups need; spares come on top."""
+        """Number of a made part that the set-ups need; spares come on top."""
         return next(line.qty for line in self.lines if line.row.part_no == part.part_no)
 
     @property

@@ -302,7 +302,8 @@ def check_packages(
 def _package_faults(
     files: Mapping[str, bytes], every: Mapping[str, bytes], one: Packed, contents: ReleaseContents
 ) -> Iterator[str]:
-    """As in the whole zip, named by a line of the order, and every file that a line names."""
+    """Faults of a package: files as in the whole zip, named by a line of the order, and every file that a
+    line names."""
     named = dict(_named(files.get(ORDER, b"")))
     for path, data in files.items():
         if path in OWN:

@@ -53,7 +53,7 @@ class Figure:
         return f"{self.heading} {self.unit}".rstrip()
 
     def of(self, record: Any) -> Any:
-        """What the record, or its JSON, holds: not scaled."""
+        """The value in the record, or in its JSON: not scaled."""
         for name in self.name.split("."):
             record = record[name] if isinstance(record, Mapping) else getattr(record, name)
         return record

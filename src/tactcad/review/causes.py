@@ -1,4 +1,4 @@
-"""What was changed in a design's text: the least edits that can be made one at a time.
+"""Changes in a design's text: the least edits that can be made one at a time.
 
 The user's own text is compared, not the design that is read from it: omitted values follow from stated ones,
 and are consequences. Texts of the same design have no differences.

@@ -110,7 +110,7 @@ class _Solids:
 
 
 def _named(pieces: Sequence[ScenePiece]) -> dict[str, ScenePiece]:
-    """By designator and kind, numbered where an element that went left its designator to another one."""
+    """Pieces by designator and kind, numbered if a removed element left its designator to another one."""
     named: dict[str, ScenePiece] = {}
     for piece in pieces:
         label = alone = f"{piece.designator} {piece.kind}"
@@ -196,7 +196,7 @@ def _changes(
 
 
 def _remarks(scenes: Mapping[str, Mapping[str, ScenePiece]]) -> list[str]:
-    """Of each remark the designators that it is of."""
+    """Designators for each remark."""
     about: dict[str, dict[str, None]] = {}
     for piece in (p for pieces in scenes.values() for p in pieces.values() if p.remark):
         about.setdefault(piece.remark, {})[piece.designator] = None

@@ -141,7 +141,7 @@ def _piece(p: Placement, kind: PieceKind, shape: TopoDS_Shape, remark: str = "")
 
 
 def _solid(part: Part) -> tuple[object, ...]:
-    """What its shape follows from."""
+    """The data that determine its shape."""
     return (part.body, part.features)
 
 

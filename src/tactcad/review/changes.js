@@ -1,4 +1,4 @@
-// The facts beside the picture of a change: the causes with what they mean, and the chosen piece of material.
+// The facts beside the picture of a change: the causes with their consequences, and the chosen piece of material.
 class ChangePanel extends Panel {
   constructor(record, parts, on) {
     super(record, parts, on);
@@ -61,7 +61,7 @@ class ChangePanel extends Panel {
     return made;
   }
 
-  // Measuring needs the descriptions, which a piece has none of.
+  // Measuring needs the descriptions, which pieces do not have.
   buttons(placed) {
     const bar = super.buttons(placed);
     bar.lastChild.remove();

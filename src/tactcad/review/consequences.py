@@ -86,7 +86,7 @@ class Meaning:
 
 
 def meaning(old: Side, new: Side) -> Meaning:
-    """What the change from one side to the other means.
+    """Consequences of the change from one side to the other.
 
     Sides without a design (golden files) are compared by their records; so are the results of a revision's
     code and of the present code for the same design.
@@ -182,7 +182,8 @@ class _Each:
         return Consequence(said, cause.kind, "together only", SensorEffect(), refused)
 
     def grouped(self, found: Sequence[Cause]) -> list[Consequence]:
-        """Of every cause; those that are refused one by one in pairs that are not, or else all together."""
+        """Consequences of every cause; causes refused alone are applied in accepted pairs, or else all
+        together."""
         one_by_one = [(cause, self.of(cause, len(found) == 1)) for cause in found]
         told = [c for _, c in one_by_one if c.how != "together only"]
         stuck = [cause for cause, c in one_by_one if c.how == "together only"]
@@ -206,7 +207,7 @@ class _Each:
 
 
 def _recorded(old: Side, new: Side, untold: Sequence[str]) -> Meaning:
-    """What the sides' records tell, without causes."""
+    """Differences of the sides' records, without causes."""
     found = _difference(old, new, None)
     if found is None:
         untold = (*untold, "consequences: not both sides tell the array's parts and bill of materials")

@@ -44,7 +44,7 @@ class Controls {
     output.title = text;
   }
 
-  // Which element is under the force sensor; motions start at the first.
+  // The element under the force sensor; motions start at the first.
   poses() {
     const pick = el('select', {id: 'pose'}, ...this.scene.poses.map((pose, n) => el('option', {value: n}, pose.name)));
     pick.addEventListener('input', () => {
@@ -79,7 +79,7 @@ class Controls {
     return el('div', {className: 'slider'}, label, input, said);
   }
 
-  // How far the motion's groups are from rest, the farthest one's.
+  // Distance of the motion's groups from rest, of the farthest one.
   far(motion, share) {
     const offsets = motion.ways.map(([, from, to]) => plus(from, times(minus(to, from), share)));
     const names = offsets.map((v) => ['x', 'y', 'z'].filter((_, k) => Math.abs(v[k]) > 1e-9).map((axis) => `${axis} ${figures(v['xyz'.indexOf(axis)], 3)}`).join(' '));
@@ -105,12 +105,12 @@ class Controls {
     return el('div', {className: 'slider'}, el('span', {}, on, label), input, el('span', {}, said, el('label', {className: 'round'}, round, ' turn')));
   }
 
-  // Takes all cuts away.
+  // Removes all cuts.
   uncut() {
     for (const on of this.box.querySelectorAll('[id^=cut-][id$=-on]:checked')) on.click();
   }
 
-  // Where every part stands off its place: by the motion that is not at rest, and by the exploded view.
+  // Every part's offset from its place: by the motion that is not at rest, and by the exploded view.
   offsets() {
     const found = new Map();
     const add = (designator, by) => found.set(designator, plus(found.get(designator) ?? [0, 0, 0], by));

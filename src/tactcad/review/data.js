@@ -1,4 +1,4 @@
-// Reading what the page carries, and making elements: texts are only ever set as text.
+// Reads the page's data, and makes elements: texts are only ever set as text.
 const byId = (id) => document.getElementById(id);
 
 // An element with properties (data-* and aria-* as attributes) and children; a string is text.
@@ -92,7 +92,7 @@ function stiffnessColour(share) {
   return `#${mixed.map((v) => v.toString(16).padStart(2, '0')).join('')}`;
 }
 
-// Gives the parts of elements the colour of their stiffness; least and largest K, N/mm, null where none is known.
+// Gives the parts of elements the colour of their stiffness; least and largest K, N/mm, null if none is known.
 function colouredByStiffness(record, parts) {
   const known = Object.entries(record.array?.elements ?? {}).filter(([, e]) => e.estimate).map(([d, e]) => [d, e.estimate.stiffness]);
   if (!known.length) return null;

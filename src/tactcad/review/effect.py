@@ -164,7 +164,7 @@ class Reviewed:
 
     @cached_property
     def findings(self) -> list[Finding]:
-        """Of every check that needs no kernel and no virtual builds."""
+        """Findings of every check that needs no kernel and no virtual builds."""
         report, design = Report(), self.design
         job = Job(design, [scene.name for scene in self.scenes], self.scenes)
         quick = [check for check in described(design) if check.quick]
@@ -214,7 +214,7 @@ class ChangedFigure:
 
 @dataclass(frozen=True)
 class ElementEffect:
-    """What becomes of one element, by its designator before and after: the figures that change.
+    """Changed figures of one element, by its designator before and after.
 
     Units as in `ElementFigures`. A figure that only one of the sides knows is left out.
     """
@@ -234,7 +234,7 @@ class ElementEffect:
 
 @dataclass(frozen=True)
 class SensorEffect:
-    """What one change, or several together, means.
+    """Effects of one change, or of several together.
 
     elements         those of which a figure changes
     elements_added, elements_removed
@@ -281,8 +281,8 @@ class SensorEffect:
 
 
 def same_elements(old: CommonTables, new: CommonTables) -> Pairs:
-    """Which element of the new array is which of the old one, in their order: place by place in rows that are
-    as long as they were; else by their arms, so that one put in between moves no other."""
+    """Pairs of the new and old arrays' elements, in order: by place in rows of unchanged length; else by
+    their arms, so that an inserted one shifts no other."""
     before, after = (family_of(d).layout(d).elements for d in (old, new))
     if type(old) is not type(new):
         return [*((p.designator, None) for p in before), *((None, p.designator) for p in after)]
@@ -308,7 +308,7 @@ def by_name(old: SensorState, new: SensorState) -> Pairs:
 
 
 def effect(old: SensorState, new: SensorState, pairs: Pairs) -> SensorEffect:
-    """What two states tell of each other, whichever code they come from."""
+    """Effects between two states, from any code."""
     shared = [n for n in new.made if n in old.made]
     revised = [n for n in shared if not _same(old.made[n].sheet, new.made[n].sheet)]
     added = [n for n in new.made if n not in old.made]
@@ -330,7 +330,7 @@ def effect(old: SensorState, new: SensorState, pairs: Pairs) -> SensorEffect:
 
 
 def reviewed_effect(old: Reviewed, new: Reviewed, build: bool) -> SensorEffect:
-    """What two designs mean by the present code; with `build`, arrays are built virtually too."""
+    """Effects between two designs by the present code; with `build`, arrays are also built virtually."""
     pairs = same_elements(old.design, new.design)
     found = effect(old.state, new.state, pairs)
     share = _changed(old.yield_share, new.yield_share) if build else None

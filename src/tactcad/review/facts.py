@@ -1,4 +1,4 @@
-"""What the page and FreeCAD's document show, as plain data: scenes, parts, elements with their pairs,
+"""Contents of the page and of FreeCAD's document, as plain data: scenes, parts, elements with their pairs,
 findings.
 
 Parts are read off their descriptions: no kernel, no mesh.
@@ -113,7 +113,7 @@ def scene_facts(design: CommonTables, scene: Scene) -> SceneFacts:
 
 
 def _ways(scene: Scene) -> dict[str, Vector]:
-    """By designator how far the guide's exploded view moves it, mm."""
+    """Displacement in the guide's exploded view by designator, mm."""
     if not scene.steps:
         return {p.designator: (0.0, 0.0, 0.0) for p in scene.placements}
     pairs = zip(scene.placements, exploded(scene), strict=True)

@@ -58,7 +58,7 @@ def program() -> str:
 
 
 def refuse_no_document(out: str) -> None:
-    """What keeps a document from being made at `out`, before any work.
+    """Refuse, before any work, if no document can be made at `out`.
 
     Raises InputError if it is no document's name, CheckFailure if FreeCAD is not installed.
     """

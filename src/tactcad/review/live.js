@@ -1,9 +1,9 @@
-// Follows the design while it is written: asks what changed, and shows it where the reader stands.
+// Follows the design while it is edited: asks for changes, and shows them in the reader's present view.
 const SLIDERS = '#controls input, #controls select';
 
 function liveBar(live) {
   const shown = (value, digits) => (value === null ? '\u2013' : typeof value === 'number' ? figures(value, digits) : String(value));
-  // As many digits as tell before from after: a thicker hinge is a ten-thousandth of the array's mass.
+  // Enough digits to show the difference: a thicker hinge is a ten-thousandth of the array's mass.
   const digits = ({before: a, after: b}) => [4, 6, 8, 10, 12].find((n) => shown(a, n) !== shown(b, n)) ?? 17;
   const moved = (a, b) => (typeof a === 'number' && typeof b === 'number' && a !== 0 ? percent((b - a) / Math.abs(a), 2) : '');
   const rows = live.changes.map((c) => [c.about, c.what, shown(c.before, digits(c)), '\u2192', shown(c.after, digits(c)), moved(c.before, c.after)]);
@@ -25,7 +25,7 @@ function alike(a, b, before, after) {
   return look(a, before) === look(b, after);
 }
 
-// Puts other meshes and places in the picture as it stands: eye, cuts and what is hidden stay.
+// Puts other meshes and places in the present picture: eye, cuts and hidden parts stay.
 function renewed({view, controls, panel, measure, meshes}, scene, before) {
   const changed = new Set(scene.placed.map((p) => p.part_no).filter((no) => !sameMesh(before.get(no), meshes.get(no))));
   const shapes = view.shapes(scene).parts;
@@ -44,7 +44,7 @@ function renewed({view, controls, panel, measure, meshes}, scene, before) {
   view.select(panel.selected);
 }
 
-// Draws a scene with other parts, the reader standing where he stood: eye, sliders, what is hidden and chosen.
+// Draws a scene with other parts in the reader's view: eye, sliders, hidden and chosen parts stay.
 function redrawn(page, scene) {
   const {view, tree, panel} = page;
   const v = view.viewer;

@@ -64,7 +64,7 @@ class NumberChange:
 
 @dataclass(frozen=True)
 class LiveState:
-    """What the page is to show.
+    """The page's state.
 
     version  grows with every change of the rest
     model    version at which the model changed last
@@ -175,8 +175,8 @@ class Live:
 
 
 def live_record(design: CommonTables, scene_name: str, shapes: Shapes) -> tuple[dict[str, Any], bytes]:
-    """As `review_record` of one scene, without what takes seconds: checks, virtual builds and with them each
-    requirement's variance, pictures of strain.
+    """`review_record` of one scene without its slow parts: checks, virtual builds with each requirement's
+    variance, pictures of strain.
 
     Parameters
     ----------
@@ -210,7 +210,7 @@ def live_record(design: CommonTables, scene_name: str, shapes: Shapes) -> tuple[
 def number_changes(
     old: tuple[CommonTables, Mapping[str, Any]], new: tuple[CommonTables, Mapping[str, Any]]
 ) -> list[NumberChange]:
-    """What differs between two designs and their records: fields first, then the elements' estimates, equal
+    """Differences between two designs and their records: fields first, then the elements' estimates, equal
     changes of several elements as one, then masses."""
     before, after = (flattened(design) for design, _ in (old, new))
     fields = [
@@ -247,7 +247,7 @@ def _masses(old: Mapping[str, Any], new: Mapping[str, Any]) -> Iterator[NumberCh
 
 
 def _mass(record: Mapping[str, Any]) -> float:
-    """Of all parts of the scene, g, to a milligram: the sum's last digits depend on the order."""
+    """Mass of all parts of the scene, g, to a milligram: the sum's last digits depend on the order."""
     mass = {part["part_no"]: part["mass_g"] for part in record["parts"]}
     return round(sum(mass[p["part_no"]] for p in record["scenes"][0]["placed"]), 3)
 

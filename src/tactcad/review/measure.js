@@ -1,7 +1,7 @@
-// Measuring between exact features: places are the descriptions', no mesh takes part.
+// Measuring between exact features: places are the descriptions', not the mesh's.
 const PARALLEL = 1e-9;  // sine up to which directions count as parallel, as in the descriptions
 
-// What lies between two features, each {kind, point, direction, diameter} in the scene: a text.
+// The distance or angle between two features, each {kind, point, direction, diameter} in the scene: a text.
 function between(a, b) {
   const along = Math.abs(dot(a.direction, b.direction));
   const away = minus(b.point, a.point);
@@ -41,7 +41,7 @@ class Measure {
     if (selected) this.offer(selected);
     const part = this.placed.has(selected) ? this.parts.get(this.placed.get(selected).part_no) : null;
     const made = [el('h2', {}, 'Measure'), el('p', {className: 'hint'},
-      'Between exact features of the descriptions, at the places where the parts stand now; the mesh takes no part.')];
+      'Between exact features of the descriptions, at the parts' present places, not of the mesh.')];
     made.push(this.end(0, 'From'), this.end(1, 'To'), el('p', {id: 'measured', 'aria-live': 'polite'}, this.result()));
     if (part?.limits.length) {
       made.push(section(`Exact sizes of ${selected}, mm`, table(['', 'nominal'], part.limits.map((c) => [c.name, mm(c.nominal)]), ['', 'n'])));

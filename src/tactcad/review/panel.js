@@ -9,7 +9,7 @@ function table(heads, rows, classes = []) {
     el('tbody', {}, ...rows.map((row) => el('tr', {}, ...cells('td', row))))));
 }
 
-// Name and value in two columns; what has no value is left out.
+// Name and value in two columns; entries without value are left out.
 function list(pairs) {
   const known = pairs.filter(([, value]) => value !== '' && value !== null && value !== undefined);
   return el('dl', {}, ...known.flatMap(([name, value]) => [el('dt', {}, name), el('dd', {}, value)]));
@@ -22,7 +22,7 @@ function section(title, ...children) {
 // Numbers of a sentence, but not those of names such as E4 or AW-7075.
 const NUMBER = /(?<![\w.-])\d+(?:\.\d+)?(?:e[+-]?\d+)?(?![\w.]*[A-Za-z_])/g;
 
-// Sentences that differ in their numbers as one: where they differ stands from which to which.
+// Sentences that differ only in numbers, joined: each differing number becomes a range.
 function together(sentences) {
   const all = sentences.map((s) => s.match(NUMBER) ?? []);
   let n = 0;

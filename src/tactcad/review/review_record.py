@@ -73,13 +73,13 @@ def review_record(
 
 
 def record_head(design: CommonTables) -> dict[str, Any]:
-    """What every record begins with."""
+    """The head of every record."""
     identity = {name: getattr(design.design, name) or "" for name in IDENTITY}
     return {"schema": SCHEMA, "tactcad": __version__, "design": identity}
 
 
 def _strains(design: CommonTables, pack: MeshPack) -> tuple[dict[str, Any], bytes]:
-    """By element part number the strain field's arrays in the block, which it continues."""
+    """The strain field's arrays by element part number, appended to the block."""
     family, block = family_of(design), pack.block
     layout, strain_field = family.layout(design), family.estimate.strain
     table: dict[str, Any] = {}

@@ -192,7 +192,7 @@ class _Revision:
 
 
 def _record(folder: Path, design: Path) -> Record:
-    """What the code in the folder's checkout makes of a design. Raises _NotBuilt."""
+    """A design's record by the code in the folder's checkout. Raises _NotBuilt."""
     nothing = {"schema": SCHEMA, "design": "none", "revision": "A", "parts": {}, "scenes": {}, "elements": {}}
     (folder / "nothing.json").write_text(json.dumps(nothing))
     source = folder / TREE / "src"

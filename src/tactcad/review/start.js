@@ -14,7 +14,7 @@ async function start() {
   const record = JSON.parse(new TextDecoder().decode(await unpacked('data')));
   const [parts, meshes, strains] = [new Map(), new Map(), new Map()];
 
-  // Takes up a record and its block in the place of the one before.
+  // Replaces the record and its block.
   function take(given, block) {
     Object.assign(record, given);
     titles(record);
@@ -69,7 +69,7 @@ async function start() {
     finding: (finding) => showFinding(finding),
   });
 
-  // The strain on a placed element's body, alone and close at first; null takes it off.
+  // The strain on a placed element's body, alone and close at first; null removes it.
   function showStrain(placed, newton, full) {
     const first = placed && view.strainOf !== placed.designator;
     const field = placed && strains.get(placed.part_no);

@@ -11,7 +11,7 @@ function strainShade(share) {
 
 const strainColour = (share) => `rgb(${strainShade(share).join(' ')})`;
 
-// `body` shows it in three dimensions too: `shown()`, and `show(newton, full)` or `show(null)`.
+// `body` also shows it in three dimensions: `shown()`, and `show(newton, full)` or `show(null)`.
 function strainPicture(field, estimate, body) {
   if (!field) return el('p', {}, 'No finite elements of this part.');
   if (field.why_not) return el('p', {}, field.why_not);
@@ -60,7 +60,7 @@ function drawStrain(canvas, field, newton, full, hingeAlone) {
   const near = (n) => !hingeAlone || Math.hypot(points[2 * n] - field.hinge_x, points[2 * n + 1]) < 4 * field.hinge;
   const shown = [];
   for (let q = 0; q < quads.length; q += 4) shown.push([...quads.subarray(q, q + 4)]);
-  // the window is laid around these; what lies beyond it is cut off by the canvas
+  // the window is laid around these; the canvas cuts off the rest
   const all = [...Array(strain.length).keys()].filter(near).map(at);
   const [x0, x1] = [Math.min(...all.map((p) => p[0])), Math.max(...all.map((p) => p[0]))];
   const [z0, z1] = [Math.min(...all.map((p) => p[1])), Math.max(...all.map((p) => p[1]))];

@@ -1,8 +1,8 @@
 // The strain of a pressed element on its body: the field of the finite elements through the thickness, between
-// load line and clamp edge, and what lies beyond them as the part is drawn, which bears no strain. The part's
+// load line and clamp edge, and the rest as the part is drawn, without strain. The part's
 // frame: x along the arm, then across it, then through the thickness.
 
-// Of a field at a force, where each node goes and the colour of each: [x, z] and [r, g, b].
+// For a field at a force, each node's place and colour: [x, z] and [r, g, b].
 function strained(field, newton, full) {
   const {points, moved, strain} = field;
   const nodes = [...Array(strain.length).keys()];
@@ -28,7 +28,7 @@ function rigid(field, end, newton) {
   return ([x, height, y]) => [x + by * (u - turn * (height - z)), height + by * (w + turn * (x - end)), y];
 }
 
-// What of a polygon lies on one side of a place along an axis: corners, round about.
+// The part of a polygon on one side of a place along an axis: its corners, in order.
 function beyond(corners, axis, at, side) {
   const kept = [];
   corners.forEach((p, n) => {
@@ -80,7 +80,7 @@ function strainBody(field, mesh, newton, full) {
   const low = Math.min(...points.filter((_, n) => n % 2 === 1));
   for (let t = 0; t < mesh.triangles.length; t += 3) {
     const corners = [0, 1, 2].map((k) => corner(mesh.triangles[t + k]));
-    // the pad's half beside the load line stands out of the arm
+    // the pad's half next to the load line protrudes from the arm
     const pad = beyond(beyond(beyond(corners, 0, tip, 1), 0, field.hinge_x, -1), 1, low, -1);
     const rests = [beyond(corners, 0, tip, -1).map(pressed), pad.map(pressed), beyond(corners, 0, clamp, 1)];
     for (const rest of rests) add(rest, rest.map(() => none));

@@ -34,7 +34,7 @@ class Subject:
 
 
 def subject(source: str) -> Subject:
-    """What `source` names: a design (a path, or a name in hardware/), or an export's folder.
+    """The subject named by `source`: a design (a path, or a name in hardware/), or an export's folder.
 
     Raises InputError if it is neither, or the export is damaged or was made by another version.
     """

@@ -212,8 +212,8 @@ def _codes(names: Iterable[str]) -> str:
 
 
 def _code(text: str) -> str:
-    """As a span of code in a table: on one line, without what would end span or cell, or be a tag or a link
-    to a reader that knows no spans."""
+    """A span of code in a table: on one line, without characters that would end span or cell, or be a tag or
+    link to readers without spans."""
     plain = " ".join(text.split()).translate(PLAIN).replace("](", "] (")
     plain = plain.encode(errors="backslashreplace").decode()
     return f"`{plain if len(plain) <= MOST_TEXT else plain[: MOST_TEXT - 1] + '…'}`"

@@ -102,20 +102,20 @@ class View {
     return this.viewer.rendered.nestedGroup.groups[this.paths.get(designator)];
   }
 
-  // Where a designator stands now.
+  // A designator's present place.
   origin(placed) {
     const by = this.offsets.get(placed.designator);
     return by ? plus(placed.origin, by) : placed.origin;
   }
 
-  // The box of designators as they stand, mm.
+  // The box of designators at their present places, mm.
   box(designators) {
     const wanted = new Set(designators);
     return boxOf(this.scene.placed.filter((p) => wanted.has(p.designator))
       .map((p) => [this.parts.get(p.part_no).box, p.rotation, this.origin(p)]));
   }
 
-  // Moves parts by offsets from their places (mm): a map by designator; all others stand at rest.
+  // Moves parts by offsets from their places (mm): a map by designator; all others are at rest.
   place(offsets) {
     this.offsets = offsets;
     for (const p of this.scene.placed) this.group(p.designator).position.set(...this.origin(p));
@@ -179,7 +179,7 @@ class View {
     this.draw();
   }
 
-  // The marked place on the canvas in pixels, null where it is not seen.
+  // The marked place on the canvas in pixels, null if it is not seen.
   markedAt() {
     if (!this.marked) return null;
     const {place, designator} = this.marked;
@@ -209,7 +209,7 @@ class View {
     this.fit();
   }
 
-  // From as far below as it was above.
+  // From below, at the same distance.
   mirrorEye() {
     const v = this.viewer;
     const target = v.getCameraTarget();
@@ -251,7 +251,7 @@ class View {
     this.frame(point, boxCorners(minus(point, [reach, reach, reach]), plus(point, [reach, reach, reach])), 0.9);
   }
 
-  // Cuts along axis 0 to 2 at a place (mm in the scene), keeping what lies below it or, turned round, above;
+  // Cuts along axis 0 to 2 at a place (mm in the scene), keeping the part below or, turned round, above;
   // null: not at all.
   clip(axis, at, turnedRound) {
     this.clips[axis] = at === null ? null : {at, turnedRound};
@@ -283,7 +283,7 @@ class View {
     });
   }
 
-  // Draws once before the next frame, however often it is asked for.
+  // Draws once before the next frame, for any number of requests.
   draw() {
     if (this.waiting) return;
     this.waiting = true;
@@ -310,13 +310,13 @@ class View {
     this.viewer.resizeCadView(width, 0, height, true);
   }
 
-  // The picture as it is, for printing.
+  // The present picture, for printing.
   picture() {
     this.viewer.update(true, false);
     return this.viewer.renderer.domElement.toDataURL('image/png');
   }
 
-  // The designator under a point of the window, null where there is none.
+  // The designator under a point of the window, null if there is none.
   at(x, y) {
     if (!this.viewer?.ready || !this.viewer.idPicker) return null;
     const around = this.viewer.renderer.domElement.getBoundingClientRect();

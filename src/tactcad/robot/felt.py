@@ -26,7 +26,7 @@ NEAR_STOP = 0.999  # of the range: beyond it the stop bears
 
 @dataclass(frozen=True)
 class Felt:
-    """What the taxels feel, in the table's order; with several frames, a row a frame.
+    """The taxels' readings, in the table's order; with several frames, a row a frame.
 
     deflection  of the pads' middles, mm
     force       across the pads, N; at its stop a pad bears more

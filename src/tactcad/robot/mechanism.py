@@ -75,7 +75,7 @@ class Moving:
 
     @property
     def origin(self) -> np.ndarray:
-        """Of its frame."""
+        """Origin of its frame."""
         return np.array([self.taxel.x_mm, self.taxel.y_mm, self.taxel.z_mm]) + self.turn @ self.joints_at
 
 
@@ -131,7 +131,7 @@ class Inertia:
 
 
 def together(bodies: Sequence[Inertia]) -> Inertia:
-    """Of several in one frame."""
+    """Several solids joined in one frame."""
     mass = sum(b.mass for b in bodies)
     centre = np.sum([b.mass * b.centre for b in bodies], axis=0) / mass
     return Inertia(mass, centre, np.sum([b.at(centre) for b in bodies], axis=0))

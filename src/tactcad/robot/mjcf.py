@@ -103,7 +103,8 @@ def _solid(body: Element, solid: Solid) -> None:
 
 
 def _pad(body: Element, m: Moving) -> None:
-    """What touches, and the site at the pad's face; its box takes in wherever the pad's ball is touched."""
+    """The pad's contact body, and the site at its face; the site's box includes every contact point of the
+    ball."""
     face, length, width = -m.joints_at, m.taxel.length_mm / 2, m.taxel.width_mm / 2
     deep = m.ball or min(length, width)
     shape, size = ("sphere", (deep,)) if m.ball else ("box", (length, width, deep))

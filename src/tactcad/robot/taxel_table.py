@@ -78,7 +78,7 @@ class Taxel:
 
     @property
     def noise_mm(self) -> float:
-        """Of the pad's sink. Raises InputError if the table has neither volts nor teslas."""
+        """Noise of the pad's sink, mm. Raises InputError if the table has neither volts nor teslas."""
         for signal, noise in ((self.signal_V_per_mm, self.noise_V), (self.signal_mT_per_mm, self.noise_mT)):
             if signal and noise is not None:
                 return noise / abs(signal)

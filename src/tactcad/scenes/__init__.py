@@ -105,5 +105,5 @@ def overall_size(design: CommonTables) -> Vector:
 
 
 def stated_size(size: Vector) -> str:
-    """As reports state it: "63.0 x 38.2 x 21.6 mm"."""
+    """The size in reports: "63.0 x 38.2 x 21.6 mm"."""
     return " x ".join(f"{side:.1f}" for side in size) + " mm"

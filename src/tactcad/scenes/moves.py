@@ -195,7 +195,7 @@ class _Assembly:
 
 
 def driver(part: Part) -> str:
-    """What turns a screw or nut; "" for other parts."""
+    """The driver of a screw or nut; "" for other parts."""
     if part.kind not in FASTENERS:
         return ""
     m = METRIC[part.thread]

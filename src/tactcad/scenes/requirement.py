@@ -1,4 +1,4 @@
-"""What must hold for parts to make a sensor, and the dimensions that it depends on.
+"""Requirements on parts that make a sensor, and the dimensions that they depend on.
 
 numpy is loaded only for limits and values: listing a design's scenes does not need it.
 """
@@ -95,7 +95,7 @@ class Requirement:
     fields: tuple[str, ...] = ()
 
     def margin(self, value: Array) -> Array:
-        """How far inside its limits a value is, in its unit; negative outside."""
+        """Distance of a value inside its limits, in its unit; negative outside."""
         import numpy as np
 
         return np.minimum(value - self.lower, self.upper - value)

@@ -53,7 +53,7 @@ AROUND = (1.0, -1.0, 1.0, -1.0)
 
 
 def wheels(layout: Layout, known: dict[str, DimensionLimits]) -> list[Requirement]:
-    """Of the cart: no wheel is loose. Adds the variables that it depends on to `known`."""
+    """Requirement of the cart: no wheel is loose. Adds the variables that it depends on to `known`."""
     design = layout.design
     rig = present(cart_layout(design))
     plate = ((f"{design.name}-cart-plate", AXLES_OVER),)
@@ -80,7 +80,7 @@ def loose_wheel(a: Built) -> Array:
 
 
 def roller(layout: Layout, known: dict[str, DimensionLimits]) -> list[Requirement]:
-    """Of the calibration's tip: the roller lies in its seat. Adds the variables to `known`."""
+    """Requirement of the calibration's tip: the roller lies in its seat. Adds the variables to `known`."""
     design = layout.design
     size, of = present(design.calibration).roller, ((f"{design.name}-tip-roller", SEAT_RADIUS),)
     seat, pin = "roller tip: seat radius", "roller: diameter"

@@ -1,6 +1,4 @@
-"""How much a screw may overlap the part that it is screwed into: by the thread's ring over the engaged
-length.
-"""
+"""Allowed overlap of a screw with its tapped part: the thread's ring over the engaged length."""
 
 from __future__ import annotations
 
@@ -31,7 +29,7 @@ def _ring(hole: Hole, start: float, end: float) -> float:
 
 
 def thread_range(hole: Hole) -> tuple[float, float]:
-    """From where to where along its axis a hole has full thread, mm; it begins under a counterbore."""
+    """Range along its axis in which a hole has full thread, mm; it begins under a counterbore."""
     start = hole.counterbore[1] if hole.counterbore else 0.0
     return start, start + hole.thread_depth
 

@@ -37,7 +37,7 @@ class ChangedMaterial:
 
 
 def changed(old: TopoDS_Shape, new: TopoDS_Shape) -> ChangedMaterial:
-    """What became of the old solid's material, both in one frame; the volumes must add up."""
+    """Changes of the old solid's material, both in one frame; the volumes must add up."""
     for method in (_by_kernel, _by_meshes):
         try:
             return method(old, new)

@@ -1,5 +1,4 @@
-"""What the kernel measures on shapes: size, the faces that come near a box, how near two sets of faces
-come."""
+"""Measurements by the kernel on shapes: size, the faces near a box, the distance of two sets of faces."""
 
 from __future__ import annotations
 
@@ -25,7 +24,7 @@ from .occt import as_face, as_vertex, location, subshapes
 
 
 def measure(shape: TopoDS_Shape) -> dict:
-    """What the kernel measures on a shape.
+    """The kernel's measurements on a shape.
 
     Returns
     -------
@@ -70,7 +69,7 @@ def bounding_box(shape: TopoDS_Shape) -> list[list[float]]:
 
 
 def holes_through(shape: TopoDS_Shape) -> list[tuple[float, float, float]]:
-    """Of every round hole along z, each once: x, y and diameter, mm."""
+    """Every round hole along z, once: x, y and diameter, mm."""
     found = set()
     for face in subshapes(shape, TopAbs_FACE):
         surface = BRepAdaptor_Surface(as_face(face))

@@ -1,4 +1,4 @@
-"""How finely shapes are meshed, and what that may take off or add to their volume."""
+"""Fineness of meshes, and the resulting error of volume."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
-"""What all code takes from the kernel's binding here: names that differ between OCP 7.9 and OCP 8,
-sub-shapes, places, and faces found by the pieces of surface that a part's description names.
+"""The part of the kernel's binding that all code imports from here: names that differ between OCP 7.9 and OCP
+8, sub-shapes, places, and faces found by the pieces of surface that a part's description names.
 """
 
 from __future__ import annotations

@@ -212,7 +212,7 @@ def facets(shape: TopoDS_Shape, linear: float, angular: float) -> Facets:
 
 
 def _floats(arrays: list[np.ndarray]) -> Floats:
-    """As the graphics card takes them; one zero only, so that equal shapes give equal bytes."""
+    """Floats for the graphics card; one zero only, so that equal shapes give equal bytes."""
     return (np.concatenate(arrays) if arrays else np.zeros((0, 3))).astype(np.float32) + np.float32(0.0)
 
 

@@ -122,13 +122,13 @@ class Assembled:
 
     @property
     def first_pins(self) -> list[int]:
-        """Of both rows, among all pins."""
+        """First pins of both rows, among all pins."""
         return [0, len(self.layout.dowel_x)]
 
     # --- pins and pads over the fixture's floor ---
 
     def holes(self, which: Plate, axis: Axis) -> Array:
-        """How far the first dowel holes of both rows are off in the `tapped` or `head` plate, (arrays, 2)."""
+        """Deviations of both rows' first dowel holes in the `tapped` or `head` plate, (arrays, 2)."""
         pair = self.made[pair_holes(axis)]
         own = self.made[own_holes(which, axis)]
         return (pair + own)[:, self.first_pins]
@@ -172,7 +172,7 @@ class Assembled:
 
     @cached_property
     def high(self) -> Array:
-        """How much higher than drawn over the floor a level element hangs on its pin."""
+        """Height over nominal of a level element on its pin, from the floor."""
         return self._pin_at_elements("z") - self.play / 2 - self.made[PAD]
 
     @cached_property
@@ -184,7 +184,7 @@ class Assembled:
         return np.minimum(inner, (high - self.made[PAD_LEAN]) / (self.dowel_x - layout.pad_outer))
 
     def raised(self, x: float) -> Array:
-        """What hole and turn add to the height of an element at so far from the middle line."""
+        """Contribution of hole and turn to an element's height at a distance from the middle line."""
         return self.high - self.turn * (self.dowel_x - x)
 
     @cached_property
@@ -225,7 +225,7 @@ class Assembled:
 
     @property
     def press(self) -> Array:
-        """By how much each pin is larger than its hole in the tapped plate, (arrays, pins)."""
+        """Interference of each pin in the tapped plate, (arrays, pins)."""
         return self.made[PIN] - self.made[bore_in("tapped")]
 
     @property
@@ -259,7 +259,7 @@ class Assembled:
 
     @cached_property
     def tips(self) -> Array:
-        """How far each tip is off along x, away from the middle, mm."""
+        """Deviation of each tip along x, away from the middle, mm."""
         d = self.layout.design
         place = self.made[IN_PLAY] * self.play / 2 + self.turn * (d.holes.height + d.element.pad_height)
         return self.side * self._pin_at_elements("x") + place - self.made[of_element(TIP_PLACE)]

@@ -1,4 +1,4 @@
-"""What must hold for parts to make a sensor: requirements with limits, and the value of each in an array."""
+"""Requirements on parts that make a sensor: limits, and each one's value in an array."""
 
 from __future__ import annotations
 

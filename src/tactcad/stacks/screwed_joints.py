@@ -270,8 +270,8 @@ def patterns(
 
 
 def _off_pins(layout: Layout, part: Part) -> float:
-    """How far a part that hangs on pins may be off the plate that holds them, both ways, mm: by its play on
-    them and the places of the pins."""
+    """Largest offset of a part on pins from the pins' plate, both ways, mm: by its play and the places of the
+    pins."""
     hole = next((c for c in part.characteristics if c.name == DOWEL_HOLE), None)
     return hole.upper - dowel_limits(layout.design.clamp.dowel)[0] + HOLES if hole else 0.0
 

@@ -1,4 +1,4 @@
-"""How limits add up: for each requirement nominal, worst case, spread, and what contributes how much."""
+"""Tolerance stacks: for each requirement nominal, worst case, spread, and contributions."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ class StackLine:
 
     @property
     def shortfall(self) -> float:
-        """By how much the worst case leaves the limits, in the requirement's unit; 0 if it does not."""
+        """Excess of the worst case over the limits, in the requirement's unit; 0 if there is none."""
         r = self.requirement
         return max(0.0, r.lower - self.worst_low, self.worst_high - r.upper)
 
@@ -191,8 +191,7 @@ def _at(value: Array, instance: int) -> Array:
 
 
 def _way(deviations: Array, value: Array) -> Array:
-    """By piece: 1 if a value rises with its deviation, -1 if it falls, 0 if chance would do as
-    much."""
+    """For each piece: 1 if a value rises with its deviation, -1 if it falls, 0 if chance would do as much."""
     d, v = deviations - deviations.mean(axis=0), value - value.mean()
     norm = np.sqrt((d**2).sum(axis=0) * (v**2).sum())
     correlation = np.divide(d.T @ v, norm, out=np.zeros(d.shape[1]), where=norm > 0)

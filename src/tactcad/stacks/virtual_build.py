@@ -44,7 +44,7 @@ class ElementBuilt:
     stop_closes_at_least: float
 
     def known(self) -> dict[str, Any]:
-        """By field, with None for unknown figures: arrays built outside the closed form's range have no
+        """Figures by field, with None for unknown ones: arrays built outside the closed form's range have no
         stiffness."""
 
         def figures(value: Any) -> Any:
@@ -89,7 +89,7 @@ class Builds:
 
 @dataclass(frozen=True)
 class Sensor:
-    """What virtual builds need of a design: variables and requirements are made once."""
+    """A design for virtual builds: variables and requirements are made once."""
 
     layout: Layout
     variables: dict[str, DimensionLimits]
@@ -113,14 +113,15 @@ class Sensor:
         return Builds(count, seed, kept, failures, elements)
 
     def missed(self, arrays: Assembled, count: int) -> dict[str, Array]:
-        """By requirement, which of `count` arrays miss it."""
+        """For each requirement a mask of `count` arrays that miss it."""
         bad = {r.name: r.margin(r.value(arrays)).min(axis=1) < -ROUNDING for r in self.requirements}
         return {name: np.broadcast_to(which, (count,)) for name, which in bad.items()}
 
     def _all(
         self, count: int, distribution: Distribution, rng: np.random.Generator
     ) -> tuple[dict[str, Array], dict[str, Array]]:
-        """By requirement, which arrays miss it; and the elements' figures, (arrays, elements)."""
+        """For each requirement a mask of arrays that miss it; and the elements' figures, (arrays,
+        elements)."""
         at_once = max(1, AT_ONCE // len(self.layout.elements))
         missed: dict[str, list[Array]] = {r.name: [] for r in self.requirements}
         figures: dict[str, list[Array]] = {}

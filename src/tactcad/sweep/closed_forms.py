@@ -36,7 +36,7 @@ ALL = slice(None)
 
 
 class Refused:
-    """Of `count` designs, which are `valid`, and of the others `reason` ("" of a valid one)."""
+    """Mask of the `valid` ones of `count` designs, and `reason` of the others ("" for a valid one)."""
 
     def __init__(self, count: int) -> None:
         self.valid = np.ones(count, bool)

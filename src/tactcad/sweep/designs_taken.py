@@ -31,7 +31,7 @@ Column = NDArray[Any]  # one field's values: floats, or objects if they are no n
 
 
 def designs_taken(study: Study, start: int, stop: int) -> dict[str, Column]:
-    """By the path of each varied field, its values in designs `start` to `stop` (exclusive)."""
+    """Values in designs `start` to `stop` (exclusive), by the path of each varied field."""
     if study.study.sampling in (GRID, LIST):
         return _counted(study, np.arange(start, stop))
     shares = _shares(study, start, stop)
@@ -39,7 +39,7 @@ def designs_taken(study: Study, start: int, stop: int) -> dict[str, Column]:
 
 
 def prepared(study: Study) -> None:
-    """What all designs are drawn from, made once; it goes with the study wherever that is sent."""
+    """Data for drawing all designs, made once and sent along with the study."""
     if study.study.sampling == SOBOL:
         _ = study.sobol
 

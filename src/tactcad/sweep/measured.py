@@ -123,7 +123,7 @@ def _field(column: Column) -> pa.Array:
 
 
 def as_bytes(table: pa.Table) -> bytes:
-    """As Arrow's stream."""
+    """The table as an Arrow stream."""
     import pyarrow as pa
 
     sink = pa.BufferOutputStream()

@@ -110,8 +110,9 @@ def _without_formulas(table: pa.Table, names: Iterable[str]) -> pa.Table:
 
 
 def _encoded(first: pa.Table) -> dict[str, Any]:
-    """How Parquet keeps a study's columns. Drawn numbers neither repeat nor compress, and trying doubles the
-    time. Repeated values are kept as a dictionary and runs of places in it; designs' own numbers as steps."""
+    """Parquet's encoding of a study's columns. Drawn numbers neither repeat nor compress, and trying doubles
+    the time. Repeated values are kept as a dictionary and runs of places in it; designs' own numbers as
+    steps."""
     import pyarrow as pa
     import pyarrow.compute as pc
 

@@ -134,7 +134,7 @@ class Study:
 
     @cached_property
     def sobol(self) -> Points:
-        """Of which its Sobol points are made: drawn once, and handed on with the study."""
+        """Data for its Sobol points: made once, and handed on with the study."""
         return points_at_powers(len(self.vary), self.count, self.study.seed)
 
     @property

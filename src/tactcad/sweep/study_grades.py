@@ -109,7 +109,7 @@ def _sections(study: Study) -> Iterator[HingeSection]:
 
 
 def _seconds(study: Study, each: dict[Candidate, float], workers: int) -> float:
-    """Of the whole study: its designs shared by the workers, and what one process does alone."""
+    """Seconds of the whole study: its designs shared by the workers, and the work of one process alone."""
     costs, measure, count = published(), study.measure, study.count
     layout = family_of(study.design).layout(study.design)
     elements = {"element": float(len(layout.elements))}

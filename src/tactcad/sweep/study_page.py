@@ -77,8 +77,8 @@ def write_page(out: str | Path) -> Path:
 def _columns(
     folder: Path, sha256: str, vary: Sequence[str]
 ) -> tuple[dict[str, Floats], dict[str, list[str]]]:
-    """What varies among the designs that were measured, in the order of the table of that digest: numbers,
-    and of varied fields that hold words or lists which of these; and those words."""
+    """Varied columns of the measured designs, in the order of the table of that digest: numbers, or for
+    fields with words or lists their index; and those words."""
     import pyarrow as pa
     import pyarrow.parquet as pq
 
@@ -109,7 +109,7 @@ def _columns(
 
 
 def _some(count: int, share: float) -> NDArray[np.int64]:
-    """That share of rows by chance: every n-th of a Sobol sequence would leave out parts of the ranges."""
+    """A random share of the rows: every n-th of a Sobol sequence would leave out parts of the ranges."""
     rows = np.random.default_rng(count).permutation(count)
     return np.sort(rows[: max(1, round(share * count))])
 

@@ -48,8 +48,8 @@ AIR = 0.02
 
 @dataclass(frozen=True)
 class Searched:
-    """What the search may choose: a whole number of steps, of every kind of element or `shared` by all;
-    `field` of the design file holds it."""
+    """A searched parameter: a whole number of steps, for every kind of element or `shared` by all; `field`:
+    its field of the design file."""
 
     name: str
     field: str
@@ -243,7 +243,7 @@ class Candidates:
 
     @cached_property
     def layout(self) -> Layout:
-        """Of all candidates at once, with one element of each kind."""
+        """Layout of all candidates at once, with one element of each kind."""
         d = self.stand.base
         slot: Any = {"hinge_length": self.slot, "fillet_radius": self.radius}
         arms: Any = (tuple(self.arm.T),)
@@ -311,7 +311,7 @@ class Candidates:
 
     @property
     def largest_force(self) -> Array:
-        """Of each kind, over the object's range, N."""
+        """Largest force of each kind over the object's range, N."""
         return self.felt[1]
 
     @cached_property
@@ -408,7 +408,7 @@ class Candidates:
 
     @cached_property
     def area(self) -> Array:
-        """Of the array from above, mm2."""
+        """Area of the array from above, mm2."""
         return (
             self.layout.carrier_length
             * self.stand.widths[np.minimum(self.in_a_row, len(self.stand.widths) - 1)]
@@ -487,7 +487,7 @@ def realised(c: Candidates) -> Design:
 
 
 def origins(base: Design, made: Design, binding: str) -> dict[str, str]:
-    """Where every value that differs from the base design's is from, by its path."""
+    """Origin of every value that differs from the base design's, by its path."""
     before, after = paths(base), paths(made)
     told = {s.field: f"synthesised from a target, on {base.name}; {binding}" for s in SEARCHED}
     told |= {

@@ -220,7 +220,7 @@ class Covariance:
 
 @dataclass(frozen=True)
 class Evaluated:
-    """Of every array, N/mm."""
+    """Results of every array, N/mm."""
 
     estimate: Array
     low: Array

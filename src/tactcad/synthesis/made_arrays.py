@@ -231,7 +231,7 @@ class MadeSensor:
         return knowledge(self.target, self.design, self.drawn)
 
     def _half_widths(self, e: Elements, rng: np.random.Generator) -> Array:
-        """Of each array's interval from its own readings, largest over the range, relative."""
+        """Half-width of each array's interval from its own readings, largest over the range, relative."""
         read = self.read(e, rng)
         return np.max([(at.high - at.low) / 2.0 / x for x, at in zip(self.points, read)], axis=0)
 
@@ -268,7 +268,7 @@ class MadeSensor:
         return replace(e, stiffness=stiffness, signal=e.signal * np.exp(known.place[1] * z) * own)
 
     def inspected(self, e: Elements, z: Array) -> Elements:
-        """As drawn, with the thickness that was measured of these; `z` standard normal numbers."""
+        """Elements as drawn, but with the measured thickness; `z` standard normal numbers."""
         t = e.section.hinge_thickness + self.target.known.thickness / SIGMAS * z
         return elements(self.drawn.section.with_(hinge_thickness=t), self.design)
 

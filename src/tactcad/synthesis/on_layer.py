@@ -61,7 +61,7 @@ def poses(target: Target, design: Design, angles: int = 1) -> Poses:
 
 
 def level(modulus: Array) -> Poses:
-    """Of faces that are not inclined."""
+    """Poses of faces without inclination."""
     return Poses(modulus, np.zeros((len(modulus), 2)))
 
 
@@ -138,14 +138,14 @@ class LayerGrasps:
         )
 
     def half_width(self, at: Poses, got: layer_fit.Expected) -> Array:
-        """Of K_obj or the modulus, relative, [pose]; with the error of a linear body."""
+        """Half-width of K_obj or the modulus, relative, [pose]; with the error of a linear body."""
         of = got.modulus if self.target.object.reference == "modulus" else got.object_
         deep = self.depth(at, got)
         strain = strain_error(self.pads, self.array.contact.body, np.minimum(deep, LINEAR_REACH))
         return (of[:, 2] - of[:, 1]) / 2 / of[:, 0] + strain
 
     def depth(self, at: Poses, got: layer_fit.Expected) -> Array:
-        """How deep the deepest pad's force presses it, over the lesser of its radius and the thickness."""
+        """Depth of the deepest pad under its force, over the lesser of its radius and the thickness."""
         least = min(pad_radius(self.pads), self.array.contact.body.thickness)
         return got.force.max(1) / (at.modulus * self.array.unit) / least
 
@@ -167,7 +167,8 @@ class CandidatesOnLayer(Candidates):
     """Candidates with interval and forces of rigid pads on a body."""
 
     def feel(self) -> tuple[Array, Array, Array]:
-        """As on springs where other limits are broken anyway, and then too deep."""
+        """Results on the body; for candidates that break other limits anyway, on springs and marked too
+        deep."""
         s, shape = self.stand, self.arm.shape
         width, force, _ = super().feel()
         deep = np.full(len(width), UNTRIED)

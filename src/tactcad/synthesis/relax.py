@@ -1,4 +1,4 @@
-"""What limits a synthesis: each field of the target eased alone, and the best that is found then."""
+"""Limits of a synthesis: each field of the target eased alone, and the best result then."""
 
 from __future__ import annotations
 

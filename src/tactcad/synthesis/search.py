@@ -89,7 +89,7 @@ def refusals(design: Design) -> dict[str, str]:
 
 
 def all_refusals(design: Design) -> dict[str, str]:
-    """As `refusals`, with the checks that take a second."""
+    """`refusals`, and the checks that take a second."""
     return refusals(design) or {f"check {f.check}": f.text for f in slow_failures(design)}
 
 

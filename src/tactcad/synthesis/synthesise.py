@@ -123,7 +123,7 @@ class LeastChange:
 
 @dataclass(frozen=True)
 class Synthesis:
-    """What `design` found.
+    """Result of `design`.
 
     target      as asked
     found       the chosen candidate
@@ -214,7 +214,7 @@ class Synthesis:
 
 
 def goal_of(target: Target, margin: float = 1.0) -> Goal:
-    """What the search makes least: the half-width, or what the target names once the half-width is met."""
+    """The search's goal to minimise: the half-width, or the target's own goal once the half-width is met."""
     wanted, least = target.target.half_width, target.target.least
 
     def goal(c: Candidates) -> Array:

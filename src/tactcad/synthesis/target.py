@@ -216,7 +216,7 @@ class Target:
         return self.range_of(self.base)
 
     def range_of(self, design: Design) -> tuple[float, float]:
-        """As `stiffness_range`, under a design's pads."""
+        """`stiffness_range` under a design's pads."""
         if self.object.stiffness:
             return self.object.stiffness[0], self.object.stiffness[1]
         low, high = self.object.modulus or (0.0, 0.0)

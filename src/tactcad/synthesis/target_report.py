@@ -193,7 +193,7 @@ def _room(got: Synthesis) -> dict[str, str]:
 
 
 def _notes(got: Synthesis) -> list[str]:
-    """What the design does not say of itself."""
+    """Notes that are not in the design."""
     notes, was = list(got.unknown), got.target.own_clamp
     if was:
         now = got.target.base.clamp
@@ -525,7 +525,7 @@ def percent(share: float) -> str:
 
 
 def answer(r: dict[str, Any]) -> str:
-    """What came out, in a few sentences."""
+    """The result in a few sentences."""
     (low, high), base = r["object_range"], r["base"]
     if r["met"] is False:
         rules = "; ".join(line for line in base["breaks"] if line.startswith("rule "))
@@ -567,7 +567,7 @@ def _excess(v: float) -> str:
 
 
 def no_other_change(got: Synthesis) -> str:
-    """What of changes of single fields was found not to do, or that not all were tried."""
+    """Single fields whose change does not suffice, or a note that not all were tried."""
     if got.left_out:
         return f"not tried for time: {'; '.join(got.left_out)}"
     other = "other " if got.changes else ""

@@ -238,7 +238,7 @@ def _between(a: Vector, b: Vector, c: Vector, d: Vector) -> float:
 
 
 def _material_along(part: Part, at: Vector, axis: Vector) -> float:
-    """How far the stock reaches from a face along an axis, by its box (a revolution's, its length)."""
+    """Reach of the stock from a face along an axis, by its box (a revolution's, its length)."""
     if isinstance(part.body, Revolution):
         low, high = (-inf, -inf, part.body.profile.box[1]), (inf, inf, part.body.profile.box[3])
     else:

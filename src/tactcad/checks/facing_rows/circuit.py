@@ -212,7 +212,7 @@ def _beyond_converter(
 
 
 def _beyond_range(design: Design, signals: Sequence[ElementSignal]) -> Iterator[Finding]:
-    """Where an output is beyond what amplifier and card take."""
+    """Outputs beyond the range of amplifier and card."""
     chain = design_readout(design)
     said = unread(design, ("amplifier", "multiplexer", "switch", "completion"))
     for signal in signals:

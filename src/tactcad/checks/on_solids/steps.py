@@ -120,8 +120,9 @@ class Trial:
                     yield Finding("freedom", "fail", name, (), 0.0, LEVER, message)
 
     def _levers(self, body: Sequence[str], by: Sequence[str]) -> np.ndarray:
-        """How firmly contacts set a body's six freedoms about its middle: one over the root of the compliance
-        on springs that share one stiffness at every patch, turns over half the body's diagonal across."""
+        """Firmness of the contacts that fix a body's six freedoms about its middle: one over the root of the
+        compliance on springs that share one stiffness at every patch, turns over half the body's diagonal
+        across."""
         boxes = np.array([self._box(self.placed[name]) for name in body])
         ends = np.array([boxes[:, 0].min(axis=0), boxes[:, 1].max(axis=0)])
         middle, half = ends.mean(axis=0), (ends[1] - ends[0]) / 2

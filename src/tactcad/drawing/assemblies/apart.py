@@ -31,7 +31,8 @@ TOUCH = 0.01  # mm: boxes that overlap by no more meet face to face
 
 @dataclass(frozen=True)
 class Piece:
-    """What moves as one in a view: a part, equal parts on each other, or a sub-assembly under its letter."""
+    """A unit that moves as one in a view: a part, equal parts on each other, or a sub-assembly under its
+    letter."""
 
     placements: tuple[Placement, ...]
     letter: str = ""
@@ -161,7 +162,7 @@ def _overlapping(
 def _sorted_out(
     a: Placement, b: Placement, boxes: Mapping[str, Extent], joints: Sequence[Joint], owner: Mapping[str, int]
 ) -> tuple[Placement, Placement, int]:
-    """Which of two parts is the lower one, and along which axis.
+    """The lower one of two parts, and the axis.
 
     By a joint of their pieces; else as assembled, if one lies beyond the other along an axis on which either
     comes off (sideways it would leave its holding part behind); else the later one leaves along its own axis,

@@ -58,7 +58,7 @@ class Balloon:
 
 
 def height(number: str) -> float:
-    """Of the number in its balloon, mm."""
+    """Height of the number in its balloon, mm."""
     return TEXT if len(number) < 3 else SMALLER
 
 
@@ -196,7 +196,7 @@ class Laid:
 
     @property
     def total(self) -> float:
-        """Of all rows, without the heading."""
+        """Height of all rows, without the heading."""
         return sum(self.height(n) for n in range(len(self.cells)))
 
 

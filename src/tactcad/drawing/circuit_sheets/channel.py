@@ -165,7 +165,7 @@ def _switching(circuit: Netlist, n: int, b: int) -> list[Item]:
 
 
 def _fed(component: Component) -> str:
-    """Which of its pins, but for channels that are not used, are on supplies and ground."""
+    """Its pins on supplies and ground, without those of unused channels."""
     pins: dict[str, list[str]] = {}
     for pin in component.pins:
         if pin.net in (GROUND, *SUPPLIES) and not pin.role.startswith("S"):
@@ -199,7 +199,8 @@ def _amplifier(circuit: Netlist, b: int) -> list[Item]:
 
 
 def _gain(circuit: Netlist, part: Component, at: Point) -> list[Item]:
-    """What sets the gain between two pins on the triangle's lower edge: a resistor, a joint, or nothing."""
+    """The part that sets the gain between two pins on the triangle's lower edge: a resistor, a joint, or
+    nothing."""
     (x, y), slope = at, 0.5
     left, right = ((x + dx, y - 12.0 + slope * dx) for dx in (3.0, 19.0))
     ends = {p.net for p in part.pins if p.role.startswith("rg") and p.net}

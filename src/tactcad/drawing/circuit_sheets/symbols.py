@@ -23,7 +23,7 @@ def line(*points: Point) -> Stroke:
 
 
 def dot(at: Point) -> Item:
-    """Where connections join."""
+    """A dot at joined connections."""
     return DrawnArc(at, 0.5, line=VISIBLE, role="symbol")
 
 

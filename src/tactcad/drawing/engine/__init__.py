@@ -1,1 +1,1 @@
-"""What every drawing is made with: paper, ink, fonts, files, pictures, processes, the layout check."""
+"""The means of every drawing: paper, ink, fonts, files, pictures, processes, the layout check."""

@@ -49,7 +49,7 @@ def overlap(a: Box, b: Box) -> bool:
 
 
 def length(line: Sequence[Point]) -> float:
-    """Of a line through points, mm."""
+    """Length of a line through points, mm."""
     return sum(dist(a, b) for a, b in zip(line, line[1:]))
 
 

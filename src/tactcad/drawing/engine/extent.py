@@ -98,6 +98,6 @@ def part_box(part: Part) -> tuple[Vector, Vector]:
 
 
 def box_of(p: Placement) -> Extent:
-    """Of a placed part, in the scene; exact if it is not turned by odd angles."""
+    """Box of a placed part, in the scene; exact if it is not turned by odd angles."""
     corners = np.array([placed(p, corner) for corner in box_corners(part_box(p.part))])
     return np.array([corners.min(axis=0), corners.max(axis=0)])

@@ -89,7 +89,7 @@ class Drawing:
 
     @property
     def box(self) -> Box:
-        """Of everything drawn, mm."""
+        """Box of everything drawn, mm."""
         return bounds_of(self.sharp + self.smooth)
 
 

@@ -1,5 +1,5 @@
-"""What views leave out, with break lines (ISO 128-3): a detail all around its window, a broken view of a long
-part the stretches between its features.
+"""Omitted parts of views, with break lines (ISO 128-3): a detail all around its window, a broken view of a
+long part the stretches between its features.
 
 Dimensions keep the whole part's values, and their lines run unbroken (ISO 129-1): only places on the paper
 move.

@@ -81,7 +81,7 @@ class Variable:
     quantity: Quantity
 
     def __str__(self) -> str:
-        """As in "outer.3.cx"; variables are sorted by this text."""
+        """Text such as "outer.3.cx", by which variables are sorted."""
         if isinstance(self.of, Spot):
             return f"{self.of.contour}.{self.of.segment}.{'c' if self.of.centre else ''}{self.quantity}"
         return f"{self.of}.{self.quantity}".removeprefix(".")
@@ -318,7 +318,7 @@ class Distance(OfVariables):
 
 @dataclass(frozen=True)
 class MeasureDifference(OfVariables):
-    """Of two measures: 0 if they are drawn as equal."""
+    """Difference of two measures: 0 if they are drawn as equal."""
 
     a: Measure
     b: Measure
@@ -405,7 +405,7 @@ def _tangent(owner: Owner, contour: Contour, i: int) -> Measure | None:
 
 @dataclass
 class Determined:
-    """Which combinations of variables are determined so far: an orthonormal basis of the rows' gradients."""
+    """The combinations of variables determined so far: an orthonormal basis of the rows' gradients."""
 
     values: dict[Variable, float]
 

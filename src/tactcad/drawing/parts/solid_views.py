@@ -116,7 +116,7 @@ def _uncovered(curve: Stroke | DrawnArc, seen: Sequence[Stroke | DrawnArc]) -> l
 
 
 def cut(shape: TopoDS_Shape, view: View, section: SectionPlane) -> tuple[TopoDS_Shape, Hatch]:
-    """What lies behind the plane of a section, and its cut face in the view's plane (mm of the part).
+    """The part behind the plane of a section, and its cut face in the view's plane (mm of the part).
 
     Raises CheckFailure if the plane misses the part.
     """

@@ -29,7 +29,7 @@ STEM = 8.0  # from a datum's feature to the middle of its letter: shortest
 
 
 def frames_of(part: Part, names: Sequence[str]) -> tuple[Frame, ...]:
-    """Of the geometric tolerances that hold for one of these features."""
+    """Frames of the geometric tolerances for one of these features."""
     return tuple(frame_of(part, g) for g in part.geometric if set(g.features) & {*names})
 
 

@@ -104,7 +104,7 @@ def nominal_stress(beam: FoilBeam) -> dict[str, float]:
 
 
 def groups(beam: FoilBeam) -> tuple[float, float, float, float]:
-    """What the factors depend on, each from about -1 to 1: w/s, r/w, nu, and ln(t/w)."""
+    """Arguments of the factors, each from about -1 to 1: w/s, r/w, nu, and ln(t/w)."""
     return (
         (beam.width / beam.length - 0.3) / 0.2,
         (beam.fillet / beam.width - 0.55) / 0.45,

@@ -21,7 +21,8 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Root:
-    """Where a beam leaves the island (x, y, mm), and the unit direction in which it runs to the frame."""
+    """The point at which a beam leaves the island (x, y, mm), and the unit direction in which it runs to the
+    frame."""
 
     at: tuple[float, float]
     along: tuple[float, float]

@@ -259,7 +259,7 @@ def by_neighbours(
 
 
 def _fieller(a: float, b: float, variance: Array, t: float, limit: float) -> Interval:
-    """Where (a + b x)^2 <= t^2 variance(x) for x >= 0, a common factor of x known within the limit."""
+    """Range of x >= 0 with (a + b x)^2 <= t^2 variance(x), a common factor of x known within the limit."""
     two, one, nought = (float(v) for v in np.array([b * b, 2.0 * a * b, a * a]) - t * t * variance)
     estimate, low, high = (-a / b if b else inf), 0.0, inf
     if two != 0.0 and (root := one * one - 4.0 * two * nought) > 0.0:

@@ -229,7 +229,7 @@ class PlanarLayout:
         return PROCESSES[self.design.planar.process]
 
     def sheet_process(self, thickness: float) -> FoilProcess:
-        """How a steel sheet of that thickness is cut: as the foil, or by wire where too thick for that."""
+        """Process for a steel sheet of that thickness: as the foil, or by wire if too thick for that."""
         return self.process if thickness <= self.process.thickest else PROCESSES["wire-cut"]
 
     @property
@@ -238,7 +238,7 @@ class PlanarLayout:
         return self.sheet_corner(self.design.planar.thickness)
 
     def sheet_corner(self, thickness: float) -> float:
-        """Of a steel sheet's inside corners, mm: the least that its process leaves, to 0.01."""
+        """Radius of a steel sheet's inside corners, mm: the least that its process leaves, to 0.01."""
         return ceil(100.0 * self.sheet_process(thickness).inside_radius(thickness) - 1e-6) / 100.0
 
     @property

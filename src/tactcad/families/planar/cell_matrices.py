@@ -123,7 +123,7 @@ def to_csv(cells: Sequence[CellMatrix]) -> str:
 
 @dataclass(frozen=True)
 class Matrices:
-    """Of calibrated cells; arrays, [cell]: see `CellMatrix`."""
+    """Matrices of calibrated cells; arrays, [cell]: see `CellMatrix`."""
 
     element: NDArray[np.int64]
     matrix: Array

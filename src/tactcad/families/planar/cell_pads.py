@@ -1,4 +1,4 @@
-"""How the cells' pads meet an object: round pads, taken as squares of their area."""
+"""The cells' pads on an object: round pads, taken as squares of their area."""
 
 from __future__ import annotations
 
@@ -15,7 +15,8 @@ from .sensor import chip_matrix, closing_force, pad_compliance
 
 
 def side(design: PlanarDesign) -> float:
-    """Of a square with a pad's area, mm: K_obj is up to 1.5 % above a disc's (tests), of all pads alike."""
+    """Side of a square with a pad's area, mm: K_obj is up to 1.5 % above a disc's (tests), of all pads
+    alike."""
     return design.post.pad * pi**0.5 / 2.0
 
 

@@ -134,7 +134,7 @@ def cell_plan(part: Part, notes: Sequence[str], spare: bool = False) -> SheetPla
 
 
 def _pattern_notes(kinds: Sequence[Sequence[SheetCell]], pitch: Sequence[float]) -> Iterator[str]:
-    """What the details hold for."""
+    """Notes on the cells that the details describe."""
     at = f", at a pitch of {pitch[0]:g} exactly" if pitch else ""
     if len(kinds) == 1:
         yield f"All {len(kinds[0])} openings as X{at}"

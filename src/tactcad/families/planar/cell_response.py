@@ -1,4 +1,4 @@
-"""What every chip feels of forces on the pads: its own cell's, beyond a straight line too, and of others.
+"""Every chip's response to forces on the pads: on its own cell, also nonlinear, and on others.
 
 Forces as readings give them (N, [..., 3]): along x and y of the design, and z down on the pad. Fields are
 changes from rest, mT.

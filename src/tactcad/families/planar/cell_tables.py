@@ -35,7 +35,7 @@ PLACE_LENGTH = 25.0  # mm, up to which an etched place keeps its tolerance: row 
 
 @dataclass(frozen=True)
 class FoilProcess:
-    """How thin a foil may be cut, mm and shares of its thickness: data/processes.csv."""
+    """Limits of foil cutting, mm and shares of the foil's thickness: data/processes.csv."""
 
     name: str
     thinnest: float
@@ -201,6 +201,6 @@ class PlanarDesign(CommonTables):
 
     @property
     def foil_tolerance(self) -> float:
-        """Of the foil's thickness, mm."""
+        """Tolerance of the foil's thickness, mm."""
         stated = self.tolerance.thickness
         return 0.05 * self.planar.thickness if stated is None else stated

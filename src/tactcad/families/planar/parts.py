@@ -102,7 +102,8 @@ def dowel_length(layout: PlanarLayout) -> float | None:
 
 
 def land_diameter(layout: PlanarLayout) -> float:
-    """Of the sunk lands under the kind of cell with the longer way, mm: WEB stays between neighbours."""
+    """Diameter of the sunk lands under the kind of cell with the longer travel, mm: WEB stays between
+    neighbours."""
     return round(layout.design.planar.pitch - WEB, 9)
 
 

@@ -1,5 +1,5 @@
-"""What every cell does: stiffness, forces at yield and at its stop, what its chip feels, how small a force
-it tells."""
+"""Every cell's figures: stiffness, forces at yield and at its stop, its chip's field, the smallest force
+resolved."""
 
 from __future__ import annotations
 
@@ -61,8 +61,8 @@ class CellEstimate:
 
 @dataclass(frozen=True)
 class KindFigures:
-    """Of a kind of cell: compliance of the pad (3 x 3, mm/N), matrix of the chip (mT/N), stress of 1 N down
-    with the rated shear (MPa)."""
+    """Figures of a kind of cell: compliance of the pad (3 x 3, mm/N), matrix of the chip (mT/N), stress of 1
+    N down with the rated shear (MPa)."""
 
     pad: Array
     matrix: Array

@@ -52,26 +52,27 @@ class BoardOutline:
 
 
 def channels_of(layout: Layout) -> int:
-    """Of a board: of its multiplexer, or of the converter that takes the bridges themselves."""
+    """Channels of a board: of its multiplexer, or of the converter that takes the bridges directly."""
     converter = converter_of(layout.design)
     return converter.inputs if converter else MULTIPLEXERS[layout.design.readout.multiplexer].channels
 
 
 def lead_pins(layout: Layout) -> int:
-    """Of a board's lead connector: three a channel, and one each for the leads' shield and the array's
+    """Pins of a board's lead connector: three a channel, and one each for the leads' shield and the array's
     metal."""
     return 3 * channels_of(layout) + 2
 
 
 def card_pins(layout: Layout) -> int:
-    """Of a board's connector to the converter's card, or to the controller of a converter on the board."""
+    """Pins of a board's connector to the converter's card, or to the controller of a converter on the
+    board."""
     if converter_of(layout.design):
         return CONTROLLER_SIGNALS
     return CARD_SIGNALS + len(MULTIPLEXERS[layout.design.readout.multiplexer].address)
 
 
 def board_outline(layout: Layout) -> BoardOutline:
-    """Of each board that reads the array; all are equal."""
+    """The outline of each board that reads the array; all are equal."""
     at = AT_CORNER
     holes = tuple((x, y, HOLE) for y in (at, HEIGHT - at) for x in (at, WIDTH - at))
     return BoardOutline(

@@ -100,13 +100,13 @@ def settling_time(design: Design) -> float:
 
 
 def heating(layout: Layout) -> Heating:
-    """Of a gauge, at the end of a reading in the settled cycle."""
+    """Heating of a gauge at the end of a reading in the settled cycle."""
     d = layout.design
     return gauge_signal.switched(d.readout.excitation, design_gauge(d), power_of(layout))
 
 
 def power_of(layout: Layout) -> Power:
-    """What heats the design's gauges, on the leaf that carries heat away worst."""
+    """The power in the design's gauges, on the leaf with the worst heat conduction."""
     d = layout.design
     gauge, r, conducts = d.gauge, d.readout, leaf_conductivity(d.material.conductivity)
     return Power(
@@ -121,7 +121,7 @@ def power_of(layout: Layout) -> Power:
 
 
 def drift(layout: Layout) -> float:
-    """By how much the amplifier's output drifts between zero and reading, V, as the half-width of a band.
+    """Drift of the amplifier's output between zero and reading, V, as the half-width of a band.
 
     Root of the sum of squares of: the gauge's thermal output, the completion's three arms, the amplifier's
     offset, the bridges' supply over their largest imbalance, the leads' warmth (`zero_drift`; of two wires
@@ -160,7 +160,7 @@ def sample_spacing(r: Readout) -> float:
 
 
 def instants(design: Design) -> np.ndarray:
-    """Of the samples of a reading after ENABLE, s."""
+    """Instants of a reading's samples after ENABLE, s."""
     r = design.readout
     apart = sample_spacing(r)
     first = r.on_time - r.samples * apart if r.instant is None else r.instant
@@ -168,7 +168,7 @@ def instants(design: Design) -> np.ndarray:
 
 
 def warm_output(layout: Layout, after: np.ndarray) -> np.ndarray:
-    """What the grid's warmth adds to the amplifier's output, V, at instants after ENABLE in the settled
+    """Contribution of the grid's warmth to the amplifier's output, V, at instants after ENABLE in the settled
     cycle."""
     d = layout.design
     power, gauge, chain = power_of(layout), design_gauge(d), design_readout(d)
@@ -178,7 +178,7 @@ def warm_output(layout: Layout, after: np.ndarray) -> np.ndarray:
 
 
 def jitter(design: Design) -> float:
-    """Of the samples' instant from reading to reading, s, plus and minus."""
+    """Jitter of the samples' instant from reading to reading, s, plus and minus."""
     own = design.readout.jitter
     return JITTER[design.readout.timing] if own is None else own
 

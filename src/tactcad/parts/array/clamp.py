@@ -1,5 +1,5 @@
-"""What clamps the elements: end plates, carrier and stop plate, and the screws and
-dowels that hold these: standard lengths, or tie rods and ground rod beyond them.
+"""The clamp of the elements: end plates, carrier and stop plate, with screws and dowels: standard lengths, or
+tie rods and ground rod beyond them.
 """
 
 from __future__ import annotations
@@ -232,8 +232,8 @@ OVER_EDGE = "dowel holes over the lower edge"  # by which the setting fixture ho
 
 
 def lean(layout: Layout) -> float:
-    """How far a pin may lean at the head plate's outer face, mm: as its hole, but no further than a finger
-    bends it straight."""
+    """Largest lean of a pin at the head plate's outer face, mm: as its hole, but no more than a finger
+    straightens."""
     depth = layout.design.clamp.end_plate_thickness
     return min(SQUARE / depth * (layout.stack + depth), BENT)
 

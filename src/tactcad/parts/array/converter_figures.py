@@ -25,13 +25,13 @@ E192_STEP = 10 ** (-1 / 192)
 
 
 def converter_supply() -> float:
-    """Of the converter, V: its reference, which the bridges' supply is, may not exceed it."""
+    """The converter's supply, V: its reference, which is the bridges' supply, may not exceed it."""
     return SET_AMPERE * ANALOGUE_OHM
 
 
 def supply_ohm(layout: Layout) -> float:
-    """Of the resistor that sets the bridges' supply, ohm: the most that grids' backing, the converter and the
-    regulator bear."""
+    """The resistor that sets the bridges' supply, ohm: for the highest supply that grids' backing, converter
+    and regulator bear."""
     # these need numpy, which a bill with a card does not
     from tactcad.mechanics.gauge_signal import continuous, switched
 
@@ -57,8 +57,8 @@ def bridge_supply(layout: Layout) -> float:
 
 
 def converter_noise(layout: Layout, converter: Converter, gain: float) -> float:
-    """Of one result at the bridge, V rms: the converter's own, which is white and grows as the gain falls,
-    and Johnson noise of the bridge up to half the rate."""
+    """Noise of one result at the bridge, V rms: the converter's own, which is white and grows as the gain
+    falls, and Johnson noise of the bridge up to half the rate."""
     own = converter.noise * converter.noise_gain / gain * (rate(layout) / converter.noise_rate) ** 0.5
     from tactcad.mechanics.readout import BOLTZMANN, ROOM
 
@@ -97,5 +97,5 @@ def round_time(layout: Layout) -> float:
 
 
 def on_time(layout: Layout) -> float:
-    """By which every element has one result, from ON, s; of bridges that are always on, a round."""
+    """Time from ON until every element has one result, s; for bridges that are always on, a round."""
     return round_time(layout) + (warm_up(layout) if layout.design.readout.power == "duty" else 0.0)

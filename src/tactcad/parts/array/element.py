@@ -458,7 +458,7 @@ LOOSE = 0.1
 
 
 def thickness_by_sheet(design: Design) -> str:
-    """What every spacer measures, in words."""
+    """Every spacer's thickness by the sheet, in words."""
     return f"{design.array.pitch:g} less what the elements' sheet measures, +-{SPACER_TOLERANCE:g}"
 
 

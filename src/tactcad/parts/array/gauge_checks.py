@@ -84,8 +84,8 @@ def gauge_checks(layout: Layout) -> GaugeChecks:
 
 
 def allowed_places(layout: Layout) -> Array:
-    """How far off its hinge's middle each gauge may lie, along the element, for its signal to err by
-    bonding.signal_share at most; mm, in the elements' order."""
+    """Largest offset of each gauge from its hinge's middle, along the element, with a signal error of at most
+    bonding.signal_share; mm, in the elements' order."""
     share = present(layout.design.bonding).signal_share
     return gauge_signal.allowed(
         hinge_section(layout, layout.elements), layout.design.gauge.grid_length, share

@@ -40,7 +40,7 @@ CARRIER_EDGE = 1.0
 
 
 def rounded(value: float, digits: int) -> float:
-    """As `round`, of a number or of an array."""
+    """`round` for a number or an array."""
     return round(value, digits) if isinstance(value, (int, float)) else value.round(digits)
 
 

@@ -64,8 +64,8 @@ class BoardStand:
 
 
 def stands(layout: Layout) -> tuple[BoardStand, ...]:
-    """Of every board, by number: a row's boards side by side along it, about the middle of their elements, so
-    far off that the way from tie to connector is wiring.to_board."""
+    """Places of all boards, by number: a row's boards side by side along it, about the middle of their
+    elements, at a distance of wiring.to_board from tie to connector."""
     w, found = layout.design.wiring, []
     along = min(w.to_board, NEAR) - LAST
     run = sqrt(max(along**2 - _drop(layout) ** 2, 0.0))
@@ -148,27 +148,27 @@ def _route(layout: Layout, board: ReadBoard, stand: BoardStand, place: ElementPl
 
 
 def recess_length(layout: Layout) -> float:
-    """Of the wire recess, mm."""
+    """Length of the wire recess, mm."""
     return layout.rear_end - layout.recess_start
 
 
 def colours(layout: Layout) -> tuple[str, ...]:
-    """Of each gauge's leads, in their order."""
+    """Colours of each gauge's leads, in their order."""
     return COLOURS[layout.design.readout.connection]
 
 
 def leads(layout: Layout) -> int:
-    """How many each gauge has."""
+    """Number of leads of each gauge."""
     return len(colours(layout))
 
 
 def longest_lead_resistance(layout: Layout) -> float:
-    """Of one lead, ohm."""
+    """Resistance of the longest lead, ohm."""
     return max(route.cut for route in lead_routes(layout)) * lead_ohm(layout)
 
 
 def lead_ohm(layout: Layout) -> float:
-    """Of a millimetre of lead."""
+    """Resistance of a millimetre of lead, ohm."""
     return WIRES[layout.design.wiring.wire].ohm_per_metre * 1e-3
 
 

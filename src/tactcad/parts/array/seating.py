@@ -1,4 +1,4 @@
-"""How hard the set screws seat the stop plate; they bend stack and carrier apart between the end plates.
+"""The set screws' force on the stop plate; they bend stack and carrier apart between the end plates.
 
 A stop plate that only lies on its ledges, touched by its set screws, is also fixed: seating takes up their
 play.
@@ -33,7 +33,7 @@ def stack_beam(layout: Layout) -> Beam:
 
 
 def carrier_beam(layout: Layout, length: float) -> Beam:
-    """That length (mm) of the carrier along the row as a beam; its holes are neglected."""
+    """A length (mm) of the carrier along the row as a beam; its holes are neglected."""
     alloy = ALLOYS[layout.design.clamp.plate_alloy]
     width, t = layout.carrier_size[0], layout.design.clamp.carrier_thickness
     return Beam(length, width, t, alloy.youngs_modulus, alloy.poisson)
@@ -89,7 +89,7 @@ def torque(layout: Layout) -> float:
 
 
 def words(layout: Layout) -> str:
-    """How far the set screws are turned in, for guides."""
+    """The set screws' turn, in words for guides."""
     tight = torque(layout)
     return f"to {tight:g} N m" if tight else "until they touch the stop plate and no further"
 

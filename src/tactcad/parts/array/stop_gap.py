@@ -83,7 +83,7 @@ def unrated_gap(layout: Layout, place: ElementPlace) -> tuple[str, ...]:
 
 
 def seat(layout: Layout) -> float:
-    """By how much the stop plate may lie above an element's own ledge at its land, mm.
+    """Largest height of the stop plate above an element's own ledge at its land, mm.
 
     Other ledges at their upper limit, this one at its lower; the plate's flatness; and gaps of some pads to
     the surface plate, once their heights and the pins' lean use up the dowels' play.

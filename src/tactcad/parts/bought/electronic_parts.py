@@ -73,13 +73,13 @@ def unread(design: Design, kinds: Iterable[str]) -> str:
 
 
 def completion_resistance(design: Design) -> float:
-    """Of each of a bridge's three other arms, ohm."""
+    """Resistance of each of a bridge's three other arms, ohm."""
     own = design.readout.completion_resistance
     return design.gauge.resistance if own is None else own
 
 
 def bridge_resistance(design: Design) -> float:
-    """Of a bridge, ohm: gauge and one arm in series, parallel to the two other arms."""
+    """Resistance of a bridge, ohm: gauge and one arm in series, parallel to the two other arms."""
     gauge, arm = design.gauge.resistance, completion_resistance(design)
     return 1 / (1 / (gauge + arm) + 1 / (2 * arm))
 
@@ -90,7 +90,7 @@ def regulator_gives(volts: float) -> float:
 
 
 def completion_tolerance(design: Design) -> float:
-    """Of each completing resistance, relative."""
+    """Tolerance of each completing resistance, relative."""
     own = design.readout.completion_tolerance
     return COMPLETIONS[design.readout.completion].tolerance if own is None else own
 
@@ -126,7 +126,7 @@ def value_code(ohm: float) -> str:
 
 
 def supply_resistance(design: Design) -> float:
-    """That sets the bridges' supply, ohm, of the series E192."""
+    """Resistor that sets the bridges' supply, ohm, of the series E192."""
     return nearest_e192(design.readout.excitation / SET_AMPERE)
 
 

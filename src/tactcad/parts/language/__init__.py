@@ -1,1 +1,1 @@
-"""How a part is described: contour, features, limits, materials, threads and fits; findings about it."""
+"""The description of parts: contour, features, limits, materials, threads and fits; findings about it."""

@@ -206,14 +206,14 @@ class Material:
     magnetic: str = ""
 
     def __str__(self) -> str:
-        """As sheets and bills state it."""
+        """The material as sheets and bills state it."""
         named = f"{self.name} {self.temper}".strip()
         return f"{named}, {self.standard}" if self.standard else named
 
 
 @dataclass(frozen=True)
 class Purchase:
-    """How a bought part is ordered. source_verified: its figures were checked in the maker's own data."""
+    """The order data of a bought part. source_verified: its figures were checked in the maker's own data."""
 
     designation: str
     manufacturer: str = ""

@@ -155,7 +155,7 @@ class Wall:
 
     @property
     def diameter(self) -> float | None:
-        """Of a cylinder, mm."""
+        """Diameter of a cylinder, mm."""
         return 2 * self.segment.radius if isinstance(self.segment, Arc) else None
 
     @property
@@ -167,7 +167,8 @@ class Wall:
 
     @property
     def reach(self) -> float:
-        """How far from its axis it is measured: a whole cylinder at its axis, a fillet at its surface, mm."""
+        """Distance from its axis to the point of measurement: a whole cylinder at its axis, a fillet at its
+        surface, mm."""
         s = self.segment
         return s.radius if isinstance(s, Arc) and s.start != s.end else 0.0
 

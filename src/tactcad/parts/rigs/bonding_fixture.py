@@ -131,15 +131,15 @@ class BondingLayout:
 
     @property
     def tongue_radius(self) -> float:
-        """Of the tongue's edges: they stay clear of the slot's fillets at any limits, its tip lies on the
-        floor. A tip with hardly a flat is one round."""
+        """Radius of the tongue's edges: they stay clear of the slot's fillets at any limits, its tip lies on
+        the floor. A tip with hardly a flat is one round."""
         wanted = self.hinge.r + self.design.tolerance.fillet_radius + TONGUE_EDGE
         half = self.tongue / 2
         return round(wanted if wanted + TONGUE_EDGE <= half else half, 6)
 
     @property
     def play(self) -> float:
-        """Of the nominal slot over the tongue, whole."""
+        """Play of the nominal slot over the tongue, in total."""
         return round(self.hinge.l - self.tongue, 9)
 
     @property
@@ -209,7 +209,7 @@ class BondingLayout:
 
     @property
     def pin_depth(self) -> float:
-        """How deep the pins are pressed in."""
+        """Depth to which the pins are pressed in."""
         return round(self.pin_length - (self.rest + self.bar_bottom + GUIDED), 9)
 
     # --- clamp ---

@@ -74,7 +74,7 @@ class CartLayout:
 
     @property
     def axle_in_plate(self) -> float:
-        """How deep the axle reaches into the plate."""
+        """Depth of the axle in the plate."""
         return round(self.axle_length - 2 * self.cart.shim - self.bearing.B, 9)
 
     @property

@@ -218,7 +218,8 @@ def longest_roller(layout: Layout) -> float:
 
 
 def roller_length(layout: Layout) -> float:
-    """Of the roller, mm: the shortest standard pin that lies straight on the whole pad, else ground rod."""
+    """Length of the roller, mm: the shortest standard pin that lies straight on the whole pad, else ground
+    rod."""
     d, most = layout.design, longest_roller(layout)
     least = d.sheet.thickness + OVER_PAD
     fitting = [n for n in dowel_lengths(present(d.calibration).roller) if least <= n <= most]
@@ -233,5 +234,5 @@ LEAST_AROUND_ROLLER = 0.001
 
 
 def seat_radius(size: str) -> float:
-    """Of the roller's seat, mm: at its least it still takes the largest m6 pin of that size."""
+    """Radius of the roller's seat, mm: at its lower limit it still takes the largest m6 pin of that size."""
     return round(dowel_limits(size)[1] / 2 + LEAST_AROUND_ROLLER + SEAT, 6)

@@ -1,4 +1,4 @@
-"""What all rigs have in common: their frame, sizes that no design changes, and the pads' places.
+"""Common to all rigs: their frame, sizes that no design changes, and the pads' places.
 
 Frame (mm): x along the arms, y along the rows, z = 0 on the base plate, + up. The force sensor's axis,
 the sample's middle and the array's middle are x = y = 0; the post is behind, at + y.
@@ -54,7 +54,7 @@ LEAST_UNDER_HEAD = 2.0  # mm of plate; chosen: as the carrier's own screws
 
 
 def carrier_screw_length(design: Design) -> float:
-    """Of the screws into the carrier, mm: the shortest that leaves enough plate under its head."""
+    """Length of the screws into the carrier, mm: the shortest that leaves enough plate under its head."""
     engaged = design.clamp.carrier_thickness - SHORT_OF_CARRIER
     lengths = CAP_SCREW_LENGTHS[design.clamp.mount_thread]
     return next((n for n in lengths if n - engaged >= LEAST_UNDER_HEAD - SAME), lengths[-1])

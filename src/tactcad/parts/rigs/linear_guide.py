@@ -250,7 +250,7 @@ def latch_hole() -> float:
 
 
 def latch_lies() -> float:
-    """How far under its hole's axis the latch's pin lies, mm."""
+    """Distance of the latch's pin below its hole's axis, mm."""
     return (latch_hole() - dowel_diameter(STOP_PIN)) / 2
 
 

@@ -1,4 +1,4 @@
-"""What the guide's carriage carries: the bar, the foot that holds the array, and the platform with its
+"""The load of the guide's carriage: the bar, the foot that holds the array, and the platform with its
 weights.
 """
 

@@ -65,7 +65,7 @@ class SettingLayout:
 
     @property
     def step_length(self) -> float:
-        """Of each step along y, mm."""
+        """Length of each step along y, mm."""
         return round(self.design.clamp.end_plate_thickness - SHORT - AIR, 9)
 
     def over_floor(self, name: str, step: str) -> Characteristic:

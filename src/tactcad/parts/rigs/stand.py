@@ -166,12 +166,12 @@ def faults_of(stage: Stage, layout: Layout) -> list[str]:
 
 
 def far(layout: Layout) -> float:
-    """How far from the middle of the array a pad lies, along or across, mm."""
+    """Largest distance of a pad from the middle of the array, along or across, mm."""
     return max(max(abs(x), abs(y)) for x, y in pad_middles(layout))
 
 
 def most_before_post(stage: Stage) -> float:
-    """How far the stage may move towards the post, mm."""
+    """Largest travel of the stage towards the post, mm."""
     return POST_Y - AIR - stage.size / 2
 
 

@@ -59,8 +59,8 @@ def gauge_fits_width(layout: Layout) -> Iterator[Finding]:
 
 
 def neighbours_take(layout: Layout) -> float:
-    """How much nearer tolerances bring an arm to its neighbour, a spacer away, mm: half of both sheets' and
-    the spacer's own.
+    """Approach of an arm to its neighbour by tolerances, a spacer away, mm: half of both sheets' and the
+    spacer's own.
     """
     return layout.design.tolerance.sheet_thickness + SPACER_TOLERANCE
 
@@ -103,7 +103,7 @@ def leads_have_room(layout: Layout) -> Iterator[Finding]:
 
 
 def leads_that_fit(layout: Layout) -> int:
-    """How many leads lie in the recess of one element."""
+    """Number of leads that fit in the recess of one element."""
     depth, wire = layout.design.element.recess_depth, lead(layout)
     return floor(layout.design.array.pitch / wire + SAME) * floor(depth / wire + SAME)
 

@@ -152,7 +152,7 @@ def gauge_bears_power(layout: Layout) -> Iterator[Finding]:
     r, hot = d.readout, heating(layout)
 
     def load(**changed: Any) -> float:
-        """Of what the backing bears."""
+        """Share of the backing's limit."""
         found = heating(Layout(replace(d, readout=replace(r, **changed)))) if changed else hot
         return max(found.power_density / d.gauge.power_density, found.rise / d.gauge.rise)
 

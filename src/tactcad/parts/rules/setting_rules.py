@@ -50,8 +50,8 @@ def blanks_lie_firmly(layout: Layout) -> Iterator[Finding]:
 
 
 def _firm(layout: Layout, dowel_x: Sequence[float]) -> bool:
-    """By the levers of height and turn, as the check of steps has them: springs of one stiffness, half of one
-    at each end of the strip, which holds up, and two at a dowel, which holds both ways."""
+    """Firmness by the levers of height and turn, as in the check of steps: springs of one stiffness, half of
+    one at each end of the strip, which supports upward only, and two at a dowel, which supports both ways."""
     front, end = SettingLayout(layout.design).strip
     middle = (front + layout.rear_end) / 2
     low, high = layout.body_bottom(layout.elements[0].hinge), layout.design.element.rear_height

@@ -335,7 +335,7 @@ def _stacking(layout: Layout, stacked: Sequence[Placement]) -> str:
 
 
 def rows_alike(layout: Layout) -> float:
-    """By how much the two rows' stacks may differ in length, mm, whole hundredths.
+    """Largest difference in length of the two rows' stacks, mm, whole hundredths.
 
     The head plate lies on both and leans by the difference over their distance; over its thickness that takes
     a share of the least play of its holes.
@@ -355,7 +355,7 @@ def _other_plate(c: Clamping, plate: Placement) -> str:
 
 
 def wedge(layout: Layout) -> str:
-    """By how much an element can still turn about its one dowel, its pad on the fixture's floor."""
+    """Remaining turn of an element about its one dowel, its pad on the fixture's floor."""
     h, low = layout.design.holes, dowel_limits(layout.design.clamp.dowel)[0]
     play = h.dowel_hole + h.dowel_hole_upper - low
     lever = min(layout.dowel_x) - layout.pad_outer
@@ -363,7 +363,7 @@ def wedge(layout: Layout) -> str:
 
 
 def setting_words(layout: Layout) -> str:
-    """How the stack is tightened in the setting fixture, and measured."""
+    """Instructions for tightening the stack in the setting fixture, and measuring it."""
     d, c = layout.design, clamping(layout)
     tolerance = d.tolerance.pad_height
     tight = "Tighten the clamping screws"
@@ -397,7 +397,7 @@ def setting_words(layout: Layout) -> str:
 
 
 def flatness_tools(layout: Layout) -> tuple[str, ...]:
-    """What the pads are made coplanar with, and measured."""
+    """Tools for making the pads coplanar, and for measuring them."""
     tolerance = layout.design.tolerance.pad_height
     feelers = f"feelers, {2 * tolerance * 1e3:g} um"
     if len(layout.design.array.row_arms) == ABREAST:
@@ -406,7 +406,7 @@ def flatness_tools(layout: Layout) -> tuple[str, ...]:
 
 
 def carrier_tools(design: Design) -> tuple[str, ...]:
-    """What the carrier's screws are turned by."""
+    """Tools for the carrier's screws."""
     return (f"hex key {METRIC[design.clamp.screw].key:g} mm: the carrier's screws",)
 
 

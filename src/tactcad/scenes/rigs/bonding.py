@@ -94,7 +94,7 @@ THUMB = 20.0  # N; chosen: a thumb that presses hard
 
 
 def fixture(rigs: Sequence[BondingLayout]) -> str:
-    """How the nest and its clamp are put together."""
+    """Assembly of the nest and its clamp."""
     rig = rigs[0]
     kinds = (
         f" There are {len(rigs)} nests: each is for the elements with its own hinge, as its number says."
@@ -136,7 +136,7 @@ def element_in(rig: BondingLayout) -> str:
 
 
 def gauge(rigs: Sequence[BondingLayout]) -> str:
-    """How the gauge is set on the hinge, and how near."""
+    """Instructions for setting the gauge on the hinge, with the tolerance."""
     from tactcad.parts.array.gauge_checks import allowed_places
 
     rig = rigs[0]
@@ -157,7 +157,7 @@ def gauge(rigs: Sequence[BondingLayout]) -> str:
 
 
 def clamp(rigs: Sequence[BondingLayout]) -> str:
-    """What presses how much for how long, and what the leaf bears."""
+    """Instructions for clamping: weight, time, and the leaf's load."""
     rig = rigs[0]
     return (
         "Release film on the gauge, then at once the clamp bar down on the pins, rubber on the gauge. Let "

@@ -362,7 +362,8 @@ def ballast_trims_moving_weight(layout: Layout) -> Iterator[Finding]:
 
 
 def _place_carried(b: Builder, rig: GuideLayout, rail: str, lift: float, standing: Scene) -> str:
-    """What hangs on the guide, from the carriage to the platform, with that array; returns the platform."""
+    """Place the load of the guide, from the carriage to the platform, with that array; returns the
+    platform."""
     design = rig.design
     b.group("axis")
     b.unit("vertical axis")
