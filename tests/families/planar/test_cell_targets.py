@@ -15,10 +15,10 @@ from tactcad.cli.main import main
 from tactcad.families.planar import cell_targets
 from tactcad.families.planar.cell_layout import PlanarLayout
 from tactcad.families.planar.cell_targets import (
-    Choice,
-    Found,
-    Means,
-    Read,
+    CellChoice,
+    CellFound,
+    CellMeans,
+    CellRead,
     evaluated,
     half_width,
     of_kind,
@@ -45,7 +45,7 @@ def file(tmp_path_factory) -> Path:
 
 
 @cache
-def answer(path: Path) -> cell_targets.Answer:
+def answer(path: Path) -> cell_targets.CellAnswer:
     return cell_targets.search(read_target(path))
 
 
@@ -53,8 +53,8 @@ def answer(path: Path) -> cell_targets.Answer:
 def test_half_widths_are_those_of_simulated_readings(k):
     """Springs in series, pressed alike; forces drawn with their noise, matrices with their errors, and K_obj
     solved for: 95 % of the answers lie within the half-width."""
-    soft, stiff = Read(1.3, 0.1, 2e-4), Read(9.0, 0.3, 1e-3)
-    means = Means(force=0.3, pitch=(4.0, 4.0), length=28.0, width=10.0, readings=4, matrices=0.004)
+    soft, stiff = CellRead(1.3, 0.1, 2e-4), CellRead(9.0, 0.3, 1e-3)
+    means = CellMeans(force=0.3, pitch=(4.0, 4.0), length=28.0, width=10.0, readings=4, matrices=0.004)
     rng, series = np.random.default_rng(5), [1 / c.stiffness + 1 / k for c in (soft, stiff)]
     way = min(c.rated * s for c, s in zip((soft, stiff), series))
     felt = [
@@ -68,8 +68,8 @@ def test_half_widths_are_those_of_simulated_readings(k):
 
 
 def test_kinds_alike_tell_nothing():
-    one = Read(2.0, 0.1, 1e-4)
-    means = Means(force=0.3, pitch=(4.0, 4.0), length=28.0, width=10.0)
+    one = CellRead(2.0, 0.1, 1e-4)
+    means = CellMeans(force=0.3, pitch=(4.0, 4.0), length=28.0, width=10.0)
     assert np.isinf(half_width(one, one, means, np.array([1.0]))).all()
 
 
@@ -81,7 +81,7 @@ def test_the_answer_is_a_design_that_loads_and_reads_as_said(file, tmp_path, cap
     layout = PlanarLayout(load(str(tmp_path / "jaw" / "design.toml")))
     soft, stiff = (of_kind(layout, name) for name in ("measuring", "reference"))
     k = np.array([at["object"] for at in said["object_interval"]])
-    width = half_width(soft, stiff, Means(0.3, (3.6, 4.0), 28.0, 10.0), k)
+    width = half_width(soft, stiff, CellMeans(0.3, (3.6, 4.0), 28.0, 10.0), k)
     assert width.max() == pytest.approx(said["half_width"]) and said["half_width"] < said["wanted_half_width"]
     assert [at["high"] - at["low"] for at in said["object_interval"]] == pytest.approx(list(2 * width * k))
     assert said["met"] is True and said["yield"] >= 0.95 and said["yield_interval"][0] < said["yield"]
@@ -101,8 +101,8 @@ def test_no_design_drawn_by_chance_near_it_is_better(file):
     for _ in range(40):
         values = {name: round(v * rng.uniform(0.97, 1.06), 3) for name, v in asdict(best.choice).items()}
         values |= {"foil": best.choice.foil, "pitch": min(max(values["pitch"], 3.6), 4.0)}
-        found = evaluated(t, Choice(**values))
-        if isinstance(found, Found):
+        found = evaluated(t, CellChoice(**values))
+        if isinstance(found, CellFound):
             tried += 1
             assert found.half_width > 0.97 * best.half_width, values
     assert tried > 5

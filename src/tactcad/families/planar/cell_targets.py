@@ -55,7 +55,7 @@ def _range(low: float, high: float, unit: str, meaning: str) -> Numbers:
 
 
 @dataclass(frozen=True)
-class Wish:
+class CellWish:
     """[target]: what the sensor is to reach."""
 
     name: str = given(Identity.__dataclass_fields__["name"].metadata["spec"])
@@ -72,14 +72,14 @@ class Wish:
 
 
 @dataclass(frozen=True)
-class Felt:
+class CellObject:
     """[object]: what is felt."""
 
     stiffness: tuple[float, ...] = given(_range(1e-3, 1e4, "N/mm", "K_obj under one pad"))
 
 
 @dataclass(frozen=True)
-class Means:
+class CellMeans:
     """[planar]: forces, room, foils, and how well readings and matrices are known."""
 
     force: float = given(Number("N", 1e-3, 100, "largest force on a pad"))
@@ -99,14 +99,14 @@ class Means:
     )
 
 
-TABLES = {"target": Wish, "object": Felt, "planar": Means}
+TABLES = {"target": CellWish, "object": CellObject, "planar": CellMeans}
 
 
 @dataclass(frozen=True)
 class CellTarget:
-    target: Wish
-    object: Felt
-    planar: Means
+    target: CellWish
+    object: CellObject
+    planar: CellMeans
     base: PlanarDesign
 
     @property
@@ -140,7 +140,7 @@ def read_target(path: str | Path) -> CellTarget:
 
 
 @dataclass(frozen=True)
-class Choice:
+class CellChoice:
     """What varies, mm: foil, pitch, beams' widths of both kinds, the reference island's side, chips' gap."""
 
     foil: float
@@ -152,7 +152,7 @@ class Choice:
 
 
 @dataclass(frozen=True)
-class Read:
+class CellRead:
     """A cell as it is read: N/mm; rated force and noise of one reading, N."""
 
     stiffness: float
@@ -160,7 +160,7 @@ class Read:
     noise: float
 
 
-def designed(t: CellTarget, c: Choice) -> PlanarDesign | None:
+def designed(t: CellTarget, c: CellChoice) -> PlanarDesign | None:
     """The base design with this choice, as many cells as the room takes, and roots as its process leaves
     them; None if the room is too small."""
     b, h, m = t.base, t.base.housing, t.planar
@@ -208,15 +208,15 @@ def with_stops(d: PlanarDesign) -> PlanarDesign:
     return d
 
 
-def of_kind(layout: PlanarLayout, name: str) -> Read:
+def of_kind(layout: PlanarLayout, name: str) -> CellRead:
     kind = layout.kinds[name]
     return read_at(layout, name, rated_force(layout, kind, rated_stress(layout, kind))[1])
 
 
-def read_at(layout: PlanarLayout, name: str, rated: float) -> Read:
+def read_at(layout: PlanarLayout, name: str, rated: float) -> CellRead:
     kind = layout.kinds[name]
     noise = force_noise(layout.chip, chip_matrix(layout, kind))
-    return Read(float(1.0 / pad_compliance(kind, layout.pad_height)[2, 2]), rated, float(noise[2]))
+    return CellRead(float(1.0 / pad_compliance(kind, layout.pad_height)[2, 2]), rated, float(noise[2]))
 
 
 def fits(layout: PlanarLayout, name: str) -> bool:
@@ -227,7 +227,7 @@ def fits(layout: PlanarLayout, name: str) -> bool:
     return True
 
 
-def variances(soft: Read, stiff: Read, m: Means, k: Array) -> tuple[Array, Array, Array]:
+def variances(soft: CellRead, stiff: CellRead, m: CellMeans, k: Array) -> tuple[Array, Array, Array]:
     """Of ln K_obj at stiffnesses k: noise of the measuring cell, of the reference cell, and both matrices."""
     way_m, way_r = 1.0 / soft.stiffness + 1.0 / k, 1.0 / stiff.stiffness + 1.0 / k
     way = np.minimum(soft.rated * way_m, stiff.rated * way_r)
@@ -240,7 +240,7 @@ def variances(soft: Read, stiff: Read, m: Means, k: Array) -> tuple[Array, Array
         return one, other, 2.0 * (m.matrices / slope) ** 2
 
 
-def half_width(soft: Read, stiff: Read, m: Means, k: Array) -> Array:
+def half_width(soft: CellRead, stiff: CellRead, m: CellMeans, k: Array) -> Array:
     """Of the 95 % interval of K_obj, relative, at stiffnesses k; infinite where the kinds do not differ."""
     if stiff.stiffness <= soft.stiffness:
         return np.full(np.shape(k), np.inf)
@@ -248,17 +248,17 @@ def half_width(soft: Read, stiff: Read, m: Means, k: Array) -> Array:
 
 
 @dataclass(frozen=True)
-class Found:
+class CellFound:
     """A design that keeps every rule."""
 
-    choice: Choice
+    choice: CellChoice
     design: PlanarDesign
-    soft: Read
-    stiff: Read
+    soft: CellRead
+    stiff: CellRead
     half_width: float
 
 
-def evaluated(t: CellTarget, c: Choice) -> Found | list[Finding]:
+def evaluated(t: CellTarget, c: CellChoice) -> CellFound | list[Finding]:
     """What a choice gives, or the rules that it breaks."""
     d = designed(t, c)
     if d is None:
@@ -272,10 +272,10 @@ def evaluated(t: CellTarget, c: Choice) -> Found | list[Finding]:
     if broken := next((b for rule in rules if (b := rule(layout))), None):
         return broken
     soft, stiff = (of_kind(layout, name) for name in KINDS)
-    return Found(c, d, soft, stiff, float(half_width(soft, stiff, t.planar, t.points).max()))
+    return CellFound(c, d, soft, stiff, float(half_width(soft, stiff, t.planar, t.points).max()))
 
 
-def grid(t: CellTarget) -> Iterator[tuple[float, Choice]]:
+def grid(t: CellTarget) -> Iterator[tuple[float, CellChoice]]:
     """Coarse choices with their half-widths: every kind by itself, then all pairs."""
     b, half = t.base, WIDTHS // 2
     gaps = [round(float(b.hall.gap * f), 2) for f in np.linspace(0.8, 1.2, half)]
@@ -284,7 +284,7 @@ def grid(t: CellTarget) -> Iterator[tuple[float, Choice]]:
         for pitch in sorted({round(float(p), 2) for p in np.linspace(low, high, half)}):
             widths = [round(float(w), 2) for w in np.geomspace(max(2.0 * foil, 0.1), 0.16 * pitch, WIDTHS)]
             islands = [round(float(i), 2) for i in np.linspace(b.reference.island, 0.55 * pitch, half)]
-            first = Choice(foil, pitch, widths[0], widths[0], islands[0], gaps[0])
+            first = CellChoice(foil, pitch, widths[0], widths[0], islands[0], gaps[0])
             soft = [(c, r) for w in widths for g in gaps for c, r in _of(t, replace(first, soft=w, gap=g), 0)]
             stiff = [
                 (c, r)
@@ -300,7 +300,7 @@ def grid(t: CellTarget) -> Iterator[tuple[float, Choice]]:
                         yield width, replace(o, soft=c.soft)
 
 
-def _of(t: CellTarget, c: Choice, kind: int) -> Iterator[tuple[Choice, Read]]:
+def _of(t: CellTarget, c: CellChoice, kind: int) -> Iterator[tuple[CellChoice, CellRead]]:
     if (d := designed(t, c)) and fits(layout := PlanarLayout(d), KINDS[kind]):
         yield c, of_kind(layout, KINDS[kind])
 
@@ -308,7 +308,7 @@ def _of(t: CellTarget, c: Choice, kind: int) -> Iterator[tuple[Choice, Read]]:
 TRIED = 300  # best choices of the grid that are tried with every rule
 
 
-def refined(t: CellTarget, best: Found, rounds: int = 4) -> Found:
+def refined(t: CellTarget, best: CellFound, rounds: int = 4) -> CellFound:
     """Steps along one value at a time, halved when none helps."""
     step = {"pitch": 0.4, "soft": 0.04, "stiff": 0.08, "island": 0.1, "gap": 0.1}
     for _ in range(rounds):
@@ -322,19 +322,19 @@ def refined(t: CellTarget, best: Found, rounds: int = 4) -> Found:
                     if not low <= value <= high:
                         continue
                     found = evaluated(t, replace(best.choice, **{name: value}))
-                    if isinstance(found, Found) and found.half_width < best.half_width * (1 - 1e-4):
+                    if isinstance(found, CellFound) and found.half_width < best.half_width * (1 - 1e-4):
                         best, better = found, True
         step = {name: by / 2.0 for name, by in step.items()}
     return best
 
 
 @dataclass(frozen=True)
-class Answer:
+class CellAnswer:
     """Of a search; `best` is None where no choice keeps every rule, and `refused` says of which the last one
     broke."""
 
     target: CellTarget
-    best: Found | None
+    best: CellFound | None
     refused: str
     front: tuple[tuple[float, float, float], ...]
 
@@ -344,7 +344,7 @@ class Answer:
         return None if w is None else w / 100.0
 
 
-def search(t: CellTarget) -> Answer:
+def search(t: CellTarget) -> CellAnswer:
     """The best design, and the grid's best half-width by foil and pitch, before rules are tried."""
     every = sorted(grid(t), key=lambda pair: (pair[0], astuple(pair[1])))
     front: dict[tuple[float, float], float] = {}
@@ -353,14 +353,14 @@ def search(t: CellTarget) -> Answer:
     refused, best = "no beams fit this pitch", None
     for _, c in every[:TRIED]:
         found = evaluated(t, c)
-        if isinstance(found, Found):
+        if isinstance(found, CellFound):
             best = refined(t, found)
             break
         refused = str(found[0])
-    return Answer(t, best, refused, tuple((f, p, w) for (f, p), w in sorted(front.items())))
+    return CellAnswer(t, best, refused, tuple((f, p, w) for (f, p), w in sorted(front.items())))
 
 
-def made(t: CellTarget, best: Found, seed: int = 1) -> Array:
+def made(t: CellTarget, best: CellFound, seed: int = 1) -> Array:
     """Half-widths of arrays built virtually, each read at the drawn design's rated forces: foil, etching, gap
     and remanence are one cause each for both kinds."""
     rng, d = np.random.default_rng(seed), best.design
@@ -380,7 +380,7 @@ def made(t: CellTarget, best: Found, seed: int = 1) -> Array:
     return np.array(out)
 
 
-def binding(t: CellTarget, best: Found) -> list[dict[str, Any]]:
+def binding(t: CellTarget, best: CellFound) -> list[dict[str, Any]]:
     """Fields that limit, the worst first: each eased alone by a step, refined from the best design."""
     found = []
     for path, ease in EASED.items():
@@ -388,7 +388,7 @@ def binding(t: CellTarget, best: Found) -> list[dict[str, Any]]:
         value = getattr(t.planar, name)
         eased = replace(t, planar=replace(t.planar, **{name: ease(value)}))
         start = evaluated(eased, best.choice)
-        width = refined(eased, start, 1).half_width if isinstance(start, Found) else best.half_width
+        width = refined(eased, start, 1).half_width if isinstance(start, CellFound) else best.half_width
         gain = best.half_width - width
         if gain > 1e-3 * best.half_width:
             found.append(
@@ -397,7 +397,7 @@ def binding(t: CellTarget, best: Found) -> list[dict[str, Any]]:
     return sorted(found, key=lambda entry: -entry["gain"])
 
 
-def record(a: Answer) -> dict[str, Any]:
+def record(a: CellAnswer) -> dict[str, Any]:
     """The answer as plain data: the keys of a target of facing rows, as far as they mean something here."""
     t, best = a.target, a.best
     out: dict[str, Any] = {
