@@ -257,6 +257,18 @@ def test_a_tdms_that_is_cut_off_is_one_line(tmp_path, capsys):
     assert len(capsys.readouterr().err.splitlines()) == 1
 
 
+def test_a_tdms_channel_of_another_length_is_no_matter_until_it_is_asked_for(tmp_path):
+    from nptdms import ChannelObject, TdmsWriter
+
+    channels = {"cell": np.ones(3), "Time": np.arange(30.0), "ai1": np.arange(30.0)}
+    with TdmsWriter(tmp_path / "a.tdms") as file:
+        file.write_segment([ChannelObject("Log", name, values) for name, values in channels.items()])
+    log = read_log(tmp_path / "a.tdms")
+    assert log.column("ai1").tolist() == list(range(30))
+    with pytest.raises(log_readings.InputError, match="cell: has 3 rows, most channels have 30"):
+        log.column("cell")
+
+
 def test_two_channels_at_one_limit_are_saturated_not_one_channel(tmp_path):
     lab = labs.grasp(np.random.default_rng(8))
     railed = np.where(lab.columns["load"] > 0, 5.0, 0.0)

@@ -22,6 +22,7 @@ EXAMPLES = """\
   tactcad design mine.toml --out mine --within 0.5%    the yield's 95 % interval plus and minus 0.5 % at most
   tactcad design mine.toml --out mine --in 20   the best design found by then, and part of the report
   tactcad design mine.toml --out mine --best    the best design, even if the target is not met
+  tactcad design hardware/targets/jaw-array.toml --out jaw    planar cells: a target with [planar]
   tactcad schema target                         every field of a target file
 
 DIR gets the answer first: design.toml, which every rule accepts, report.html and report.json. What limits
@@ -45,7 +46,10 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     from tactcad.costs.grades import YIELD, arrays_of, yield_grades
-    from tactcad.design.family import family_of
+    from tactcad.design.family import all_families, family_of
+    from tactcad.design.files import read_text
+    from tactcad.design.load import MOST_BYTES
+    from tactcad.design.text_values import parse_toml
     from tactcad.synthesis import target_report as report
     from tactcad.synthesis.synthesise import ARRAYS
     from tactcad.synthesis.target import read_target
@@ -54,6 +58,10 @@ def run(args: argparse.Namespace) -> int:
 
     started = time.perf_counter()
     asked = allowance(args)
+    tables = parse_toml(read_text(args.target, MOST_BYTES, "a target file (TOML)"), args.target)
+    for family in all_families().values():
+        if family.targets and family.name in tables:
+            return int(family.targets(args))
     target = read_target(args.target)
     report.refuse_unwritable(args.out)
     picked = pick(yield_grades(), Allowance(asked.within), YIELD) if asked.within else None

@@ -169,6 +169,8 @@ class Family:
                and sweeps measure no rung
     checks     name of the folder or module that declares its checks, besides those of all families
     robot      its motion, for robots' simulators; None: unknown
+    targets    `tactcad design` of a target file with a table of the family's name: (arguments) to the exit
+               status; None: there are none
     """
 
     name: str
@@ -187,6 +189,7 @@ class Family:
     variables: Late | None
     checks: str
     robot: FamilyRobot | None = None
+    targets: Late | None = None
     boards: FamilyBoards | None = None
 
     def __post_init__(self) -> None:

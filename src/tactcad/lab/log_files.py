@@ -9,8 +9,8 @@ from __future__ import annotations
 
 import csv
 import re
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
 from datetime import date, datetime
 from math import isfinite, nan
 from pathlib import Path
@@ -21,7 +21,7 @@ import numpy as np
 from tactcad.design.csv_table import COMMENT, number
 from tactcad.design.extras import refuse_missing
 from tactcad.design.files import read_bytes
-from tactcad.design.messages import InputError
+from tactcad.design.messages import InputError, one_of
 
 LARGEST_LOG = 1_000_000_000  # bytes; ten channels at 1 kHz for an hour are 0.4 GB as text
 KIND = "a log (CSV, .lvm or .tdms)"
@@ -33,12 +33,23 @@ SAME_TIME = 1e-9  # s
 @dataclass(frozen=True)
 class LabLog:
     """A log's columns by name, each of equal length: numbers, or texts (marks). `time`: s from the first row,
-    if the file has it; `line`: line of each row in the file, or its number."""
+    if the file has it; `line`: line of each row in the file, or its number; `other`: rows of channels that
+    have more or fewer than most."""
 
     path: str
     columns: dict[str, np.ndarray]
     time: np.ndarray | None
     line: np.ndarray
+    other: Mapping[str, int] = field(default_factory=dict)
+
+    def column(self, name: str) -> np.ndarray:
+        """Raises InputError if the log has none of that name and of its length."""
+        if name in self.other:
+            what = f"has {self.other[name]} rows, most channels have {len(self.line)}"
+            raise InputError(f"{self.path}: {name}", what, legal="channels of equal length")
+        if name not in self.columns:
+            raise InputError(self.path, f"has no column {name!r}", legal=one_of(name, self.columns))
+        return self.columns[name]
 
     def where(self, row: int, column: str = "") -> str:
         return f"{self.path}:{self.line[row]}" + (f": {column}" if column else "")
@@ -291,14 +302,18 @@ def _tdms(path: str | Path) -> LabLog:
     if not found:
         raise InputError(str(path), "no channel in it", legal=KIND)
     count = {name: sum(n == name for _, n, _, _ in found) for _, name, _, _ in found}
+    lengths = [len(values) for _, _, values, _ in found]
+    usual = max(lengths, key=lambda n: (lengths.count(n), n))
     columns: dict[str, np.ndarray] = {}
+    other: dict[str, int] = {}
     for group, name, values, _ in found:
         shown = name if count[name] == 1 else f"{group}/{name}"
-        if len(values) != len(found[0][2]):
-            what = f"{len(values)} rows, {found[0][1]} has {len(found[0][2])}"
-            raise InputError(f"{path}: {shown}", what, legal="channels of equal length")
-        columns[shown] = _plain(values)
-    return LabLog(str(path), columns, _tdms_time([c for *_, c in found]), np.arange(1, len(found[0][2]) + 1))
+        if len(values) == usual:
+            columns[shown] = _plain(values)
+        else:
+            other[shown] = len(values)
+    time = _tdms_time([channel for *_, channel in found if len(channel) == usual])
+    return LabLog(str(path), columns, time, np.arange(1, usual + 1), other)
 
 
 def _plain(values: np.ndarray) -> np.ndarray:

@@ -16,7 +16,7 @@ import numpy as np
 from scipy.ndimage import maximum_filter1d, minimum_filter1d
 
 from tactcad.design.csv_table import Table, number
-from tactcad.design.messages import InputError, one_of
+from tactcad.design.messages import InputError
 from tactcad.lab import readings
 from tactcad.lab.column_units import VOLTAGES
 from tactcad.report.plain import plain
@@ -141,9 +141,7 @@ def _pressed(kind: str, steps: tuple[LogStep, ...], element: int) -> tuple[LogSt
 
 
 def _numbers(log: LabLog, name: str, by: LogMap, legal: str = "numbers alone") -> np.ndarray:
-    if name not in log.columns:
-        raise InputError(f"{log.path}", f"has no column {name!r}", legal=one_of(name, log.columns))
-    values = log.columns[name]
+    values = log.column(name)
     if values.dtype.kind == "U":
         row = next((i for i, v in enumerate(values) if v and np.isnan(number(v.replace(",", ".")))), 0)
         raise InputError(log.where(row, name), "no number", value=str(values[row]), legal=legal)
@@ -267,9 +265,7 @@ def _trimmed(drive: np.ndarray, a: int, b: int) -> tuple[int, int]:
 
 
 def _marked(log: LabLog, column: str, by: LogMap) -> list[tuple[int, int]]:
-    if column not in log.columns:
-        raise InputError(log.path, f"has no column {column!r}", legal=one_of(column, log.columns))
-    marks = log.columns[column]
+    marks = log.column(column)
     texts = marks if marks.dtype.kind == "U" else np.array([f"{m:g}" for m in marks])
     edges = np.flatnonzero(np.concatenate([[True], texts[1:] != texts[:-1], [True]]))
     found = [(int(a), int(b) - 1) for a, b in zip(edges[:-1], edges[1:]) if texts[a].lower() not in NO_MARK]

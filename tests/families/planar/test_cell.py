@@ -19,7 +19,18 @@ PINWHEEL = Cell(SOFT, roots("pinwheel", 2.2, -1.1 + 0.8, 1.1 + 0.35 + 0.2))
 STRAIGHT = Cell(STIFF, roots("straight", 3.0, 0.0, 0.0))
 
 
-@pytest.mark.parametrize("held_out", [SOFT, STIFF, FoilBeam(3.0, 1.2, 0.1, 0.35, 127_000.0, 0.34)])
+SILICON = FoilBeam(0.1, 0.012, 0.002, 0.004, 160_000.0, 0.22)  # polysilicon
+
+
+@pytest.mark.parametrize(
+    "held_out",
+    [
+        SOFT,
+        STIFF,
+        FoilBeam(3.0, 1.2, 0.1, 0.35, 127_000.0, 0.34),
+        pytest.param(SILICON, marks=pytest.mark.nightly),
+    ],
+)
 def test_closed_form_is_within_its_stated_error_of_solid_elements(held_out):
     stiffness, stress = solved(held_out)
     stated = beam.fit()["errors"]
@@ -126,3 +137,17 @@ def test_the_fit_s_report_keeps_what_is_promised():
 def test_out_of_range_is_said(change, said):
     assert beam.out_of_range(SOFT) == ""
     assert beam.out_of_range(replace(SOFT, **change)).startswith(said)
+
+
+def test_what_the_page_says_of_polysilicon():
+    """docs/architecture.md: K, and the force at 1 GPa, of cells at a pitch of 0.2 mm; pads 0.04 mm high."""
+    short = FoilBeam(0.05, 0.02, 0.002, 0.006, 160_000.0, 0.22)
+    for b, form, said, most in (
+        (SILICON, roots("pinwheel", 0.05, -0.005, 0.039), 0.063, 0.55),
+        (short, roots("straight", 0.08, 0.0, 0.0), 0.87, 2.1),
+    ):
+        assert beam.out_of_range(b) == ""
+        cell = Cell(b, form)
+        assert 1 / cell.compliance[2, 2] == pytest.approx(said, rel=0.01)
+        stress = cell.stress(wrench(np.array([0.0, 0.0, -1e-3]), 0.04))
+        assert 1000 / stress == pytest.approx(most, rel=0.02)

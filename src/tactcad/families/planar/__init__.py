@@ -54,6 +54,7 @@ FAMILY = Family(
         calibrate=Late(f"{HERE}.cell_commands:calibrate"), stiffness=Late(f"{HERE}.cell_commands:stiffness")
     ),
     variables=None,
+    targets=Late(f"{HERE}.cell_targets:design"),
     checks=f"{HERE}.checks",
     robot=FamilyRobot(
         mechanism=Late(f"{HERE}.cell_joints:cells"), jobs=Late("tactcad.robot.robot_files:jobs")

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import json
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, lru_cache
 from math import pi
 from pathlib import Path
 from typing import Any
@@ -23,6 +23,7 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 MODES = ("axial", "twist", "bend_out", "shear_out", "bend_in", "shear_in")
 DATA = Path(__file__).parent / "data" / "beam.json"
+KEPT = 256  # beams whose figures are kept: rules and searches ask for the same one again and again
 KAPPA = 5.0 / 6.0  # Reissner's shear factor of a rectangle
 
 
@@ -43,10 +44,16 @@ class FoilBeam:
         return self.youngs_modulus / (2.0 * (1.0 + self.poisson))
 
 
+@cache
+def gauss(points: int) -> tuple[Array, Array]:
+    """Gauss points and weights from -1 to 1."""
+    return np.polynomial.legendre.leggauss(points)
+
+
 def sections(beam: FoilBeam, points: int = 24) -> tuple[Array, Array, Array]:
     """Gauss points of the half 0 <= x <= s/2, their weights, and the width there, mm: w + 2 r (1 - cos phi)
     in the fillet, x = s/2 - r + r sin phi."""
-    at, weight = np.polynomial.legendre.leggauss(points)
+    at, weight = gauss(points)
     at, weight = (at + 1.0) / 2.0, weight / 2.0
     straight, r = beam.length / 2.0 - beam.fillet, beam.fillet
     phi = pi / 2.0 * at
@@ -63,6 +70,7 @@ def torsion_constant(width: Array, thickness: float) -> Array:
     return width * thickness**3 / 3.0 * (1.0 - 0.630 * q * (1.0 - q**4 / 12.0))
 
 
+@lru_cache(KEPT)
 def base(beam: FoilBeam) -> dict[str, float]:
     """Beam theory's stiffness of every mode (units as `stiffness`): compliances of the sections, fillets
     included, added along the beam; Timoshenko's shear."""
@@ -143,6 +151,7 @@ def _factors(beam: FoilBeam, kind: str) -> dict[str, float]:
     return {mode: float(np.exp(row @ np.array(c))[0]) for mode, c in fit()[kind].items()}
 
 
+@lru_cache(KEPT)
 def stiffness(beam: FoilBeam) -> dict[str, float]:
     """Stiffness of every mode: N/mm; bending and twist N mm a radian.
 
@@ -153,6 +162,7 @@ def stiffness(beam: FoilBeam) -> dict[str, float]:
     return {mode: value * factors[mode] for mode, value in base(beam).items()}
 
 
+@lru_cache(KEPT)
 def stress(beam: FoilBeam) -> dict[str, float]:
     """Largest von Mises stress of the foil's face per relative motion 1 of the ends (MPa/mm; MPa/rad), from
     half a thickness off the clamped edge on."""

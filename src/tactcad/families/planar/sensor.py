@@ -16,7 +16,7 @@ from tactcad.design.messages import InputError
 from . import beam
 from .cell import wrench
 from .cell_layout import Kind, PlanarLayout
-from .cell_tables import PlanarDesign
+from .cell_tables import Chip, PlanarDesign
 from .field import felt, field, sensitivity
 
 Array = NDArray[np.float64]
@@ -92,7 +92,7 @@ def magnet_lever(layout: PlanarLayout) -> float:
 def kind_figures(layout: PlanarLayout, name: str) -> KindFigures:
     kind, design = layout.kinds[name], layout.design
     down = wrench(np.array([design.rating.shear, 0.0, -1.0]), layout.pad_height)
-    stress = kind.cell.stress(down) * (1.0 + stress_error())
+    stress = rated_stress(layout, kind)
     at_rest, _ = sensitivity(layout.magnet, design.hall.gap, magnet_lever(layout))
     rated = rated_force(layout, kind, stress)[1]
     at_rated = felt(layout.magnet, design.hall.gap, magnet_lever(layout), kind.cell.compliance @ down * rated)
@@ -103,6 +103,18 @@ def kind_figures(layout: PlanarLayout, name: str) -> KindFigures:
         at_rest,
         float(np.abs(at_rated).max()),
     )
+
+
+def force_noise(chip: Chip, matrix: Array) -> Array:
+    """Of one reading's noise, N, of fx, fy and fz."""
+    noise = np.linalg.inv(matrix) * (1e-3 * np.array([chip.noise_xy, chip.noise_xy, chip.noise_z]))
+    return np.sqrt((noise**2).sum(axis=1))
+
+
+def rated_stress(layout: PlanarLayout, kind: Kind) -> float:
+    """Stress of 1 N down with the rated shear, its own error added, MPa."""
+    down = wrench(np.array([layout.design.rating.shear, 0.0, -1.0]), layout.pad_height)
+    return kind.cell.stress(down) * (1.0 + stress_error())
 
 
 def stress_error() -> float:
@@ -148,10 +160,7 @@ def rows(layout: PlanarLayout, _rung: str, force: float | None) -> list[CellEsti
         at_yield, rated = rated_force(layout, kind, figures.stress)
         load = design.rating.force if force is None else force
         stiffness = float(1.0 / figures.pad[2, 2])
-        noise = np.linalg.inv(figures.matrix) * (
-            1e-3 * np.array([chip.noise_xy, chip.noise_xy, chip.noise_z])
-        )
-        per_axis = np.sqrt((noise**2).sum(axis=1))
+        per_axis = force_noise(chip, figures.matrix)
         linear = kind.cell.linear_range(design.rating.linearity)
         stress = load * figures.stress
         by_kind[kind.name] = {

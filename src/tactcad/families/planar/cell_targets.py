@@ -1,0 +1,491 @@
+"""`tactcad design` of planar targets: foil, pitch, beams and the chips' gap, for a range of objects.
+
+A pair of neighbours, one cell of each kind, is pressed until one of them is at its rated force. The relative
+error of K_obj is that of F_m/F_r over its slope: noise of the readings, and the error of both matrices. A
+coarse grid over all that varies is refined from its best design that every rule accepts.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+from collections.abc import Callable, Iterator
+from dataclasses import asdict, astuple, dataclass, replace
+from math import ceil, floor
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.special import betaincinv
+
+from tactcad.design.design_text import design_text
+from tactcad.design.fields import Number, Numbers, TextLine, Whole, given
+from tactcad.design.files import absolute, make_folder, read_text, write_whole
+from tactcad.design.load import MOST_BYTES, read, read_table, unknown_field
+from tactcad.design.messages import InputError
+from tactcad.design.text_values import parse_toml
+from tactcad.design.tree import Identity
+from tactcad.parts.language.finding import Finding
+from tactcad.parts.rules.rule import wrong
+
+from .cell_layout import PlanarLayout
+from .cell_tables import Planar, PlanarDesign
+from .rules import design_rules
+from .sensor import chip_matrix, closing_force, force_noise, pad_compliance, rated_force, rated_stress
+
+Array = NDArray[np.float64]
+LEVEL, Z = 0.95, 1.959964  # of the interval, and the normal distribution's quantile
+POINTS = 9  # stiffnesses of the object at which the half-width is asked for, and of the curve
+ARRAYS = 200  # built virtually
+STEP = 0.005  # mm, of a stop's gap; beams and islands in twice that
+WIDTHS = 6  # beams' widths of a kind that the grid tries, and half as many islands, gaps and pitches
+KINDS = ("measuring", "reference")
+EASED: dict[str, Callable[[Any], Any]] = {  # how a field of [planar] is eased to see whether it binds
+    "planar.pitch": lambda v: (v[0], round(1.1 * v[1], 6)),
+    "planar.force": lambda v: round(1.1 * v, 6),
+    "planar.shear": lambda v: round(0.9 * v, 6),
+    "planar.readings": lambda v: round(1.2 * v + 0.5),
+    "planar.matrices": lambda v: round(0.9 * v, 9),
+}
+
+
+def _range(low: float, high: float, unit: str, meaning: str) -> Numbers:
+    return Numbers(Number(unit, low, high, meaning), 2, 2, f"least and largest {meaning}")
+
+
+@dataclass(frozen=True)
+class CellWish:
+    """[target]: what the sensor is to reach."""
+
+    name: str = given(Identity.__dataclass_fields__["name"].metadata["spec"])
+    base: str = given(
+        TextLine(r"[^\x00-\x1f]{1,200}", "a planar design by name or path", "whose other values are kept"),
+        "planar-array",
+    )
+    half_width: float | None = given(
+        Number("%", 0.1, 50, "half-width of the 95 % interval of K_obj over the whole range, at most"),
+        None,
+        "the best to be had",
+    )
+    share: float = given(Number("", 0.5, 0.999, "share of arrays made that meet the target, at least"), 0.95)
+
+
+@dataclass(frozen=True)
+class CellObject:
+    """[object]: what is felt."""
+
+    stiffness: tuple[float, ...] = given(_range(1e-3, 1e4, "N/mm", "K_obj under one pad"))
+
+
+@dataclass(frozen=True)
+class CellMeans:
+    """[planar]: forces, room, foils, and how well readings and matrices are known."""
+
+    force: float = given(Number("N", 1e-3, 100, "largest force on a pad"))
+    pitch: tuple[float, ...] = given(_range(1, 50, "mm", "distance of neighbouring cells"))
+    length: float = given(Number("mm", 2, 2000, "room along x"))
+    width: float = given(Number("mm", 2, 2000, "room along y"))
+    cells: int = given(Whole(2, 1600, "cells, at least; the room is filled"), 2)
+    foils: tuple[float, ...] | None = given(
+        Numbers(Planar.__dataclass_fields__["thickness"].metadata["spec"], 1, 8, "foils at hand"),
+        None,
+        "the base design's",
+    )
+    shear: float = given(Number("", 0, 2, "largest tangential force, a share of the normal one"), 0.1)
+    readings: int = given(Whole(1, 10000, "readings that are averaged at every load"), 10)
+    matrices: float = given(
+        Number("", 0, 0.2, "error of a calibrated matrix, relative, one standard deviation"), 0.005
+    )
+
+
+TABLES = {"target": CellWish, "object": CellObject, "planar": CellMeans}
+
+
+@dataclass(frozen=True)
+class CellTarget:
+    target: CellWish
+    object: CellObject
+    planar: CellMeans
+    base: PlanarDesign
+
+    @property
+    def points(self) -> Array:
+        """N/mm"""
+        low, high = self.object.stiffness
+        return np.geomspace(low, high, POINTS)
+
+
+def read_target(path: str | Path) -> CellTarget:
+    """A planar target file. Raises InputError for what is missing, unknown, illegal or contradicts itself."""
+    table = parse_toml(read_text(path, MOST_BYTES, "a target file (TOML)"), str(path))
+    for name, value in table.items():
+        if name not in TABLES:
+            raise unknown_field(name, [*TABLES])
+        if not isinstance(value, dict):
+            raise InputError(name, "not a table", value=value, legal=f"a table [{name}]")
+    values = {name: read_table(kind, table.get(name, {}), name) for name, kind in TABLES.items()}
+    wish, means = values["target"], values["planar"]
+    named = wish.base
+    base = read(Path(path).parent / named if "/" in named or named.endswith(".toml") else named)
+    if not isinstance(base, PlanarDesign):
+        raise InputError("target.base", "not a planar design", value=named, legal="a design with [planar]")
+    for where, pair in (("object.stiffness", values["object"].stiffness), ("planar.pitch", means.pitch)):
+        if pair[0] > pair[1]:
+            raise InputError(
+                where, "its first value is above its second", value=list(pair), legal="low, high"
+            )
+    foils = means.foils or (base.planar.thickness,)
+    return CellTarget(wish, values["object"], replace(means, foils=foils), base)
+
+
+@dataclass(frozen=True)
+class CellChoice:
+    """What varies, mm: foil, pitch, beams' widths of both kinds, the reference island's side, chips' gap."""
+
+    foil: float
+    pitch: float
+    soft: float
+    stiff: float
+    island: float
+    gap: float
+
+
+@dataclass(frozen=True)
+class CellRead:
+    """A cell as it is read: N/mm; rated force and noise of one reading, N."""
+
+    stiffness: float
+    rated: float
+    noise: float
+
+
+def designed(t: CellTarget, c: CellChoice) -> PlanarDesign | None:
+    """The base design with this choice, as many cells as the room takes, and roots as its process leaves
+    them; None if the room is too small."""
+    b, h, m = t.base, t.base.housing, t.planar
+    borders = (h.border, h.border if h.side is None else h.side)
+    columns, rows = (
+        min(40, floor((room - 2.0 * border + b.planar.web) / c.pitch + 1e-9))
+        for room, border in zip((m.length, m.width), borders)
+    )
+    if min(columns, rows) < 1 or columns * rows < m.cells:
+        return None
+    planar = replace(b.planar, rows=rows, columns=columns, pitch=c.pitch, thickness=c.foil)
+    d = replace(
+        b,
+        design=replace(b.design, name=t.target.name, title="Planar array from a target", revision="A"),
+        planar=planar,
+        measuring=replace(b.measuring, beam_width=c.soft),
+        reference=replace(b.reference, beam_width=c.stiff, island=c.island),
+        hall=replace(b.hall, gap=c.gap),
+        rating=replace(b.rating, force=m.force, shear=m.shear),
+        origin={},
+    )
+    process, corner = PlanarLayout(d).process, PlanarLayout(d).corner
+    for name in KINDS:
+        kind = getattr(d, name)
+        fillet = max(kind.fillet, corner)
+        slot = max(kind.slot, process.slot(c.foil), fillet + corner)
+        ear = max(kind.ear, 2.0 * corner, process.web(c.foil))
+        d = replace(d, **{name: replace(kind, fillet=fillet, slot=slot, ear=ear)})
+    return replace(d, hall=replace(d.hall, buses=-(-columns * rows // PlanarLayout(d).chip.addresses)))
+
+
+def with_stops(d: PlanarDesign) -> PlanarDesign:
+    """Stops that close just above the rated force, as the rule on them asks."""
+    for name in KINDS:
+        layout = PlanarLayout(d)
+        kind = layout.kinds[name]
+        _, rated = rated_force(layout, kind, rated_stress(layout, kind))
+        sink = rated * float(kind.cell.compliance[2, 2])
+        roots = np.roots([kind.cell.stiffening, 0.0, 1.0, -sink])
+        straight = float(roots[np.abs(roots.imag) < 1e-9].real.max())
+        gap = max(straight, layout.process.thinnest)
+        gap = round(STEP * ceil(gap / STEP - 1e-9), 6)
+        d = replace(d, **{name: replace(getattr(d, name), stop_gap=gap)})
+        assert closing_force(PlanarLayout(d), PlanarLayout(d).kinds[name]) >= rated
+    return d
+
+
+def of_kind(layout: PlanarLayout, name: str) -> CellRead:
+    kind = layout.kinds[name]
+    return read_at(layout, name, rated_force(layout, kind, rated_stress(layout, kind))[1])
+
+
+def read_at(layout: PlanarLayout, name: str, rated: float) -> CellRead:
+    kind = layout.kinds[name]
+    noise = force_noise(layout.chip, chip_matrix(layout, kind))
+    return CellRead(float(1.0 / pad_compliance(kind, layout.pad_height)[2, 2]), rated, float(noise[2]))
+
+
+def fits(layout: PlanarLayout, name: str) -> bool:
+    """Whether a kind of cell keeps the rules on its contour and its beams: it has no figures otherwise."""
+    for rule in ("islands_fit_pitch", "beams_can_be_cut", "beams_in_range", "island_takes_post"):
+        if any(f.part.startswith(f"{name}.") for f in design_rules()[rule].find(layout)):
+            return False
+    return True
+
+
+def variances(soft: CellRead, stiff: CellRead, m: CellMeans, k: Array) -> tuple[Array, Array, Array]:
+    """Of ln K_obj at stiffnesses k: noise of the measuring cell, of the reference cell, and both matrices."""
+    way_m, way_r = 1.0 / soft.stiffness + 1.0 / k, 1.0 / stiff.stiffness + 1.0 / k
+    way = np.minimum(soft.rated * way_m, stiff.rated * way_r)
+    slope = (1.0 / way_r - 1.0 / way_m) / k
+    with np.errstate(divide="ignore"):
+        one, other = (
+            (cell.noise * ways / way / slope) ** 2 / m.readings
+            for cell, ways in ((soft, way_m), (stiff, way_r))
+        )
+        return one, other, 2.0 * (m.matrices / slope) ** 2
+
+
+def half_width(soft: CellRead, stiff: CellRead, m: CellMeans, k: Array) -> Array:
+    """Of the 95 % interval of K_obj, relative, at stiffnesses k; infinite where the kinds do not differ."""
+    if stiff.stiffness <= soft.stiffness:
+        return np.full(np.shape(k), np.inf)
+    return Z * np.sqrt(sum(variances(soft, stiff, m, k)))
+
+
+@dataclass(frozen=True)
+class CellFound:
+    """A design that keeps every rule."""
+
+    choice: CellChoice
+    design: PlanarDesign
+    soft: CellRead
+    stiff: CellRead
+    half_width: float
+
+
+def evaluated(t: CellTarget, c: CellChoice) -> CellFound | list[Finding]:
+    """What a choice gives, or the rules that it breaks."""
+    d = designed(t, c)
+    if d is None:
+        return [wrong("planar.length", f"no room for {t.planar.cells} cells", t.planar.length, "more")]
+    layout = PlanarLayout(d)
+    rules: list[Any] = [*design_rules().values()]
+    if not all(fits(layout, name) for name in KINDS):
+        return next(b for rule in rules if (b := rule(layout)))
+    d = with_stops(d)
+    layout = PlanarLayout(d)
+    if broken := next((b for rule in rules if (b := rule(layout))), None):
+        return broken
+    soft, stiff = (of_kind(layout, name) for name in KINDS)
+    return CellFound(c, d, soft, stiff, float(half_width(soft, stiff, t.planar, t.points).max()))
+
+
+def grid(t: CellTarget) -> Iterator[tuple[float, CellChoice]]:
+    """Coarse choices with their half-widths: every kind by itself, then all pairs."""
+    b, half = t.base, WIDTHS // 2
+    gaps = [round(float(b.hall.gap * f), 2) for f in np.linspace(0.8, 1.2, half)]
+    low, high = t.planar.pitch
+    for foil in t.planar.foils or ():
+        for pitch in sorted({round(float(p), 2) for p in np.linspace(low, high, half)}):
+            widths = [round(float(w), 2) for w in np.geomspace(max(2.0 * foil, 0.1), 0.16 * pitch, WIDTHS)]
+            islands = [round(float(i), 2) for i in np.linspace(b.reference.island, 0.55 * pitch, half)]
+            first = CellChoice(foil, pitch, widths[0], widths[0], islands[0], gaps[0])
+            soft = [(c, r) for w in widths for g in gaps for c, r in _of(t, replace(first, soft=w, gap=g), 0)]
+            stiff = [
+                (c, r)
+                for w in widths
+                for i in islands
+                for g in gaps
+                for c, r in _of(t, replace(first, stiff=w, island=i, gap=g), 1)
+            ]
+            for c, m in soft:
+                for o, r in stiff:
+                    if c.gap == o.gap:
+                        width = float(half_width(m, r, t.planar, t.points).max())
+                        yield width, replace(o, soft=c.soft)
+
+
+def _of(t: CellTarget, c: CellChoice, kind: int) -> Iterator[tuple[CellChoice, CellRead]]:
+    if (d := designed(t, c)) and fits(layout := PlanarLayout(d), KINDS[kind]):
+        yield c, of_kind(layout, KINDS[kind])
+
+
+TRIED = 300  # best choices of the grid that are tried with every rule
+
+
+def refined(t: CellTarget, best: CellFound, rounds: int = 4) -> CellFound:
+    """Steps along one value at a time, halved when none helps."""
+    step = {"pitch": 0.4, "soft": 0.04, "stiff": 0.08, "island": 0.1, "gap": 0.1}
+    for _ in range(rounds):
+        better = True
+        while better:
+            better = False
+            for name, by in step.items():
+                for sign in (1.0, -1.0):
+                    value = round(getattr(best.choice, name) + sign * by, 3)
+                    low, high = t.planar.pitch if name == "pitch" else (STEP, 40.0)
+                    if not low <= value <= high:
+                        continue
+                    found = evaluated(t, replace(best.choice, **{name: value}))
+                    if isinstance(found, CellFound) and found.half_width < best.half_width * (1 - 1e-4):
+                        best, better = found, True
+        step = {name: by / 2.0 for name, by in step.items()}
+    return best
+
+
+@dataclass(frozen=True)
+class CellAnswer:
+    """Of a search; `best` is None where no choice keeps every rule, and `refused` says of which the last one
+    broke."""
+
+    target: CellTarget
+    best: CellFound | None
+    refused: str
+    front: tuple[tuple[float, float, float], ...]
+
+    @property
+    def wanted(self) -> float | None:
+        w = self.target.target.half_width
+        return None if w is None else w / 100.0
+
+
+def search(t: CellTarget) -> CellAnswer:
+    """The best design, and the grid's best half-width by foil and pitch, before rules are tried."""
+    every = sorted(grid(t), key=lambda pair: (pair[0], astuple(pair[1])))
+    front: dict[tuple[float, float], float] = {}
+    for width, c in every:
+        front.setdefault((c.foil, c.pitch), width)
+    refused, best = "no beams fit this pitch", None
+    for _, c in every[:TRIED]:
+        found = evaluated(t, c)
+        if isinstance(found, CellFound):
+            best = refined(t, found)
+            break
+        refused = str(found[0])
+    return CellAnswer(t, best, refused, tuple((f, p, w) for (f, p), w in sorted(front.items())))
+
+
+def made(t: CellTarget, best: CellFound, seed: int = 1) -> Array:
+    """Half-widths of arrays built virtually, each read at the drawn design's rated forces: foil, etching, gap
+    and remanence are one cause each for both kinds."""
+    rng, d = np.random.default_rng(seed), best.design
+    cut = PlanarLayout(d).process.tolerance(d.planar.thickness)
+    out = []
+    for foil, width, gap, remanence in rng.standard_normal((ARRAYS, 4)) / 2.0:
+        as_made = replace(
+            d,
+            planar=replace(d.planar, thickness=d.planar.thickness + d.foil_tolerance * foil),
+            hall=replace(d.hall, gap=d.hall.gap + 2.0 * d.tolerance.stop_gap * gap),
+            magnet=replace(d.magnet, remanence=d.magnet.remanence * (1.0 + d.magnet.tolerance * remanence)),
+            **{k: replace(v := getattr(d, k), beam_width=v.beam_width + cut * width) for k in KINDS},
+        )
+        layout = PlanarLayout(as_made)
+        cells = [read_at(layout, name, drawn.rated) for name, drawn in zip(KINDS, (best.soft, best.stiff))]
+        out.append(half_width(cells[0], cells[1], t.planar, t.points).max())
+    return np.array(out)
+
+
+def binding(t: CellTarget, best: CellFound) -> list[dict[str, Any]]:
+    """Fields that limit, the worst first: each eased alone by a step, refined from the best design."""
+    found = []
+    for path, ease in EASED.items():
+        table, name = path.split(".")
+        value = getattr(t.planar, name)
+        eased = replace(t, planar=replace(t.planar, **{name: ease(value)}))
+        start = evaluated(eased, best.choice)
+        width = refined(eased, start, 1).half_width if isinstance(start, CellFound) else best.half_width
+        gain = best.half_width - width
+        if gain > 1e-3 * best.half_width:
+            found.append(
+                {"field": path, "value": value, "eased": ease(value), "half_width": width, "gain": gain}
+            )
+    return sorted(found, key=lambda entry: -entry["gain"])
+
+
+def record(a: CellAnswer) -> dict[str, Any]:
+    """The answer as plain data: the keys of a target of facing rows, as far as they mean something here."""
+    t, best = a.target, a.best
+    out: dict[str, Any] = {
+        "name": t.target.name,
+        "family": "planar",
+        "met": False,
+        "wanted_half_width": a.wanted,
+        "half_width": best.half_width if best else None,
+        "yield_wanted": t.target.share,
+        "level": LEVEL,
+        "object_range": list(t.object.stiffness),
+        "refused": "" if best else a.refused,
+        "object_interval": [],
+        "binding": [],
+        "shares": [],
+        "front": [{"thickness": f, "pitch": p, "half_width": w} for f, p, w in a.front],
+    }
+    if best is None:
+        return out
+    k = t.points
+    width = half_width(best.soft, best.stiff, t.planar, k)
+    limit = a.wanted if a.wanted is not None else 1.1 * best.half_width
+    arrays = made(t, best)
+    kept = int((arrays <= limit).sum())
+    tail = (1.0 - LEVEL) / 2.0
+    low = float(betaincinv(kept, ARRAYS - kept + 1.0, tail)) if kept else 0.0
+    high = float(betaincinv(kept + 1.0, ARRAYS - kept, 1.0 - tail)) if kept < ARRAYS else 1.0
+    reached = best.half_width <= limit and kept / ARRAYS >= t.target.share
+    worst = int(np.argmax(width))
+    parts = [float(v[worst]) for v in variances(best.soft, best.stiff, t.planar, k)]
+    causes = ("noise of the measuring cell", "noise of the reference cell", "matrices")
+    return out | {
+        "met": (None if a.wanted is None else True) if reached else False,
+        "yield": kept / ARRAYS,
+        "yield_interval": [low, high],
+        "yield_arrays": ARRAYS,
+        "object_interval": [
+            {"object": float(x), "low": float(x * (1 - w)), "high": float(x * (1 + w))}
+            for x, w in zip(k, width)
+        ],
+        "binding": binding(t, best),
+        "shares": [{"cause": c, "share": v / sum(parts)} for c, v in zip(causes, parts)],
+        "choice": asdict(best.choice),
+        "cells": {name: asdict(cell) for name, cell in zip(KINDS, (best.soft, best.stiff))},
+    }
+
+
+def to_text(r: dict[str, Any]) -> str:
+    """As people read it."""
+    low, high = r["object_range"]
+    if r["half_width"] is None:
+        return f"Impossible as asked: no design keeps every rule; {r['refused']}"
+    c, cells = r["choice"], r["cells"]
+    asked = "" if r["wanted_half_width"] is None else f", asked {100 * r['wanted_half_width']:.3g} %"
+    first = {True: "", None: "Best to be had: ", False: "Impossible as asked, the best there is: "}[r["met"]]
+    lines = [
+        f"{first}a pair feels {low:.3g} to {high:.3g} N/mm within {100 * r['half_width']:.2g} % "
+        f"(half the 95 % interval{asked}); {100 * r['yield']:.3g} % of {r['yield_arrays']} arrays made keep "
+        f"that ({100 * r['yield_interval'][0]:.3g} to {100 * r['yield_interval'][1]:.3g} %)",
+        f"  foil {c['foil']:g}, pitch {c['pitch']:g}, beams {c['soft']:g} and {c['stiff']:g} wide, reference "
+        f"island {c['island']:g}, chips' gap {c['gap']:g} mm",
+        *(
+            f"  {name}: {v['stiffness']:.3g} N/mm, rated {v['rated']:.3g} N, noise {1e3 * v['noise']:.3g} mN"
+            for name, v in cells.items()
+        ),
+        *(f"  {s['cause']}: {100 * s['share']:.3g} % of the variance" for s in r["shares"]),
+        *(
+            f"  binds: {b['field']} {b['value']} eased to {b['eased']}: {100 * b['half_width']:.3g} %"
+            for b in r["binding"]
+        ),
+    ]
+    return "\n".join(lines)
+
+
+def design(args: argparse.Namespace) -> int:
+    """`tactcad design` of a planar target: 0 if it is met, else 1; writes DIR/design.toml and report.json."""
+    for option, given_ in (("--within", args.within), ("--in", args.seconds)):
+        if given_ is not None:
+            raise InputError(option, "does not take planar targets", value=given_, legal="none")
+    folder = absolute(args.out)
+    if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
+        raise InputError("--out", "is there already", value=str(args.out), legal="a new or empty folder")
+    answer = search(read_target(args.target))
+    r = record(answer)
+    if answer.best and (r["met"] is not False or args.best):
+        make_folder(folder)
+        text = design_text(answer.best.design, f"{r['name']}: by `tactcad design`.\n{to_text(r)}")
+        write_whole(folder / "design.toml", text.encode())
+        write_whole(folder / "report.json", (json.dumps(r, indent=1) + "\n").encode())
+    print(json.dumps(r, indent=1) if args.json else to_text(r))
+    return 1 if r["met"] is False else 0
