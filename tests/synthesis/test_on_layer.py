@@ -239,9 +239,9 @@ def test_the_map_over_both_angles_is_what_solid_elements_give(elements, load, mo
 
 @pytest.mark.parametrize(("name", "force", "x"), [("macro-array", 5.0, 9.97), ("tissue-array", 3.4, 5.0)])
 def test_what_the_guide_allows_between_array_and_object_costs_little(name, force, x):
-    """The share of `tolerance.tilt`, which the grasping guide sets with a flat plate, in K_obj's half-width on
-    a layer of 6 mm: at most 0.2 points, all that a self-aligning mount would save. Two degrees cost five times
-    as much and more; the largest force on an element is that of the page's table."""
+    """The share of `tolerance.tilt`, which the grasping guide sets with a flat plate, in K_obj's half-width
+    on a layer of 6 mm: at most 0.2 points, all that a self-aligning mount would save. Two degrees cost five
+    times as much and more; the largest force on an element is that of the page's table."""
     text = TARGET.format(low=1, high=20, object="thickness = 6\nthickness_limits = 5", force=force, most=10)
     text = text.replace("modulus", "stiffness").replace('"on-layer"', f'"on-layer"\nbase = "{name}"')
     target = parse_target(text, "t")
