@@ -32,7 +32,7 @@ TARGET = ROOT / "hardware" / "targets" / "tissue-array.toml"
 OBJECTS = (((1.0, 5.0), 6.0), ((5.0, 20.0), 10.0))  # K_obj, N/mm; thickness, mm
 ANGLES = (0, 1, 2, 4, 6, 8)  # degrees
 STARTS = ((10, 2, 3.0, 3.4), (8, 3, 4.0, 2.0), (5, 2, 2.0, 1.0))  # elements, kinds, pad in mm, force in N
-GUESS, SEARCH = 8.0, 50.0  # s of one core
+GUESS, SEARCH = 6.0, 34.0  # s of one core
 # What may vary: all that the paper's clamp and read-out leave free.
 FREE = {
     "room.elements": (3, 10),
@@ -142,7 +142,7 @@ def front() -> str:
         for angle in ANGLES:
             found.append([answer(*one, float(angle)) for one in at])
             at = [(one.candidate.stand, one.row) for one in found[-1]]
-            print(angle, row_of(stiffness, thickness, angle, found[-1]), flush=True)
+            print(stiffness, angle, [said(one) for one in found[-1]], flush=True)
         for n, angle in enumerate(ANGLES):
             best = [min(later, key=worth) for later in zip(*found[n:])]
             rows.append(row_of(stiffness, thickness, angle, best))

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import json
 import sys
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from math import inf
 from pathlib import Path
 
@@ -27,6 +27,10 @@ SCENES = 10  # for each of them
 PLACES = ((2.0, 0.0), (-2.0, 0.0), (2.0, 4.0), (-2.0, 4.0), (2.0, 8.0), (-2.0, 8.0))
 HARDNESS = (0.0, 0.01, 0.03, 0.1, 0.3, 1.0)  # zones of K/(K + K_obj), of the stiffest element
 DEPTHS = (0.05, 0.1, 0.2, 0.3)  # of the lesser of a pad's radius and the thickness
+DEEP = (*DEPTHS, 0.5)  # of rung large
+# Radii from a round pad's middle to halfway between it and its neighbours: pads of 2 x 3 mm on macro-array's
+# grid of 4 x 4.5 mm have 1.73.
+CLOSEST = 1.7
 THICKNESSES = (0.44, 1.0, 3.0, 20.0)  # zones, in radii; rung layer reaches no thinner layer
 STEPS = 25  # of a climb
 MARGIN = 1.25  # factor of the stated over the largest error found
@@ -49,28 +53,65 @@ def by_layer(pads: Pads, body: Body, depth: float, angle: tuple[float, float]) -
     return PadsOnBody(pads, body).press(approach=depth, angle=angle)
 
 
-def layer_against_elements(seed: int = 31) -> list[tuple[Body, float]]:
-    """Body and error of the layer on SCENES arrays drawn for each, E 0.01 to 10 MPa, inclined
-    up to 3 degrees. The whole field of pads is set up once, and an array takes its own of it."""
-    rng = np.random.default_rng(seed)
-    rows = []
+@dataclass(frozen=True)
+class Scene:
+    """An array pressed by a load (N) on a body of a modulus (MPa), inclined (degrees)."""
+
+    pads: Pads
+    load: float
+    modulus: float
+    angle: tuple[float, float]
+
+    @staticmethod
+    def drawn(rng: np.random.Generator) -> Scene:
+        """E 0.01 to 10 MPa, inclined up to 3 degrees."""
+        pads, E = array(rng), float(np.exp(rng.uniform(np.log(0.01), np.log(10))))
+        x, y = rng.uniform(-3, 3, 2)
+        return Scene(pads, float(rng.uniform(0.2, 3)), E, (float(x), float(y)))
+
+    def changed(self, rng: np.random.Generator) -> Scene:
+        """A scene near this one, in the same limits."""
+        K = np.exp(rng.normal(0, 0.4, len(self.pads.x)))
+        pads = replace(self.pads, compliance=self.pads.compliance * K[:, None, None])
+        load = float(np.clip(self.load * np.exp(rng.normal(0, 0.4)), 0.2, 3))
+        E = float(np.clip(self.modulus * np.exp(rng.normal(0, 0.7)), 0.01, 10))
+        x, y = np.clip(self.angle + rng.normal(0, 0.6, 2), -3, 3)
+        return Scene(pads, load, E, (float(x), float(y)))
+
+
+class AgainstElements:
+    """Rung layer against rung fem-object on one body: the whole field of pads is set up once, and an array
+    takes its own pads from it."""
+
+    def __init__(self, body: Body) -> None:
+        x, y = np.array(PLACES).T
+        some = array(np.random.default_rng(0))
+        self.body, self.full = body, PadsOnBody(replace(some, x=x, y=y), body, "fem-object").face
+
+    def error(self, at: Scene) -> float:
+        flat, right = (PadsOnBody(at.pads, self.body) for _ in range(2))
+        right.face = self.full[: len(flat.face), : len(flat.face)]
+        a, b = (p.press(load=at.load, angle=at.angle, modulus=at.modulus) for p in (flat, right))
+        return difference(a.force, b.force)
+
+    def climb(self, rng: np.random.Generator, steps: int) -> tuple[float, float]:
+        """The largest error of SCENES drawn, and the largest that a climb from the worst of them found."""
+        drawn = [Scene.drawn(rng) for _ in range(SCENES)]
+        errors = [self.error(at) for at in drawn]
+        best, at = max(errors), drawn[int(np.argmax(errors))]
+        for _ in range(steps):
+            near = at.changed(rng)
+            if (error := self.error(near)) > best:
+                best, at = error, near
+        return max(errors), best
+
+
+def layer_against_elements(seed: int = 31, steps: int = STEPS) -> list[tuple[Body, float, float]]:
+    """Each body with the largest error of scenes drawn and of a climb."""
+    rng, rows = np.random.default_rng(seed), []
     for nu, h in BODIES:
-        body = Body(1.0, nu, h)
-        full = None
-        for _ in range(SCENES):
-            pads = array(rng)
-            E = float(np.exp(rng.uniform(np.log(0.01), np.log(10))))
-            angle = tuple(rng.uniform(-3, 3, 2))
-            flat = PadsOnBody(pads, body)
-            if full is None:
-                whole = replace(pads, x=np.array(PLACES)[:, 0], y=np.array(PLACES)[:, 1])
-                full = PadsOnBody(whole, body, "fem-object").face
-            right = PadsOnBody(pads, body)
-            right.face = full[: len(flat.face), : len(flat.face)]
-            loads = {"load": float(rng.uniform(0.2, 3)), "angle": angle, "modulus": E}
-            a, b = flat.press(**loads), right.press(**loads)
-            rows.append((body, difference(a.force, b.force)))
-            print(body, rows[-1][1], flush=True)
+        rows.append((Body(1.0, nu, h), *AgainstElements(Body(1.0, nu, h)).climb(rng, steps)))
+        print(*rows[-1], flush=True)
     return rows
 
 
@@ -123,11 +164,47 @@ def climb_of_strain(low: float, high: float, seed: int = 3, steps: int = STEPS) 
     return [float(b) for b in best]
 
 
+def departure(nu: float, thickness: float, wall: float) -> tuple[np.ndarray, np.ndarray]:
+    """By depth, how far a round pad's force in an endless grid, `wall` (radii) halfway between pads, departs
+    from linear theory and from rung large; thickness in radii. A depth that is not reached, as an element
+    folds, counts as 0: the rung refuses it."""
+    body = Body(1.0, nu, thickness)
+    at = np.array(DEEP) * min(1.0, thickness)
+    alone, grid = (large_strain.initial_stiffness(body, 1.0, w) for w in (None, wall))
+    approach = at * alone / grid  # at which a pad of the grid bears what presses one alone by `at`
+    depth, force = large_strain.punch(body, 1.0, float(approach[-1]), wall)
+    over = np.interp(approach, depth, force) / (grid * approach)
+    reached, factor = large_strain.hardening(body, 1.0)
+    known = (approach <= depth[-1] * (1 + 1e-9)) & (at <= reached[-1] * (1 + 1e-9))
+    linear, large = (np.abs(over / by - 1) for by in (1.0, np.interp(at, reached, factor)))
+    return np.where(known, linear, 0.0), np.where(known, large, 0.0)
+
+
+def climb_of_neighbours(low: float, high: float, seed: int = 5, steps: int = STEPS) -> np.ndarray:
+    """The largest departure of rung large found in grids, by DEEP, with thicknesses of low to high radii."""
+    rng = np.random.default_rng(seed)
+    best, kept = np.zeros(len(DEEP)), (0.49, low, CLOSEST)
+    for step in range(steps):
+        if step < steps // 2:
+            nu, h = rng.uniform(0.3, 0.4999), float(np.exp(rng.uniform(np.log(low), np.log(high))))
+            wall = float(rng.uniform(CLOSEST, 3.0))
+        else:  # near the worst yet
+            nu = float(np.clip(kept[0] + 0.02 * rng.normal(), 0.3, 0.4999))
+            h = float(np.clip(kept[1] * np.exp(0.3 * rng.normal()), low, high))
+            wall = float(max(kept[2] * np.exp(0.2 * rng.normal()), CLOSEST))
+        found = departure(nu, h, wall)[1]
+        if found[-2] > best[-2]:
+            kept = (nu, h, wall)
+        best = np.maximum(best, found)
+    return np.maximum.accumulate(best)  # a depth at which most fold errs no less than one before
+
+
 def main(data: Path, page: Path) -> None:
     layer = layer_against_elements()
     of_springs = [climb_of_springs(low, high) for low, high in zip(HARDNESS, HARDNESS[1:])]
     of_strain = [climb_of_strain(low, high) for low, high in zip(THICKNESSES, THICKNESSES[1:])]
-    elements = max(error for _, error in layer)
+    elements = max(climbed for *_, climbed in layer)
+    of_neighbours = [climb_of_neighbours(low, high) for low, high in zip(THICKNESSES, THICKNESSES[1:])]
     errors = {
         "layer": max(MARGIN * elements, 0.004),
         "fem-object": max(MARGIN * elements, 0.004),
@@ -136,29 +213,27 @@ def main(data: Path, page: Path) -> None:
         "depth": (0.0, *DEPTHS),
         "thickness": THICKNESSES[1:-1],
         "strain": [[0.0, *(MARGIN * e for e in zone)] for zone in of_strain],
+        "deep": (0.0, *DEEP),
+        "neighbours": [[0.0, *(MARGIN * e for e in zone)] for zone in of_neighbours],
     }
     write_whole(data, (json.dumps(errors, indent=1) + "\n").encode())
     held = [
-        (
-            f"{nu:g}",
-            f"{h:g}",
-            SCENES,
-            f"{max(e for b, e in layer if (b.poisson, b.thickness) == (nu, h)):.2%}",
-        )
-        for nu, h in BODIES
+        (f"{b.poisson:g}", f"{b.thickness:g}", SCENES, f"{drawn:.2%}", f"{climbed:.2%}")
+        for b, drawn, climbed in layer
     ]
     soft = [(f"{z:g}", f"{e:.2g}", f"{MARGIN * e:.2g}") for z, e in zip(HARDNESS[1:], of_springs)]
     deep = [
-        (f"{low:g} to {high:g}", *(f"{MARGIN * e:.2g}" for e in zone))
-        for low, high, zone in zip(THICKNESSES, THICKNESSES[1:], of_strain)
+        (f"{low:g} to {high:g}", of, *(f"{e:.2g}" for e in errors[of][k][1:]), *[""] * (of == "strain"))
+        for k, (low, high) in enumerate(zip(THICKNESSES, THICKNESSES[1:]))
+        for of in ("strain", "neighbours")
     ]
     text = page.read_text("utf-8")
-    heads = "nu | thickness, mm | scenes | layer against fem-object, largest"
+    heads = "nu | thickness, mm | scenes | layer against fem-object, largest | by a climb"
     text = filled(text, "object held out", lines(heads, held))
     text = filled(
         text, "object springs", lines("K/(K + K_obj) up to | springs, largest found | stated", soft)
     )
-    heads = "thickness, radii | " + " | ".join(f"depth {d:g}" for d in DEPTHS)
+    heads = "thickness, radii | of | " + " | ".join(f"depth {d:g}" for d in DEEP)
     write_whole(page, filled(text, "object strain", lines(heads, deep)).encode())
 
 

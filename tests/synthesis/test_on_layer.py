@@ -6,21 +6,25 @@ from __future__ import annotations
 import time
 from dataclasses import replace
 from math import inf
+from pathlib import Path
 
 import numpy as np
 import pytest
 from lab import layer_labs as labs
 
+from tactcad.contact.elastic_body import Body
+from tactcad.contact.press import PadsOnBody, pad_stiffness
 from tactcad.design.load import read
 from tactcad.design.messages import InputError
 from tactcad.lab import layer_fit
 from tactcad.synthesis.candidates import stands
 from tactcad.synthesis.made_arrays import MadeSensor
-from tactcad.synthesis.on_layer import LayerGrasps, Poses, level
+from tactcad.synthesis.on_layer import LayerGrasps, Poses, level, of_elements
 from tactcad.synthesis.search import refusals, search
 from tactcad.synthesis.synthesise import goal_of
-from tactcad.synthesis.target import Target, parse_target
+from tactcad.synthesis.target import Target, parse_target, read_target
 
+HARDWARE = Path(__file__).parents[2] / "hardware"
 TARGET = """
 [target]
 name = "on-layer"
@@ -194,3 +198,40 @@ def test_the_stated_half_width_covers_the_layer(case):
         seen = lab_errors(made.on_body, E, (0.0, 0.0), 60, seed=end)
         assert abs(np.median(seen[:, 0])) < 0.5 * stated
         assert (np.abs(seen[:, 0]) < stated).mean() > 0.86  # 52 of 60: one in a thousand where 95 % hold
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("elements", "load", "most"), [(4, 2.04, 0.8), pytest.param(10, 3.4, 2.0, marks=pytest.mark.nightly)]
+)
+def test_the_map_over_both_angles_is_what_solid_elements_give(elements, load, most):
+    """Tissue-array, or four of its elements, at five points of the report's map, up to `most` degrees:
+    readings by the body's influence from bricks (rung fem-object) have the forces that the map counts with,
+    and K_obj lies within the intervals of labs, eight a point, which are as wide as the map shows."""
+    target = read_target(HARDWARE / "targets" / "tissue-array.toml")
+    whole = MadeSensor(target, read("tissue-array")).on_body
+    some = np.r_[6:10] if elements == 4 else np.arange(10)  # the soft one among them
+    made = replace(
+        whole,
+        target=target.with_("grasp.force", load),
+        **{name: getattr(whole, name)[some] for name in ("x", "y", "load_arm", "stiffness", "signal")},
+        known=of_elements(whole.known, lambda of: np.broadcast_to(of, (10,))[some] if np.ndim(of) else of),
+    )
+    E, h, nu = 0.4, target.object.thickness, target.object.poisson  # 3 N/mm
+    solid = PadsOnBody(made.pads, Body(1.0, nu, h), "fem-object")
+    points = most * np.array([(0.0, 0.0), (1.0, 0.0), (0.0, -1.0), (0.6, 0.75), (-0.75, 0.3)])
+    shown = made.expected(Poses(np.full(5, E), np.tan(np.radians(points))))
+    half = (shown.object_[:, 2] - shown.object_[:, 1]) / 2
+    loads = load * (np.arange(target.grasp.loads) + 1) / target.grasp.loads
+    for point, force, wide in zip(points, shown.force, half):
+        pressed = [solid.press(load=float(N), angle=tuple(point), modulus=E) for N in loads]
+        assert pressed[-1].force == pytest.approx(force, abs=0.01 * force.max())
+        signal = made.signal[:, None] * np.array([p.sink for p in pressed]).T
+        readings = np.concatenate([np.zeros((elements, 1)), signal], 1)
+        rng = np.random.default_rng(7)
+        read_out = readings + made.noise * rng.standard_normal((8, *readings.shape))
+        number, at = np.arange(1, elements + 1), np.r_[0.0, loads]
+        x, low, high = layer_fit.fit(made.array, number, at, read_out, made.calibration).object_.T
+        right = E * pad_stiffness(solid.body, made.pads.length, made.pads.width)
+        assert ((low <= right) & (right <= high)).sum() >= 7
+        assert np.median(high - low) / 2 == pytest.approx(wide, rel=0.15)

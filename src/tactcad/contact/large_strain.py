@@ -37,9 +37,11 @@ AXES = ((0, 0), (0, 2), (2, 0), (2, 2), (1, 1))  # r, hoop, z: entries of F that
 class _Rings:
     """The layer's elements around the punch."""
 
-    def __init__(self, body: Body, radius: float) -> None:
+    def __init__(self, body: Body, radius: float, wall: float | None = None) -> None:
+        """`wall`: radius at which the layer's side slips on a rigid wall, as it does halfway between equal
+        punches all around, mm; by default the side is free, far away."""
         h = min(body.thickness, DEEPEST * radius)
-        lines = lines_over_pad(radius, radius + FREE_SIDE * h, ACROSS, EDGE)
+        lines = lines_over_pad(radius, wall or radius + FREE_SIDE * h, ACROSS, EDGE)
         z = np.concatenate([[0.0], outward(0.0, lines[ACROSS] - lines[ACROSS - 1], h)])
         basis = self.basis = Basis(MeshQuad.init_tensor(lines, -z[::-1]), ElementQuad2(), intorder=5)
         self.mu, self.kappa = (
@@ -67,11 +69,20 @@ class _Rings:
         self.punched = np.flatnonzero(top & (r < radius + near))
         bottom = np.flatnonzero(z < -h + 1e-9 * h)
         held = [2 * bottom + 1, 2 * np.flatnonzero(r < near)]
-        self.held = np.concatenate(held + [2 * bottom] if body.base == "bonded" else held)
+        held += [2 * bottom] if body.base == "bonded" else []
+        held += [2 * np.flatnonzero(r > wall - near)] if wall else []
+        self.held = np.unique(np.concatenate(held))
 
-    def forces(self, u: np.ndarray) -> tuple[np.ndarray, csc_matrix]:
-        """Forces on the nodes for displacements u, and their derivative. Raises FloatingPointError if an
-        element is turned inside out."""
+    def forces(
+        self, u: np.ndarray, p: np.ndarray | None = None
+    ) -> tuple[np.ndarray, csc_matrix, np.ndarray, np.ndarray]:
+        """Forces on the nodes for displacements u, and their derivative; each element's pressure,
+        kappa (J - 1), and its derivative by the element's displacements, [element, 4 (, 2 node)].
+
+        The derivative of the forces is taken at the pressures p, if they are given: Newton's method then
+        treats them as unknowns of their own. Taken at those of u it diverges from nu 0.4995 on, as the volume
+        that a step changes in second order is a large pressure. Raises FloatingPointError if an element is
+        turned inside out."""
         F = np.broadcast_to(np.eye(3), (*self.volume.shape, 3, 3)).copy()
         for k, (i, j) in enumerate(AXES):
             F[:, :, i, j] += np.einsum("eqn,en->eq", self.B[:, :, k], u[self.dofs])
@@ -80,9 +91,11 @@ class _Rings:
             raise FloatingPointError
         T = np.linalg.inv(F).swapaxes(2, 3)  # F^-T
         total = np.einsum("peq,eq,eq->ep", self.linear, J, self.volume)
-        p = self.kappa * (np.einsum("peq,ep->eq", self.linear, _solve(self.mass, total)) - 1)
+        own = self.kappa * _solve(self.mass, total)
+        own[:, 0] -= self.kappa
+        now, p = (np.einsum("peq,ep->eq", self.linear, of) for of in (own, own if p is None else p))
         I1, s = np.einsum("eqij,eqij->eq", F, F), self.mu * J ** (-2 / 3)
-        P = s[..., None, None] * (F - I1[..., None, None] / 3 * T) + (p * J)[..., None, None] * T
+        P = s[..., None, None] * (F - I1[..., None, None] / 3 * T) + (now * J)[..., None, None] * T
         rows, columns = np.array(AXES).T
         f, t = F[:, :, rows, columns], T[:, :, rows, columns]
         crossed = T[:, :, rows[:, None], columns] * T[:, :, rows, columns[:, None]]  # T_iL T_kJ
@@ -95,10 +108,11 @@ class _Rings:
         R = np.einsum("eqkn,eqk->en", BV, P[:, :, rows, columns])
         D = np.einsum("peq,eqkn,eqk->epn", self.linear, BV, J[..., None] * t)
         K = np.einsum("eqkn,eqkm->enm", BV, np.einsum("eqkl,eqlm->eqkm", A, self.B), optimize=True)
-        K += self.kappa * D.swapaxes(1, 2) @ np.linalg.solve(self.mass, D)
+        by_u = self.kappa * np.linalg.solve(self.mass, D)
+        K += D.swapaxes(1, 2) @ by_u
         size = 2 * self.basis.N
         tangent = coo_matrix((K.ravel(), (self.rows.ravel(), self.columns.ravel())), shape=(size, size))
-        return np.bincount(self.dofs.ravel(), R.ravel(), size), tangent.tocsc()
+        return np.bincount(self.dofs.ravel(), R.ravel(), size), tangent.tocsc(), own, by_u
 
 
 def _solve(mass: np.ndarray, right: np.ndarray) -> np.ndarray:
@@ -106,7 +120,9 @@ def _solve(mass: np.ndarray, right: np.ndarray) -> np.ndarray:
 
 
 @lru_cache(maxsize=16)
-def punch(body: Body, radius: float, depth: float) -> tuple[np.ndarray, np.ndarray]:
+def punch(
+    body: Body, radius: float, depth: float, wall: float | None = None
+) -> tuple[np.ndarray, np.ndarray]:
     """Force of a rigid round punch, under which the face does not slide, over its depth.
 
     Parameters
@@ -117,13 +133,15 @@ def punch(body: Body, radius: float, depth: float) -> tuple[np.ndarray, np.ndarr
         Of the punch, mm.
     depth
         Down to which, mm.
+    wall
+        As of `_Rings`.
 
     Returns
     -------
     depths, forces
         mm, N, from 0 up; they end before `depth` where an element would turn inside out.
     """
-    rings = _Rings(body, radius)
+    rings = _Rings(body, radius, wall)
     fixed = np.concatenate([rings.held, 2 * rings.punched, 2 * rings.punched + 1])
     steps = int(np.ceil(depth / (STEP * min(radius, body.thickness))))
     depths, forces, u = [0.0], [0.0], np.zeros(2 * rings.basis.N)
@@ -137,9 +155,9 @@ def punch(body: Body, radius: float, depth: float) -> tuple[np.ndarray, np.ndarr
     return np.array(depths), np.array(forces)
 
 
-def initial_stiffness(body: Body, radius: float) -> float:
+def initial_stiffness(body: Body, radius: float, wall: float | None = None) -> float:
     """Force of the punch over a vanishing depth, N/mm, on the same elements."""
-    rings = _Rings(body, radius)
+    rings = _Rings(body, radius, wall)
     fixed = np.concatenate([rings.held, 2 * rings.punched, 2 * rings.punched + 1])
     K = rings.forces(np.zeros(2 * rings.basis.N))[1]
     u = np.zeros(K.shape[0])
@@ -203,10 +221,11 @@ def _step(rings: _Rings, u: np.ndarray, fixed: np.ndarray, depth: float) -> np.n
     pushed = np.zeros(len(u))
     punched = 2 * rings.punched + 1
     pushed[punched] = -depth - u[punched]
+    p = None
     for _ in range(MOST_CORRECTIONS):
-        R, K = rings.forces(u)
+        R, K, own, by_u = rings.forces(u, p)
         pushed[free] = splu(K[free][:, free]).solve(-(R + K @ pushed)[free])
-        u = u + pushed
+        u, p = u + pushed, own + np.einsum("epn,en->ep", by_u, pushed[rings.dofs])
         if np.abs(pushed).max() <= SETTLED * depth:
             return u
         pushed = np.zeros(len(u))

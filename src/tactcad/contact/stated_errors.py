@@ -45,19 +45,24 @@ def depth_share(pads: Pads, body: Body, force: np.ndarray) -> float:
 def strain_error(pads: Pads, body: Body, depth: float | np.ndarray) -> float | np.ndarray:
     """Largest error of a linear body's force on a pad, relative, where the deepest is `depth_share` deep."""
     data = errors()
-    zone = int(np.searchsorted(data["thickness"], body.thickness / pad_radius(pads), side="right"))
-    return np.interp(depth, data["depth"], data["strain"][zone])
+    return np.interp(depth, data["depth"], data["strain"][_zone(pads, body)])
 
 
 def stated_error(rung: str, pads: Pads, body: Body, force: np.ndarray) -> float:
     """Largest stated error of a rung for pads that bear these forces."""
-    data = errors()
-    strain = 0.0
-    if rung != "large":
-        strain = float(strain_error(pads, body, depth_share(pads, body, force)))
+    data, depth = errors(), depth_share(pads, body, force)
+    # what neighbours change at large strain, which rung large does not know either
+    deep = float(np.interp(depth, data["deep"], data["neighbours"][_zone(pads, body)]))
+    if rung == "large":
+        return data["layer"] + deep
+    deep += float(strain_error(pads, body, depth))
     if rung == "springs":
         K = float((1 / pads.compliance[:, 0, 0]).max())
         hardness = K / (K + pad_stiffness(body, pads.length, pads.width, pads.disc))
         zone = int(np.searchsorted(data["hardness"], hardness))
-        return data["springs"][min(zone, len(data["springs"]) - 1)] + strain
-    return data["layer" if rung == "large" else rung] + strain
+        return data["springs"][min(zone, len(data["springs"]) - 1)] + deep
+    return data[rung] + deep
+
+
+def _zone(pads: Pads, body: Body) -> int:
+    return int(np.searchsorted(errors()["thickness"], body.thickness / pad_radius(pads), side="right"))

@@ -53,6 +53,9 @@ from tactcad.lab.regression import (
 )
 from tactcad.report.figures import Figure, Figures
 
+# Bow of the way up that one element alone is assumed to have, of full scale, since its readings seldom show
+# it. Chosen: what gauges, glue and set screws are usually said to keep.
+HYSTERESIS = 0.01
 FALSE_ALARM = 0.01  # probability that an outlier is reported in a file that has none
 # Assumed standard deviation of an element's slope from run to run, relative, if there is a single run.
 # Chosen: a micrometer read to 1 um over the 100 to 150 um of a calibration's travel.
@@ -196,6 +199,9 @@ def calibrate(
             run_scatter,
             alarm,
             [_height(own[k][i], of_all[k], alarm) for k in (0, 1)],
+            [min(b.most if b else HYSTERESIS, HYSTERESIS) for b in (own[0][i], own[1][i])]
+            if len(parts) == 1 and _up_only(e)
+            else [0.0, 0.0],
         )
         for i, e in enumerate(ready)
     ]
@@ -210,6 +216,13 @@ def _height(own: Bow | None, of_all: Bow | None, alarm: float) -> float:
     if own and own.told(alarm):
         heights.append(own.most)
     return max(heights)
+
+
+def _up_only(e: _InContact) -> bool:
+    """Whether no run comes back, by the order of the file."""
+    in_order = np.lexsort((e.line, e.run))
+    x, run = e.x[in_order], e.run[in_order]
+    return not ((np.diff(x) < 0) & (np.diff(run) == 0)).any()
 
 
 @dataclass(frozen=True)
@@ -256,6 +269,7 @@ def _element(
     run_scatter: float | None,
     alarm: float,
     heights: list[float],
+    unseen: list[float],
 ) -> ElementCalibration:
     notes = list(e.notes)
     x, y, run, by_force, time = e.x, e.y, e.run, weight[0], e.time
@@ -274,7 +288,7 @@ def _element(
     covariance, dof = _covariance(lines, run_scatter, notes)
     t = t_quantile(level, dof)
     k, v = lines.slope
-    covariance = _bowed(e, heights, lines.slope, covariance, t, notes)
+    covariance = _bowed(e, heights, unseen, lines.slope, covariance, t, notes)
     far = [str(o.line) for o in outliers if o.quantity == "force"]
     require_spring(e.where, x, y, lines.slope, t * covariance[0, 0] ** 0.5, load_cell, far)
     stiffness = element_stiffness(k, covariance[0, 0] ** 0.5, load_cell, t, notes)
@@ -302,7 +316,13 @@ def _element(
 
 
 def _bowed(
-    e: _InContact, heights: list[float], slope: np.ndarray, covariance: np.ndarray, t: float, notes: list[str]
+    e: _InContact,
+    heights: list[float],
+    unseen: list[float],
+    slope: np.ndarray,
+    covariance: np.ndarray,
+    t: float,
+    notes: list[str],
 ) -> np.ndarray:
     """The slopes' covariance, widened so that t standard errors also cover the slope error by the bow."""
     start, first = float((e.x - e.travel)[0]), float(e.x.min())
@@ -314,8 +334,17 @@ def _bowed(
                 f"the {name} bows by up to {height:.1%} of its full scale (hysteresis, friction): the "
                 f"interval of its slope is {share:.1%} wider either way; readings of the way back would tell"
             )
-    se = np.sqrt(np.diag(covariance))
-    return covariance + np.diag((se + off * np.abs(slope) / t) ** 2 - se**2)
+    se, wider = np.sqrt(np.diag(covariance)), off * np.abs(slope) / t
+    # a bow that is only possible counts as one more independent error
+    possible = np.array(
+        [0.0 if height else off_the_chord(u, e.x, start) for height, u in zip(heights, unseen)]
+    )
+    if possible.any():
+        notes.append(
+            f"one element alone seldom shows hysteresis: {max(unseen):.1%} of full scale is assumed; "
+            "read the way back, or several elements"
+        )
+    return covariance + np.diag((se + wider) ** 2 - se**2 + (possible * slope / t) ** 2)
 
 
 def _touching(all_: CalibrationReadings, rows: np.ndarray, notes: list[str]) -> np.ndarray:
