@@ -126,7 +126,8 @@ def _files_of(
     revision = design.design.revision
     if line.row.part_no == BOARD:
         made = {path.removeprefix(BOARDS): path for path in sorted(files) if path.startswith(BOARDS)}
-        return made | {"sheets": f"pdf/{design.name}-circuit_{revision}.pdf"}
+        sheets = f"pdf/{design.name}-circuit_{revision}.pdf"
+        return made | ({"sheets": sheets} if sheets in files else {})
     stem = f"{line.row.part_no}_{revision}"
     paths = {
         "dxf": f"dxf/{stem}.dxf",

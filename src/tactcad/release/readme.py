@@ -262,11 +262,11 @@ PACKAGE_FOLDERS = {
 
 
 BOARDS = (
-    "All bare boards are alike: make them by the files in gerber/ (Gerber X2, drills in millimetres; layers "
-    "by their file function) and outline.dxf; 4 layers, FR-4 1.6 mm, copper 35 um, tracks and gaps of 0.2 mm "
-    "or more, vias of 0.3 mm. To fit them, NAME-bill.csv says what stands where, and what is left off; "
-    "NAME-places.csv has the places of what a machine fits. NAME.kicad_pcb is the same board for KiCad 6, "
-    "NAME.step its solid."
+    "All bare boards are alike: make them by the files in gerber/ (Gerber X2, drills in millimetres; "
+    "layers by their file function) and outline.dxf; 4 layers, FR-4 as thick as ordered, copper 35 um, "
+    "tracks and gaps of 0.2 mm or more, vias of 0.3 mm. To fit them, NAME-bill.csv says what stands "
+    "where, and what is left off; NAME-places.csv has the places of what a machine fits. NAME.kicad_pcb "
+    "is the same board for KiCad 6, NAME.step its solid."
 )
 
 

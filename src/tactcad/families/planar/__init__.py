@@ -59,5 +59,5 @@ FAMILY = Family(
     robot=FamilyRobot(
         mechanism=Late(f"{HERE}.cell_joints:cells"), jobs=Late("tactcad.robot.robot_files:jobs")
     ),
-    boards=FamilyBoards(made=Late(f"{HERE}.cell_board:made"), supplies=Late(f"{HERE}.cell_board:ordered")),
+    boards=FamilyBoards(made=Late(f"{HERE}.cell_board:made"), supplies=Late(f"{HERE}.cell_board:supplies")),
 )

@@ -15,6 +15,7 @@ at pitches from LEAST_PITCH on.
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator
 from math import ceil
 
@@ -25,8 +26,9 @@ from tactcad.circuit.letters import width as printed_width
 from tactcad.circuit.netlist import GROUND, Component, Netlist, Pin
 from tactcad.circuit.printed import HIGH
 from tactcad.contour import rectangle
-from tactcad.parts.bought.supply import Supply, board_spares
-from tactcad.parts.language.description import Extrusion, Hole, Material, Part, Purchase
+from tactcad.parts.bought.electronic_parts import BOARD
+from tactcad.parts.bought.supply import BARE_BOARD, ELECTRONIC, Supply, board_spares
+from tactcad.parts.language.description import Extrusion, Hole, Material, Part, Process, Purchase
 from tactcad.parts.language.metric import METRIC
 
 from .cell_layout import PlanarLayout
@@ -277,50 +279,45 @@ def _header(
 def board(layout: PlanarLayout) -> Part:
     """The chips' board, z = 0 its lower face; longer than the housing by its tongue."""
     d, (x, y) = layout.design, layout.half
-    t, reach = d.hall.board, tongue(layout)
+    t = d.hall.board
     holes = tuple(
-        Hole("screw", (u, v, 0.0), (0, 0, 1), METRIC[SCREW].clearance, t, True)
-        for u, v in screw_places(layout)
+        Hole("screw", (*place, 0.0), (0, 0, 1), METRIC[SCREW].clearance, t, True)
+        for place in screw_places(layout)
     )
-    name = f"{d.name}-board"
-    order = f"board of {d.name}, {len(layout.elements)} x {layout.chip.name}"
-    if reach:
-        order = (
-            f"circuit board {name} by its Gerber files: FR-4 {t:g} mm, 4 layers, copper 35 um, "
-            f"{2 * x:g} x {2 * y + reach:g} mm; fitted by its bill and places"
-        )
     return Part(
-        part_no=name,
+        part_no=f"{d.name}-board",
         name="Board",
-        process="bought",
+        process=_process(layout),
         material=GLASS_EPOXY,
-        body=Extrusion(rectangle(-x, -y - reach, x, y), t),
+        body=Extrusion(rectangle(-x, -y - tongue(layout), x, y), t),
         features=holes,
         colour="#3f6b4b",
-        purchase=Purchase(order),
+        purchase=Purchase(f"board of {d.name}, {len(layout.elements)} x {layout.chip.name}"),
     )
+
+
+def _process(layout: PlanarLayout) -> Process:
+    """Of board and chips: `supplies` asks for them where a board is laid out."""
+    return "bought" if why_none(layout) else "included"
 
 
 def order_of(layout: PlanarLayout, number: int) -> str:
-    """What a cell's chip is ordered by; the chip's name where no board is laid out."""
+    """The order number of a cell's chip; the chip's name where no board is laid out."""
     return layout.chip.name if why_none(layout) else layout.chip.name + address(layout, number)[0]
 
 
 def chip(layout: PlanarLayout, order: str) -> Part:
     """A chip's body, z = 0 on the board."""
     c = layout.chip
-    count = sum(order_of(layout, e.number) == order for e in layout.elements)
     return Part(
         part_no=f"{order}-chip",
         name=f"Hall chip {order}",
-        process="bought",
+        process=_process(layout),
         material=PACKAGE,
         body=Extrusion(rectangle(-c.length / 2, -c.width / 2, c.length / 2, c.width / 2), c.height),
         colour="#2b2d31",
-        purchase=Purchase(
-            f"three-axis Hall chip {order}", manufacturer=c.maker, mpn=order, source_verified=False
-        ),
-        spares=max(1, count // 10),
+        purchase=Purchase(f"three-axis Hall chip {order}", manufacturer=c.maker, mpn=order),
+        spares=max(1, len(layout.elements) // 10),
     )
 
 
@@ -329,38 +326,47 @@ FITTED = (
     ("CAPACITOR-100N-0603", "capacitor of a chip", "ceramic capacitor 100 nF, 10 %, X7R, 16 V, 0603"),
     ("CAPACITOR-10U", "capacitor of the supply", "ceramic capacitor 10 uF, 10 %, X5R or X7R, 10 V, 1206"),
     ("PULL-UP-4K7", "pull-up of a bus line", "thick film resistor 4.7 kohm, 5 %, 0.1 W, 0805"),
-    (
-        "HEADER-BUS",
-        "connector to the controller",
-        "pin header 2.54 mm, {pins} pins in one row, straight, through hole",
-    ),
+    ("HEADER-BUS", "connector to the controller", "pin header 2.54 mm, {pins} pins in one row, straight"),
 )
 
 
 def supplies(layout: PlanarLayout) -> list[Supply]:
-    """Lines of the bill of what is fitted on the board beside the chips."""
+    """Lines of the bill: the bare board and all that is fitted on it; none if none is laid out."""
     if why_none(layout):
         return []
-    fitted = [c.part_no for c in netlist(layout).components]
+    d, (x, y), chips = layout.design, layout.half, layout.chip
+    fitted = Counter(c.part_no for c in netlist(layout).components)
     pins = 2 + len(lines_of(layout))
+    orders = dict.fromkeys(order_of(layout, e.number) for e in layout.elements)
+    bare = (
+        f"circuit board {d.name}-board by its Gerber files: FR-4 {d.hall.board:g} mm, 4 layers, "
+        f"copper 35 um, tin or gold on pads, {2 * x:g} x {2 * y + tongue(layout):g} mm"
+    )
     return [
-        Supply(
-            part_no,
-            what,
-            fitted.count(part_no),
-            "pcs",
-            order.format(pins=pins) + "; any maker's",
-            spares=board_spares(fitted.count(part_no)),
-            consumable=False,
-        )
-        for part_no, what, order in FITTED
+        _supply(BOARD, "circuit board, bare", 1, bare, process=BARE_BOARD),
+        *(
+            _supply(name, "three-axis Hall chip", fitted[name], f"Hall chip {name}", chips.maker, name)
+            for name in orders
+        ),
+        *(
+            _supply(name, what, fitted[name], f"{order.format(pins=pins)}; any maker's")
+            for name, what, order in FITTED
+        ),
     ]
 
 
-def ordered(layout: PlanarLayout) -> list[Supply]:
-    """All that is fitted on the board, as its own bill asks."""
-    chips = {order_of(layout, e.number): layout.chip.maker for e in layout.elements}
-    return supplies(layout) + [
-        Supply(order, "", 0, "pcs", f"three-axis Hall chip {order}", manufacturer=maker, mpn=order)
-        for order, maker in chips.items()
-    ]
+def _supply(
+    part_no: str, what: str, qty: int, order: str, maker: str = "", mpn: str = "", process: str = ELECTRONIC
+) -> Supply:
+    return Supply(
+        part_no,
+        what,
+        qty,
+        "pcs",
+        order,
+        spares=board_spares(qty),
+        consumable=False,
+        manufacturer=maker,
+        mpn=mpn,
+        process=process,
+    )
