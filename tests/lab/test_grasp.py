@@ -49,14 +49,16 @@ def grasped(x, noise=0.0, seed=0, heights=None, truth=TRUTH, load=LOAD) -> Grasp
     return GraspReadings(1, truth.element, load, np.zeros(len(load), int), signal)
 
 
-def test_two_elements_that_have_each_others_zero_are_refused():
+def test_elements_that_have_each_others_zeros_are_refused():
     """An array whose zeros are all new is not."""
     read = grasped(3.85, 1e-4, load=np.concatenate([[0.0], LOAD]))
     known = replace(exact(), zero=TRUTH.zero_signal)
     assert grasp.evaluate(read, known).combined.estimate == pytest.approx(3.85, rel=0.01)
     swapped = replace(read, signal=read.signal[[0, 2, 1, 3]])
-    with pytest.raises(InputError, match="element 2 has the zero of element 3 .* that of 2: swapped"):
+    with pytest.raises(InputError, match="element 2 has the zero of element 3 .* swapped"):
         grasp.evaluate(swapped, known)
+    with pytest.raises(InputError, match="element 1 has the zero of element 4 .* swapped"):
+        grasp.evaluate(replace(read, signal=np.roll(read.signal, 1, axis=0)), known)
     grasp.evaluate(swapped, exact())
     grasp.evaluate(swapped, replace(known, zero=np.array([0.7, -0.2, -1.4, 0.4])))
 

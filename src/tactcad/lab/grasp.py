@@ -20,11 +20,11 @@ from __future__ import annotations
 import json
 from contextlib import suppress
 from dataclasses import dataclass, replace
-from itertools import combinations
 from math import inf, isinf
 from typing import Any
 
 import numpy as np
+from scipy.optimize import linear_sum_assignment
 from scipy.special import fdtrc
 
 from tactcad.design.messages import InputError
@@ -39,9 +39,7 @@ from .layer_fit import WILD, LayeredArray, fit
 
 SCHEMA = "tactcad-stiffness-1"
 STRAY = 1e-4  # probability, over all elements, below which an element is reported not to follow the others
-SWAPPED = (
-    5.0  # times nearer to each other's zero than to their own, from which on channels are swapped; chosen
-)
+SWAPPED = 5.0  # times nearer to others' zeros than to its own, from which on a channel is swapped; chosen
 SURELY = 3.0  # standard errors below zero from which an element's force is reported to fall; chosen
 TOUCHES = 1e-3  # of the largest force on a pad, from which a pad counts as touching
 ROUNDED = 1e-9  # below which a singular value of unit columns is nought but rounding
@@ -231,23 +229,26 @@ def evaluate(
 
 
 def _refuse_swapped(readings: GraspReadings, calibration: Sensitivity) -> None:
-    """Refuse two elements each of which has the other's zero while all others keep theirs."""
+    """Refuse signals without load that are the calibration's zeros in another order."""
     zero, resting = calibration.of(readings.element).zero, readings.load == 0
-    if zero is None or not resting.any() or len(zero) < 3:
+    if zero is None or not np.isfinite(zero).all() or not resting.any() or len(zero) < 3:
         return
-    away = np.abs(readings.signal[:, resting].mean(1)[:, None] - zero)  # [element read, element calibrated]
-    own, change = np.diag(away), np.ptp(readings.signal, axis=1)
-    for a, b in combinations(range(len(own)), 2):
-        others, least = np.delete(own, [a, b]), min(own[a], own[b]) / SWAPPED
-        if least > max(away[a, b], away[b, a], *others) and least > max(change[a], change[b]) / SWAPPED**2:
-            n, m = readings.element[[a, b]].tolist()
-            raise InputError(
-                f"{readings.path}: sample {readings.sample}",
-                f"without load, element {n} has the zero of element {m} in the calibration, and {m} that of "
-                f"{n}: swapped?",
-                value=readings.signal[:, resting].mean(1)[[a, b]].round(4).tolist(),
-                legal=str(zero[[a, b]].round(4).tolist()),
-            )
+    read = readings.signal[:, resting].mean(1)
+    away = np.abs(read[:, None] - zero)  # [element read, element calibrated]
+    own, nearest = np.diag(away), linear_sum_assignment(away)[1]
+    moved = np.flatnonzero(nearest != np.arange(len(zero)))
+    if not len(moved) or own[moved].min() < SWAPPED * away[np.arange(len(zero)), nearest].max():
+        return
+    if own[moved].max() > np.ptp(readings.signal, axis=1).max() / SWAPPED:
+        a, b = moved[0], nearest[moved[0]]
+        n, m = readings.element[[a, b]].tolist()
+        raise InputError(
+            f"{readings.path}: sample {readings.sample}",
+            f"without load, element {n} has the zero of element {m} in the calibration, and all others have "
+            "one of their own: channels swapped?",
+            value=round(float(read[a]), 4),
+            legal=f"{zero[a]:.4g} V",
+        )
 
 
 def below_stops(
