@@ -121,8 +121,8 @@ def wiring(design: Design, pose: Pose = REST) -> Scene:
     b.step(
         "Leads to their socket",
         (0, 0, 90),
-        "Fix each board's wire from the array's metal, its ring terminal cut off and 5 mm bare, with "
-        "silver-filled adhesive in the wire recess of one of the board's elements, on its floor, scraped, "
+        "Fix each board's wire from the array's metal, 5 mm bare, with silver-filled adhesive "
+        "in the wire recess of one of the board's elements, on its floor, scraped, "
         "clear of the terminals: screws' heads are sunk in anodised plates, and elements touch each other "
         "by spacers and dowels. Push the braid over each board's leads up to the rear ends and tie both, "
         f"{design.wiring.gather:g} mm behind these. Lay the board's socket on its plate before the board, "
@@ -131,12 +131,7 @@ def wiring(design: Design, pose: Pose = REST) -> Scene:
         "shrink the sleeves over the joints. Measure at the socket: from red to black a gauge, from black "
         "to the array's metal nothing, from that to each element's rear body below 1 ohm.",
         order=[Move((name,), vector((*parked[s][:2], LIFTED)), (parked[s],)) for s, name in sockets.items()],
-        tools=(
-            SOLDERING,
-            "solder and flux, as for the gauges",
-            "silver-filled adhesive",
-            "ohmmeter, four wires, 0.01 ohm",
-        ),
+        tools=(SOLDERING, "solder and flux, as for the gauges", "ohmmeter, four wires, 0.01 ohm"),
         sets=("leads in their socket: all, by solder",),
         leaves=("sockets: lie loose on their plates",),
         needs=(Need((*fitted,), "leads are as long as the way to their board"),),
