@@ -21,6 +21,8 @@ from math import inf
 import numpy as np
 from scipy.interpolate import RectBivariateSpline
 
+from tactcad.design.messages import CheckFailure
+
 from .elastic_body import Body, influence, mean_inverse
 from .press import Pads, Pressed, complementary, patches
 
@@ -31,6 +33,8 @@ DEGREE = 3  # order of a pad's moments felt by its neighbours; 2 errs up to 0.4 
 POWERS = np.array([(a, k - a) for k in range(DEGREE + 1) for a in range(k, -1, -1)])  # of x and y
 POINTS = 1e-4  # a pad that touches in so small a share of itself cannot bear a moment
 LOADED = 1e-9  # relative error of the load of `press_many`
+STRAYED = 1e-6  # of the largest depth: left of the equations when they count as not solved
+STRAYS = 40  # times that it may; some three ways of bisection
 CLOSE = 1e-8  # of the largest depth: left of the equations when they count as solved
 
 # values and slopes at both ends of a unit cell to the coefficients of a cubic
@@ -327,6 +331,8 @@ def press_many(pads: Pads, body: Body, load: float, angle: tuple[float, float]) 
     """As `PadsOnBody.press` by a load, for rectangular pads each on one hinge, any number of them.
 
     Memory goes with the square of the pads' number, 72 MB for a thousand: every pad moves every other one.
+    Raises CheckFailure if no rest is found: inclined pads on a body thousands of times stiffer than their
+    springs, of which corners touch.
     """
     n, K = len(pads.x), 1 / pads.compliance[:, 0, 0]
     move = pads.compliance[:, :, 0] * K[:, None]
@@ -337,16 +343,30 @@ def press_many(pads: Pads, body: Body, load: float, angle: tuple[float, float]) 
     back = pads.height + pads.x * slope[0] + pads.y * slope[1]
     alone = at.law(np.array([1.0, 0.0, 0.0]))[0][0] * E
     each = 1 / (1 / alone + 1 / K)
+    first = float(back.min() - np.abs(slope) @ (pads.length, pads.width) / 2)  # a corner touches
     ready = np.argsort(back)
     reach = (load + np.cumsum((each * back)[ready])) / np.cumsum(each[ready])
     approach = float(reach[np.maximum((reach > back[ready]).sum() - 1, 0)])
     stopped, depth = np.zeros(n, bool), at.approached(np.array(approach), slope, pads.height)
+    strays = 0
     for _ in range(4 * n + 4):
         fixed = np.where(stopped, pads.stop, 0.0)[:, None] * move
         M = at.system(np.array(E), np.where(stopped, inf, K))
-        low, high = float(back.min()), inf
+        low, high, solved = first, inf, first
         while True:
-            depth, g, d, J = at.rest(M, at.approached(np.array(approach), slope, pads.height) - fixed, depth)
+            b = at.approached(np.array(approach), slope, pads.height) - fixed
+            found, g, d, J = at.rest(M, b, depth)
+            left = b - found - (M @ g.reshape(-1)).reshape(b.shape)
+            if np.abs(left).max() > STRAYED * np.abs(b).max():  # Newton's method: half of the way is easier
+                strays += 1
+                if strays > STRAYS or approach == solved:
+                    raise CheckFailure(
+                        f"the law of whole pads finds no rest of {n} pads on {E:g} MPa at {angle[0]:g} and "
+                        f"{angle[1]:g} degrees: press them softer, or less inclined"
+                    )
+                approach = (approach + solved) / 2
+                continue
+            depth, solved = found, approach
             off = load - E * g[:, 0].sum()
             if abs(off) < LOADED * load:
                 break

@@ -30,7 +30,6 @@ from tactcad.export.cache import Cache, default_root
 from tactcad.export.inputs import digest
 from tactcad.fem.mapped_mesh import layers, plane_mesh
 from tactcad.fem.shape import reference_shape
-from tactcad.mechanics import ladder
 from tactcad.mechanics.accuracy import (
     CANDIDATES,
     MEASURED_FOR,
@@ -40,7 +39,7 @@ from tactcad.mechanics.accuracy import (
     zones,
 )
 from tactcad.mechanics.register import rungs
-from tactcad.mechanics.section import REFERENCE, Array, HingeSection
+from tactcad.mechanics.section import Array, HingeSection
 from tactcad.mechanics.validity import reasons
 from tactcad.parts.language.description import Part
 from tactcad.scenes import make_scene
@@ -52,8 +51,9 @@ YIELD = "half of the yield's 95 % interval"
 VOLUME = "each meshed volume"
 SIZED = 64  # designs whose meshes are counted, evenly taken from all; a count takes a millisecond
 DATA = Path(__file__).parent / "data" / "costs.json"
-TABLE, ALONE = 10_000, 100  # designs in one call, which numpy spends on arrays, and one a call, on Python
-REPEATS = 5  # the shortest counts: disturbances only add time; in all half a second
+# Of the calibration, some 10 ms each (chosen): values and sweeps of numpy, turns of a loop, equations.
+TABLE, SWEEPS, LOOP, EQUATIONS = 10_000, 200, 400_000, 800
+REPEATS = 5  # the shortest counts: disturbances only add time
 KEPT = 24 * 3600.0  # s; chosen: a machine that was slow for hours is measured again the next day
 
 
@@ -258,14 +258,19 @@ def linear(fitted: Mapping[str, float], counts: Mapping[str, float]) -> float:
 
 
 def calibration() -> float:
-    """Processor seconds that a fixed piece of work takes here: rung solid over a table, and alone."""
-    many = REFERENCE.with_(load_arm=np.linspace(5.0, 7.0, TABLE))
+    """Processor seconds that a fixed piece of work takes here: a table by numpy, a loop in Python, dense
+    equations. Nothing of tactcad's own, which may become faster while other costs stay."""
+    table = np.linspace(0.1, 1.0, TABLE)
+    equations = np.diag(np.full(EQUATIONS, 2.0)) + np.tri(EQUATIONS) / EQUATIONS
 
     def once() -> float:
         start = time.process_time()
-        ladder.stiffness(many, ladder.DEFAULT_RUNG)
-        for _ in range(ALONE):
-            ladder.stiffness(REFERENCE, ladder.DEFAULT_RUNG)
+        values, total = table, 0
+        for _ in range(SWEEPS):
+            values = np.sqrt(np.sin(values) + table)
+        for i in range(LOOP):
+            total += i % 7
+        np.linalg.solve(equations, table[:EQUATIONS])
         return time.process_time() - start
 
     return min(once() for _ in range(REPEATS))
@@ -274,7 +279,7 @@ def calibration() -> float:
 def calibrated() -> float:
     """`calibration`, from the cache if it was measured here within a day."""
     cache = Cache(default_root())
-    key = f"calibration {digest([processor(), np.__version__, TABLE, ALONE])}"
+    key = f"calibration {digest([processor(), np.__version__, TABLE, SWEEPS, LOOP, EQUATIONS])}"
     with suppress(TypeError, ValueError):  # absent, or another machine's
         seconds, at = json.loads(cache.get(key) or b"")
         if 0.0 <= time.time() - at <= KEPT and seconds > 0.0:
