@@ -168,10 +168,10 @@ def test_corner_and_slot_rules_are_what_the_wires_path_says(slot, radius):
 def test_the_shipped_designs_can_be_cut():
     from tactcad.design.load import names
     from tactcad.parts.designs import load
-    from tactcad.scenes.rigs.array import array
+    from tactcad.scenes import make_scene
 
     for name in names():
-        for made in array(load(name)).parts:
+        for made in make_scene(load(name), "array").parts:
             if made.process == "wire-cut":
                 assert [f for f in check_wirecut(made, SHOP) if f.severity == "fail"] == []
 

@@ -138,7 +138,7 @@ BAD_VALUES = {
         {"origin": {"sheet.thickness": 3}},
         "origin.sheet.thickness",
         "not text",
-        "from",
+        "source",
     ),
     "origin of a rig that is not there": ({"sample": DROP}, "origin.sample.", "unknown", ""),
     "key with a line end": (

@@ -174,7 +174,7 @@ def measured(text: Limits, record: dict) -> float:
         return 2 * r if record["kind"] == "diameter" else r
     points = [np.mean([axes[:3, 3] for _, axes, _ in side], axis=0) for side in (first, second[0])]
     normals = [axes[:3, 2] for kind, axes, _ in (*first, *second[0]) if kind == "PLANE"]
-    if len(normals) == len(first) + len(second[0]) > 2:  # a cell's beams, turned and repeated: the worst face
+    if min(len(first), len(second[0])) > 1:  # a cell's beams, turned and repeated: the worst face
         found = (nearest(record["nominal value"], face, second[0]) for face in first)
         return max(found, key=lambda pair: pair[1])[0]
     assert all(np.linalg.norm(np.cross(normals[0], n)) < 1e-9 for n in normals)
