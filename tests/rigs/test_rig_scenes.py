@@ -74,7 +74,8 @@ def test_an_export_of_one_scene_builds_its_parts_once_each_and_no_others(scene, 
     assert sorted(done.built) == sorted(p.part_no for p in make_scene(design, scene).parts)
     bill = json.loads((tmp_path / f"out/bom-{scene}.json").read_text())["rows"]
     assert sum(row["qty"] for row in bill if row["has_solid"]) == len(make_scene(design, scene).placements)
-    assert all(not row["source_verified"] for row in bill if row["make_buy"] == "buy")
+    read = {row["part_no"] for row in bill if row["make_buy"] == "buy" and row["source_verified"]}
+    assert read <= {"ADHESIVE", "GAUGE-TAPE", "SURFACE-PREPARATION"}  # numbers read at the maker's
     cut = {
         p.part_no
         for p in make_scene(design, scene).parts
