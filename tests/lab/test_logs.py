@@ -94,9 +94,16 @@ def test_labview_writes_no_time_or_one_before_every_channel(layout, tmp_path):
             read_log(tmp_path / "a.lvm")
 
 
-def test_a_date_may_be_written_as_in_german(tmp_path):
-    rows = "30.11.2026 23:59:59,5;1;2\n01.12.2026 00:00:00,25;2;3\n"
-    (tmp_path / "a.csv").write_text("Zeit;ai1;ai2\n" + rows)
+@pytest.mark.parametrize(
+    ("first", "second"),
+    [
+        ("30.11.2026 23:59:59,5", "01.12.2026 00:00:00,25"),
+        ("11/30/2026 11:59:59.5 PM", "12/1/2026 12:00:00.25 AM"),
+        ("2026-11-30T23:59:59.5", "2026-12-01T00:00:00.25"),
+    ],
+)
+def test_a_date_may_be_written_as_in_german_or_american(first, second, tmp_path):
+    (tmp_path / "a.csv").write_text(f"Zeit;ai1;ai2\n{first};1;2\n{second};2;3\n")
     assert np.diff(read_log(tmp_path / "a.csv").columns["Zeit"]).tolist() == [0.75]
 
 

@@ -191,6 +191,9 @@ def _seconds(text: str) -> float | None:
         parts = [float(p) for p in plain.split(":")] + [0.0]
         return 3600 * parts[0] + 60 * parts[1] + parts[2]
     plain = re.sub(r"^(\d{2})\.(\d{2})\.(\d{4})(?=[ T])", r"\3-\2-\1", plain)
+    if us := re.fullmatch(r"(\d{1,2})-(\d{1,2})-(\d{4}) (\d{1,2}):(\d{2}:\d{2}(?:\.\d+)?) ([AP])M", plain):
+        month, day, year, hour, rest, half = us.groups()
+        plain = f"{year}-{month:0>2}-{day:0>2} {int(hour) % 12 + 12 * (half == 'P'):02}:{rest}"
     if not re.match(r"\d{4}-\d{2}-\d{2}[ T]\d{2}:\d{2}", plain):
         return None
     plain = re.sub(r"(\.\d{1,6})\d*", lambda m: m[1].ljust(7, "0"), plain)
