@@ -31,7 +31,7 @@ FROM_MIDDLE = (
 )
 STUCK = 8  # samples of a step at a channel's own limit from which the channel counts as saturated; chosen
 STATES = ("element", "run", "sample")
-TIMES = "numbers, or hh:mm:ss, yyyy-mm-dd hh:mm:ss or dd.mm.yyyy hh:mm:ss"
+TIMES = "numbers, hh:mm:ss, yyyy-mm-dd hh:mm:ss, dd.mm.yyyy hh:mm:ss or m/d/yyyy h:mm:ss AM"
 NO_MARK = ("", "0", "-", "nan")
 # By how much more another channel changes than that of the pressed element, from which on they are swapped;
 # chosen: neighbours feel each other by a few per cents through what holds them.
