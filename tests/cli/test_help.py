@@ -111,3 +111,13 @@ def test_progress_in_a_pipe_is_a_line_a_stage(option, lines):
         assert "warning" in told.getvalue()
     finally:
         streams.set_loudness(None)
+
+
+@pytest.mark.parametrize("argv", [["-q", "size"], ["size", "-q"], ["--quiet", "size"]])
+def test_loudness_may_stand_before_the_command(argv, capsys):
+    try:
+        assert main([*argv, "--stiffness", "10", "--load-arm", "6"]) == 0
+        assert "hinge thickness" in capsys.readouterr().out
+        assert isinstance(streams.progress(io.StringIO()), streams.Silence)
+    finally:
+        streams.set_loudness(None)

@@ -85,6 +85,8 @@ NEEDS = {
 }
 
 DONE, FAILED, BAD_INPUT = 0, 1, 2
+LOUD = (("-q", "--quiet"), ("-v", "--verbose"))
+LOUDNESS = [[word] for words in LOUD for word in words]
 
 # Garbage is looked for after so many. By Python's own 700 that is done hundreds of times while the half a
 # million objects of the CAD kernel are loaded, which stay: so a check takes 7 % less, and no more memory.
@@ -166,7 +168,7 @@ def parser_of(command: str, raises: bool = False) -> Parser:
     module.configure(parser)
     parser.add_argument("-h", "--help", action="help", help=UNLISTED)
     loud = parser.add_mutually_exclusive_group()
-    for short, long in (("-q", "--quiet"), ("-v", "--verbose")):
+    for short, long in LOUD:
         loud.add_argument(short, long, action="store_const", const=long, dest="loudness", help=UNLISTED)
     return parser
 
@@ -182,6 +184,8 @@ def overview() -> str:
 
 
 def _dispatch(argv: list[str]) -> int:
+    if argv[:1] in LOUDNESS and argv[1:2] and argv[1] in COMMANDS:
+        argv = [argv[1], argv[0], *argv[2:]]  # before the command as well as after it
     if argv and argv[0] in COMMANDS:
         args = parser_of(argv[0]).parse(argv[1:])
         streams.set_loudness(args.loudness)
