@@ -231,7 +231,8 @@ def of(name):
 
 
 @pytest.mark.parametrize(
-    ("name", "metal", "magnetic"), [("7075-T6", "aluminium", False), ("17-4PH-H900", "steel 17-4PH-H900", True)]
+    ("name", "metal", "magnetic"),
+    [("7075-T6", "aluminium", False), ("17-4PH-H900", "steel 17-4PH-H900", True)],
 )
 def test_notes_follow_the_material(name, metal, magnetic):
     d = of(name)
