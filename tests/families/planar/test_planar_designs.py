@@ -180,3 +180,14 @@ def test_what_the_family_cannot_do_is_refused_in_one_line():
     design = load(str(PLANAR))
     with pytest.raises(InputError, match="does not take designs of this family"):
         family_of(design).must("variables", "target.base")
+
+
+def test_forty_by_forty_cells_are_those_of_six_by_six(tmp_path):
+    """1600 chips take a hundred buses of sixteen addresses; K does not depend on the number of cells."""
+    text = PLANAR.read_text("utf-8").replace("rows = 6", "rows = 40").replace("columns = 6", "columns = 40")
+    (tmp_path / "many.toml").write_text(
+        text.replace("buses = 3", "buses = 100").replace('"planar-array"', '"many"')
+    )
+    many, few = (rows(PlanarLayout(load(str(path))), "", None) for path in (tmp_path / "many.toml", PLANAR))
+    assert len(many) == 1600
+    assert {(r.kind, r.stiffness) for r in many} == {(r.kind, r.stiffness) for r in few}

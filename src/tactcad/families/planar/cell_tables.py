@@ -139,7 +139,7 @@ class Hall:
     chip: str = given(OneOf(tuple(CHIPS), "chip, a row of its table"), "MLX90393")
     gap: float = given(Number("mm", 0.2, 20, "magnet at rest to chip"), 1.5)
     board: float = given(Number("mm", 0.2, 5, "board that carries the chips"), 1.0)
-    buses: int = given(Whole(1, 64, "buses, or lines of a multiplexer, that the chips share"), 4)
+    buses: int = given(Whole(1, 400, "buses, or lines of a multiplexer, that the chips share"), 4)
 
 
 @dataclass(frozen=True)
