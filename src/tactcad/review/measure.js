@@ -41,7 +41,7 @@ class Measure {
     if (selected) this.offer(selected);
     const part = this.placed.has(selected) ? this.parts.get(this.placed.get(selected).part_no) : null;
     const made = [el('h2', {}, 'Measure'), el('p', {className: 'hint'},
-      'Between exact features of the descriptions, at the parts' present places, not of the mesh.')];
+      'Between exact features of the descriptions, at the present places of the parts, not of the mesh.')];
     made.push(this.end(0, 'From'), this.end(1, 'To'), el('p', {id: 'measured', 'aria-live': 'polite'}, this.result()));
     if (part?.limits.length) {
       made.push(section(`Exact sizes of ${selected}, mm`, table(['', 'nominal'], part.limits.map((c) => [c.name, mm(c.nominal)]), ['', 'n'])));
