@@ -7,7 +7,7 @@ of None is derived from other fields (parts/array/layout.py).
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from .fields import Day, Number, NumberRows, Numbers, OneOf, TextLine, given
@@ -303,8 +303,9 @@ class CommonTables:
 
     @classmethod
     def completed(cls, tables: dict[str, Any]) -> dict[str, Any]:
-        """The tables as read, with what they leave out and others decide."""
-        return tables
+        """The tables as read, with what they leave out and others decide: a title, at least."""
+        own = tables["design"]
+        return tables | {"design": replace(own, title=own.title or f"Tactile array {own.name}")}
 
     @property
     def name(self) -> str:

@@ -191,3 +191,10 @@ def test_forty_by_forty_cells_are_those_of_six_by_six(tmp_path):
     many, few = (rows(PlanarLayout(load(str(path))), "", None) for path in (tmp_path / "many.toml", PLANAR))
     assert len(many) == 1600
     assert {(r.kind, r.stiffness) for r in many} == {(r.kind, r.stiffness) for r in few}
+
+
+def test_a_design_without_a_title_has_one(tmp_path):
+    """What `tactcad new` writes has none, and titles go into boards, drawings and headers."""
+    text = "".join(line for line in PLANAR.read_text("utf-8").splitlines(True) if "title" not in line)
+    (tmp_path / "untitled.toml").write_text(text.replace('"planar-array"', '"untitled"'))
+    assert load(str(tmp_path / "untitled.toml")).design.title == "Planar tactile array, 6 x 6 cells"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -198,6 +198,12 @@ class PlanarDesign(CommonTables):
     hall: Hall = Hall()
     rating: PlanarRating = PlanarRating()
     tolerance: PlanarTolerance = PlanarTolerance()
+
+    @classmethod
+    def completed(cls, tables: dict[str, Any]) -> dict[str, Any]:
+        own, p = tables["design"], tables["planar"]
+        title = own.title or f"Planar tactile array, {p.rows} x {p.columns} cells"
+        return tables | {"design": replace(own, title=title)}
 
     @property
     def foil_tolerance(self) -> float:
