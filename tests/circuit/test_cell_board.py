@@ -50,10 +50,10 @@ def test_kicad_finds_nothing(board, tmp_path):
 @pytest.mark.parametrize(
     "changes",
     [
-        {"rows": 1, "columns": 1, "hall": {"buses": 1}, "housing": {"joint": "bonded"}},
-        {"rows": 1, "columns": 7, "pitch": 9.0, "hall": {"buses": 2}, "housing": {"side": 4.4}},
+        {"rows": 1, "columns": 2, "hall": {"buses": 1}, "housing": {"joint": "bonded"}},
+        {"rows": 1, "columns": 7, "pitch": 10.7, "hall": {"buses": 2}, "housing": {"side": 4.4}},
         {"rows": 9, "columns": 7, "pitch": 10.7, "hall": {"buses": 4}, "housing": {"joint": "bonded"}},
-        {"rows": 4, "columns": 8, "hall": {"buses": 6}, "housing": {"joint": "bonded"}},
+        {"rows": 5, "columns": 6, "hall": {"buses": 4}, "housing": {"joint": "bonded"}},
         {"rows": 5, "columns": 7, "pitch": 8.3, "hall": {"buses": 3, "board": 1.6}},
     ],
 )
@@ -79,6 +79,19 @@ def test_a_chip_lies_below_every_magnet_and_the_board_takes_the_screws(board):
     body = next(p.part for p in scene.placements if p.designator.startswith("PCB")).body
     xs, ys = zip(*(point for segment in body.outer.segments for point in (segment.start, segment.end)))
     assert (max(xs) - min(xs), max(ys) - min(ys)) == pytest.approx((board.width, board.height))
+
+
+@pytest.mark.parametrize("changes", [{}, {"rows": 1, "columns": 7, "pitch": 10.7, "hall": {"buses": 2}}])
+def test_no_bare_or_upper_copper_lies_under_the_metal_frame(changes):
+    """Vias and upper tracks keep inside the room that the frame leaves around the chips, or on the tongue."""
+    changes = changes | {"housing": {"joint": "bonded"}} if changes else changes
+    layout, board = PlanarLayout(design(**changes)), laid_out(**changes)
+    (hx, hy), (x, y) = layout.half, layout.field_half
+    places = [v.at for v in board.vias] + [
+        p for t in board.tracks if t.layer == "F.Cu" for p in (t.start, t.end)
+    ]
+    for u, v in places:
+        assert v > 2 * hy or (abs(u - hx) + 0.3 <= x + 1e-9 and abs(v - hy) + 0.3 <= y + 1e-9)
 
 
 def test_no_two_chips_of_a_bus_share_an_address(board):
@@ -115,10 +128,8 @@ def test_the_bill_counts_what_is_fitted(board):
         ({"hall": {"chip": "TMAG5273A2"}}, "pins of TMAG5273A2 are unknown"),
         ({"hall": {"buses": 4}}, "3 buses at most pass"),
         ({"rows": 1, "hall": {"buses": 3}, "housing": {"joint": "bonded"}}, "on 3 buses, at most 2"),
-        (
-            {"rows": 1, "columns": 1, "hall": {"buses": 1}, "housing": {"joint": "bonded", "border": 1.0}},
-            "wide",
-        ),
+        ({"columns": 1, "hall": {"buses": 1}, "housing": {"joint": "bonded"}}, "0 buses at most pass"),
+        ({"rows": 1, "hall": {"buses": 2}, "housing": {"joint": "bonded"}}, "pass under the metal frame"),
     ],
 )
 def test_where_none_is_laid_out_a_flag_says_why(changes, words):

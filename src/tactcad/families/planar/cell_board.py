@@ -20,7 +20,7 @@ from collections.abc import Iterator
 from math import ceil
 
 from tactcad.circuit.board_layout import Routing
-from tactcad.circuit.copper import BOTTOM, BoardCopper, Point, Via
+from tactcad.circuit.copper import BOTTOM, CLEARANCE, VIA, BoardCopper, Point, Via
 from tactcad.circuit.footprints import footprint
 from tactcad.circuit.letters import width as printed_width
 from tactcad.circuit.netlist import GROUND, Component, Netlist, Pin
@@ -52,7 +52,8 @@ LINES = ((2.5, 3.15), (3.8, 4.45))  # SCL's and SDA's lines of the row's first b
 # mm of SDA's trunk and SCL's from the middle between two columns, and of their ways down from the last row
 TRUNKS, DOWN = {"SDA": -0.4, "SCL": 0.5}, {"SDA": 1.2, "SCL": 1.9}
 HEAD_ROOM = 2.3  # mm from a trunk to a screw's middle: its head is 3.8 wide
-ROW, PIN, EDGE, RESISTOR = 0.45, 2.54, 5.0, 3.4  # mm: fan; header's pitch, from the edge; resistors from it
+ROW, BELOW_FAN = 0.45, 1.75  # mm: of the fan, and from it to the resistors' middles
+PIN, EDGE, RESISTOR = 2.54, 5.0, 3.4  # mm: header's pitch, from the edge; resistors from it
 
 
 def why_none(layout: PlanarLayout) -> str:
@@ -65,25 +66,21 @@ def why_none(layout: PlanarLayout) -> str:
     ways = len(channels(layout))
     if d.hall.buses > ways:
         return f"{ways} buses at most pass between columns and screws, not hall.buses = {d.hall.buses}"
-    pins = 2 + 2 * d.hall.buses
-    if (least := (pins + 1) * PIN) > (wide := 2.0 * layout.half[0]):
-        return f"a connector of {pins} pins takes {least:.3g} mm, and the board is {wide:.3g} mm wide"
-    if (most := max(len(buses) for buses in rows_of(layout).values())) > len(LINES):
+    rows = rows_of(layout)
+    if (most := max(map(len, rows.values()))) > len(LINES):
         return f"a row of chips is on {most} buses, at most {len(LINES)} reach it: fewer hall.buses"
+    inside = (d.planar.pitch - d.planar.web - VIA) / 2.0 - CLEARANCE  # a via's middle, from an outer chip's
+    if LINES[len(rows[d.planar.rows]) - 1][1] > inside + 1e-9:
+        return "the last row of chips is on two buses, and their lines would pass under the metal frame"
     return ""
 
 
-def bus_of(layout: PlanarLayout, number: int) -> int:
-    """From 1 on: cells are shared out in their order."""
-    return 1 + (number - 1) // ceil(len(layout.elements) / layout.design.hall.buses)
-
-
-def address(layout: PlanarLayout, number: int) -> tuple[str, int]:
-    """Order code and address of a cell's chip: four addresses a code by its pins A0 and A1."""
-    share = ceil(len(layout.elements) / layout.design.hall.buses)
-    code, straps = divmod((number - 1) % share, 4)
-    name = list(CODES)[code]
-    return name, CODES[name] + straps
+def bus_of(layout: PlanarLayout, number: int) -> tuple[int, str, int]:
+    """A cell's bus, from 1 on, its chip's order code and address: cells are shared out in their order; a code
+    has four addresses, by its pins A0 and A1."""
+    bus, place = divmod(number - 1, ceil(len(layout.elements) / layout.design.hall.buses))
+    code = list(CODES)[place // 4]
+    return 1 + bus, code, CODES[code] + place % 4
 
 
 def rows_of(layout: PlanarLayout) -> dict[int, list[int]]:
@@ -91,7 +88,7 @@ def rows_of(layout: PlanarLayout) -> dict[int, list[int]]:
     rows: dict[int, list[int]] = {}
     for e in layout.elements:
         buses = rows.setdefault(e.row, [])
-        if (bus := bus_of(layout, e.number)) not in buses:
+        if (bus := bus_of(layout, e.number)[0]) not in buses:
             buses.append(bus)
     return rows
 
@@ -99,7 +96,7 @@ def rows_of(layout: PlanarLayout) -> dict[int, list[int]]:
 def channels(layout: PlanarLayout) -> list[float]:
     """x of the middles between columns, in the layout's frame, whose trunks pass the screws."""
     p = layout.design.planar
-    middles = [(i - p.columns / 2.0) * p.pitch for i in range(1, max(p.columns, 2))]
+    middles = [(i - p.columns / 2.0) * p.pitch for i in range(1, p.columns)]
     screws = [x for x, y in screw_places(layout) if y < 0.0]
     return [
         x
@@ -112,7 +109,7 @@ def tongue(layout: PlanarLayout) -> float:
     """Length of the board beyond the housing, mm, on the side of the least y; 0 without a board's layout."""
     if why_none(layout):
         return 0.0
-    return ceil(2.0 * (EDGE + RESISTOR + 1.75 + ROW * 2 * layout.design.hall.buses + 0.5)) / 2.0
+    return ceil(2.0 * (EDGE + RESISTOR + BELOW_FAN + ROW * 2 * layout.design.hall.buses + 0.5)) / 2.0
 
 
 def _component(name: str, kind: str, value: str, part_no: str, package: str, *nets: str) -> Component:
@@ -124,7 +121,7 @@ def netlist(layout: PlanarLayout) -> Netlist:
     """Chips U by their cells' numbers, each with capacitor C; pull-ups R; connector J1."""
     parts: list[Component] = []
     for e in layout.elements:
-        bus, (code, at) = bus_of(layout, e.number), address(layout, e.number)
+        bus, code, at = bus_of(layout, e.number)
         nets = {
             "CS": SUPPLY, "SCL": f"SCL{bus}", "SDA": f"SDA{bus}", "VDD_IO": SUPPLY, "VDD": SUPPLY,
             "VSS": GROUND, "EP": GROUND, "A0": SUPPLY if at & 1 else GROUND,
@@ -175,16 +172,15 @@ def _laid_out(layout: PlanarLayout) -> BoardCopper:
     board = {c.designator: c for c in circuit.components}
     half_x, half_y = layout.half
     width, height = 2.0 * half_x, 2.0 * half_y + tongue(layout)
-    taps: dict[str, list[Point]] = {
-        net: [] for net in lines_of(layout)
-    }  # where lines reach their net, by net
+    lines, rows = lines_of(layout), rows_of(layout)
+    taps: dict[str, list[Point]] = {net: [] for net in lines}  # vias that each net's lines reach
     for e in layout.elements:
         at = (e.x + half_x, half_y - e.y)
-        slot = rows_of(layout)[e.row].index(bus_of(layout, e.number))
+        slot = rows[e.row].index(bus_of(layout, e.number)[0])
         for net, tap in _cell(sheet, board[f"U{e.number}"], board[f"C{e.number}"], at, LINES[slot]):
             taps[net].append(tap)
     last_row = half_y - layout.elements[0].y
-    ways = _header(sheet, board, lines_of(layout), width / 2.0, height - EDGE)
+    ways = _header(sheet, board, lines, width / 2.0, height - EDGE)
     middles = channels(layout)
     for (net, points), end, rank in zip(taps.items(), ways, range(len(ways)), strict=True):
         line, bus = net[:3], int(net[3:])
@@ -196,7 +192,7 @@ def _laid_out(layout: PlanarLayout) -> BoardCopper:
             sheet.vias.append(Via(net, (x, y)))
         down = round(last_row + DOWN[line], 3)
         sheet.via(net, (x, ys[0]), (x, down), width=0.2)
-        base = height - EDGE - RESISTOR - 1.75
+        base = height - EDGE - RESISTOR - BELOW_FAN
         turn = base - ROW * (rank if x < end[0] else len(ways) - 1 - rank)
         sheet.path(net, (x, down), (x, turn), (end[0], turn), end, layer=BOTTOM)
     holes = tuple((x + half_x, half_y - y, METRIC[SCREW].clearance) for x, y in screw_places(layout))
@@ -303,7 +299,7 @@ def _process(layout: PlanarLayout) -> Process:
 
 def order_of(layout: PlanarLayout, number: int) -> str:
     """The order number of a cell's chip; the chip's name where no board is laid out."""
-    return layout.chip.name if why_none(layout) else layout.chip.name + address(layout, number)[0]
+    return layout.chip.name if why_none(layout) else layout.chip.name + bus_of(layout, number)[1]
 
 
 def chip(layout: PlanarLayout, order: str) -> Part:

@@ -146,7 +146,7 @@ def wiring_supplies(layout: Layout) -> tuple[Supply, ...]:
     outer = bundle(d, channels_of(layout) * leads(layout))
     counts = {"boards": count, "braid": metres, "array wire": metres}
     sizes = {"bore": ceil(outer - 2 * BRAID), "tube": ceil(1.5 * outer)}
-    return tuple(supplies("wiring", counts, screw=d.clamp.screw, **sizes))
+    return tuple(supplies("wiring", counts, **sizes))
 
 
 def wire_metres(layout: Layout) -> float:
