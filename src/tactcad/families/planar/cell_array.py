@@ -41,7 +41,14 @@ def scene(design: PlanarDesign, _pose: object = None) -> Scene:
     chips = {order: cell_board.chip(layout, order) for order in orders}
     for e, order in zip(layout.elements, orders, strict=True):
         b.meet(b.place("U", chips[order], (e.x, e.y, layout.board_z)), board)
-    b.step("Chips", (0, 0, -35), "Solder the chips: the board comes with them from who makes it.")
+    soldered = "Solder the chips: the board comes with them from who makes it."
+    if not cell_board.why_none(layout):
+        soldered = (
+            "Have the board fitted by its bill and places (circuit/boards). Chips of different order codes "
+            "look alike and have different addresses: each belongs to its designator. Solder the connector "
+            "J1 on the tongue."
+        )
+    b.step("Chips", (0, 0, -35), soldered)
     frame = b.place("FR", parts.frame(layout), (0, 0, layout.board_z))
     b.meet(frame, board)
     b.step("Frame", (0, 0, -25), "Lay the frame on the board, around the chips.")
@@ -91,11 +98,13 @@ def scene(design: PlanarDesign, _pose: object = None) -> Scene:
     b.step(
         "Foil and upper spacer",
         (0, 0, 14),
-        "Lay the foil over the dowels, magnets down into their wells, and the upper spacer on it.",
+        f"Lay the foil {'over the dowels' if layout.screwed else 'on the lower spacer'}, magnets down into "
+        "their wells, and the upper spacer on it.",
     )
     cover = b.place("C", parts.cover(layout), (0, 0, layout.cover_z))
     b.meet(cover, upper)
-    b.step("Cover", (0, 0, 26), "Lower the cover over dowels and posts.")
+    over = "dowels and posts" if layout.screwed else "the posts"
+    b.step("Cover", (0, 0, 26), f"Lower the cover over {over}.")
     if layout.screwed:
         length = parts.screw_length(layout) or 0.0
         for x, y in parts.screw_places(layout):

@@ -65,7 +65,8 @@ def why_none(layout: PlanarLayout) -> str:
         return f"the chips stand {d.planar.pitch:g} mm apart, and the layout takes {LEAST_PITCH:g} mm or more"
     ways = len(channels(layout))
     if d.hall.buses > ways:
-        return f"{ways} buses at most pass between columns and screws, not hall.buses = {d.hall.buses}"
+        pass_ = f"at most {ways} buses pass" if ways else "no bus passes"
+        return f"{pass_} between columns and screws, and hall.buses is {d.hall.buses}"
     rows = rows_of(layout)
     if (most := max(map(len, rows.values()))) > len(LINES):
         return f"a row of chips is on {most} buses, at most {len(LINES)} reach it: fewer hall.buses"
