@@ -384,9 +384,11 @@ def setting_words(layout: Layout) -> str:
         if _is_calibrated(layout)
         else ""
     )
+    strip = " and every blank on the strip" if layout.blanks() else ""
     return (
         "Press both end plates down on the fixture's steps, and with a bar of rubber on the ledges, between "
-        "pads and dowels, every pad down on its floor. Press nowhere behind the dowels: that lifts the pads. "
+        f"pads and dowels, every pad down on its floor{strip}. Press nowhere behind the dowels: that lifts "
+        "the pads. "
         f"{tight} crosswise, in three rounds: a third, two thirds, the whole torque. An element can "
         f"still turn about its dowel by {wedge(layout)}: pressed on its ledge it lies at one end of that. "
         f"{gap}No pad may let a {2 * tolerance * 1e3:g} um feeler pass. Then lay the array on its back on a "
