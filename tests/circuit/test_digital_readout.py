@@ -8,17 +8,22 @@ import math
 import re
 import shutil
 import subprocess
+from dataclasses import fields
 
 import pytest
 from variants import variant
 
 from tactcad.checks.facing_rows.circuit import check_signals
+from tactcad.circuit.bridges import netlist
 from tactcad.circuit.digital_readout import digital_readout, registers, settings_header, settings_json
+from tactcad.circuit.element_signals import element_signals
+from tactcad.design.fields import OneOf
 from tactcad.mechanics.gauge_signal import continuous, thermal_resistance, time_constant
 from tactcad.parts.array.bridge_figures import power_of
 from tactcad.parts.array.hinge_section import design_gauge
 from tactcad.parts.array.layout import Layout
 from tactcad.parts.rules import broken_rules
+from tactcad.parts.rules.converter_rules import OF_CARD
 
 CHIP = "AD7124-8"
 DUTY = {"readout.converter": CHIP, "readout.power": "duty"}
@@ -90,11 +95,13 @@ def test_the_supply_stays_below_the_converters_own():
 
 
 def test_a_converter_has_its_own_boards_and_rules():
-    """17 elements in a row of 9 and one of 8: three converters; what only a card minds is no rule."""
+    """17 elements in a row of 9 and one of 8: three converters; what only a card minds is one refusal."""
     rows = {"array.row_arms": [[4.0] * 9, [4.0] * 8], "readout.converter": CHIP}
     assert [len(chip) for chip in digital_readout(Layout(variant(rows)), CHIP).chips] == [8, 1, 8]
     card = {"readout.gain": 50, "readout.inputs": 1, "readout.excitation": 4.5, "readout.on_time": 1e-5}
-    assert broken_rules(variant(card)) and not broken_rules(variant({**card, "readout.converter": CHIP}))
+    (said,) = broken_rules(variant({**card, "readout.converter": CHIP}))
+    assert len(broken_rules(variant(card))) == 4
+    assert said.message.endswith("no card: excitation, gain, on_time, inputs mean nothing")
 
 
 def test_a_force_that_the_converter_cannot_tell_is_found():
@@ -129,6 +136,34 @@ def test_the_first_notch_lies_on_the_mains_that_are_said():
     values = {r.name: r.value for r in registers(at_60, 0)}
     assert values["FILTER_0"] & 0x7FF == 320 and at_60.settling == 3 / 60
     assert at_60.noise / at_50.noise == pytest.approx(1.2**0.5, rel=1e-9)
+
+
+def test_a_field_that_changes_nothing_is_refused_and_no_other():
+    """Each field of [readout] changed: a rule refuses it where settings, circuit, signals, findings and
+    rules stay as they are."""
+
+    def told(changes: dict) -> list:
+        layout = Layout(variant({**DUTY, **changes}))
+        rules = [f.check for f in broken_rules(layout.design) if f.check != "converter_takes_field"]
+        findings = [f.part for f in check_signals(layout.design)]
+        signals = [(s.per_force, s.resolution) for s in element_signals(layout)]
+        return [settings_json(layout, CHIP), netlist(layout), signals, findings, rules]
+
+    def other(field, value):
+        if field.name in ("force_resolution", "completion_tolerance"):
+            return 0.05  # by less, neither a finding nor the gain changes
+        spec = field.metadata["spec"]
+        if isinstance(spec, OneOf):
+            return next(option for option in spec.options if option != value)
+        return spec.low if value is None else type(value)(value / 2) if value else 0.001
+
+    came, plain = variant(DUTY).readout, told({})
+    dead = {
+        f.name
+        for f in fields(came)
+        if f.name != "converter" and told({f"readout.{f.name}": other(f, getattr(came, f.name))}) == plain
+    }
+    assert dead == set(OF_CARD)
 
 
 def test_the_registers_say_what_was_meant():

@@ -202,6 +202,14 @@ WITNESSES = {
         ({"readout.samples": 1000}, "readout.samples"),
         ({"readout.on_time": 1e-5}, "readout.on_time"),
     ],
+    "converter_takes_field": [
+        ({"readout.converter": "AD7124-8", "readout.hum": 0.01}, "readout.hum"),
+        (
+            {"readout.converter": "AD7124-8", "readout.timing": "software", "readout.excitation": 3.0},
+            "readout.excitation",
+        ),
+    ],
+    "converter_meets_mains": [({"readout.converter": "AD7124-8", "readout.mains": 1000.0}, "readout.mains")],
     "converter_has_reference": [
         ({"readout.converter": "AD7124-8", "gauge.resistance": 80.0}, "gauge.resistance")
     ],

@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import json
 from dataclasses import dataclass
-from math import ceil
 
 import numpy as np
 
@@ -124,7 +123,7 @@ HEADER = "the maker's ad7124.h"
 def registers(found: DigitalReadout, chip: int) -> list[Register]:
     """Settings of one AD7124-8; for each value the source of its bits, or `unread`."""
     clock, places = found.converter.clock, found.chips[chip]
-    fs = ceil(clock / (32 * found.rate))
+    fs = round(clock / (32 * found.rate))
     pga = found.converter.gains.index(found.gain)
     mode, said = (1, "; unread: it takes each channel once") if found.on else (0, "")
     control = Register(
@@ -176,7 +175,7 @@ def when_on(layout: Layout, found: DigitalReadout) -> str:
     )
 
 
-PINS_FROM = "unread: the sheet's pin table; two layout libraries of others' that agree"
+PINS_FROM = "unread: the sheet's pin table; three layouts of others' that agree"
 
 
 def pin_map(layout: Layout, converter: Converter) -> list[tuple[str, str, str]]:
