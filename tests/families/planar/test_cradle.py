@@ -6,6 +6,7 @@ from __future__ import annotations
 import io
 import json
 import math
+import re
 from functools import cache
 from pathlib import Path
 
@@ -16,6 +17,8 @@ from built import shape_of
 
 from tactcad.design.load import parse
 from tactcad.export.dxf import dxf_bytes
+from tactcad.export.step_file import part_step
+from tactcad.export.step_text import Header
 from tactcad.families.planar import cell_cradle as cradle
 from tactcad.families.planar.cell_calibration import calibrate
 from tactcad.families.planar.cell_cradle import CradleLayout
@@ -94,30 +97,18 @@ def test_the_link_s_dxf_passes_every_post(lay):
 
 
 @pytest.mark.cad
-def test_the_cradle_s_feet_are_square_in_its_step_file(lay, tmp_path):
-    """Faces of the exported solid: foot z and seat parallel, feet x and y at right angles to both."""
-    from OCP.BRepAdaptor import BRepAdaptor_Surface
-    from OCP.GeomAbs import GeomAbs_Plane
-    from OCP.STEPControl import STEPControl_Reader
-    from OCP.TopAbs import TopAbs_FACE
-    from OCP.TopExp import TopExp_Explorer
-    from OCP.TopoDS import TopoDS
-
-    from tactcad.solids.step import to_bytes
-
-    path = tmp_path / "cradle.step"
-    path.write_bytes(to_bytes(shape_of(cradle.cradle(CradleLayout(lay)))))
-    reader = STEPControl_Reader()
-    reader.ReadFile(str(path))
-    reader.TransferRoots()
-    explorer, planes = TopExp_Explorer(reader.OneShape(), TopAbs_FACE), set()
-    while explorer.More():
-        surface = BRepAdaptor_Surface(TopoDS.Face_s(explorer.Current()))
-        if surface.GetType() == GeomAbs_Plane:
-            n = surface.Plane().Axis().Direction()
-            planes.add(tuple(abs(round(v, 12)) for v in (n.X(), n.Y(), n.Z())))
-        explorer.Next()
-    assert planes == {(1, 0, 0), (0, 1, 0), (0, 0, 1)}
+def test_the_cradle_s_feet_are_square_in_its_step_file(lay):
+    """Planes of the file's text: foot z and seat parallel, feet x and y at right angles to both."""
+    part = cradle.cradle(CradleLayout(lay))
+    text = part_step(part, shape_of(part), Header("cradle", "", "A", "2026-01-01", "", "")).decode()
+    entity = dict(re.findall(r"#(\d+)\s*=\s*(.*?);", text, flags=re.S))
+    normals = set()
+    for line in entity.values():
+        if plane := re.match(r"PLANE\s*\('.*?',#(\d+)\)", line):
+            _, axis, _ = re.findall(r"#(\d+)", entity[plane[1]])
+            x, y, z = re.search(r"\(\s*([-\d.eE+]+),([-\d.eE+]+),([-\d.eE+]+)\s*\)", entity[axis]).groups()
+            normals.add(tuple(abs(round(float(v), 12)) for v in (x, y, z)))
+    assert normals == {(1, 0, 0), (0, 1, 0), (0, 0, 1)}
 
 
 def test_the_guide_s_moves_bring_everything_to_its_place(lay):
@@ -219,4 +210,4 @@ def test_a_table_of_these_loads_gives_the_matrix_back(lay, tmp_path):
     path = tmp_path / "readings.csv"
     path.write_text("\n".join(rows) + "\n")
     for cell in calibrate(lay, path, 0.95):
-        assert cell.matrix == pytest.approx(m[cell.number], rel=5e-3, abs=0.02)
+        assert cell.matrix == pytest.approx(m[cell.element], rel=1e-2, abs=1e-2)
