@@ -88,7 +88,7 @@ def test_the_bench_array_s_foil_names_its_holes_and_datums():
 
 
 def test_a_post_states_its_limits():
-    """Turned: pad over foil and foot, spigot and pad with fields below their sizes; the shoulder lies on the foot."""
+    """Turned: pad over foil and foot, fields of spigot and pad below their sizes; shoulder on the foot."""
     lay = layout("jaw")
     runs = texts("jaw", parts.post(lay))
     # cover z: foil, foot, lift; cover; stand-out; less foil and foot
