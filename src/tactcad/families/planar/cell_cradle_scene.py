@@ -207,9 +207,9 @@ def _readings(rig: CradleLayout, along: Axis) -> str:
         share, what = OFF_LEVEL / height, f"a groove {OFF_LEVEL:g} mm from the pad's level is like"
         other = "more or less"
     return (
-        "Load every cell so. Then set the cradle down and level anew, turn the caps half around on their "
-        "pads, and "
-        "load every cell again: that is another run. Write a row of the table for each reading: element; "
+        "Load every cell so. Then set the cradle down and level anew, and with the cap half a turn on by its "
+        "mark load every cell again: that is another run. Write a row of the table for each reading: "
+        "element; "
         "run, a "
         "number of its own for every time that the cradle was set down; "
         f"fx, fy, fz in N, which is {STANDARD_GRAVITY * 1e-3:.8g} times the grams in f{along} and 0 in "
