@@ -20,14 +20,14 @@ from tactcad.design.family import family_of
 from tactcad.design.messages import CheckFailure
 from tactcad.design.tree import CommonTables, Design
 from tactcad.export.difference import SHARE, differences
-from tactcad.export.geometry import Record, geometry
+from tactcad.export.geometry import Record, all_scenes, geometry
 from tactcad.mechanics import readout
 from tactcad.mechanics.ladder import DEFAULT_RUNG
 from tactcad.parts.array.hinge_section import design_gauge, design_readout, hinge_section
 from tactcad.parts.array.layout import Layout
 from tactcad.parts.language.description import NOT_MADE, Part, Vector
 from tactcad.parts.language.finding import Finding
-from tactcad.scenes import left_out, make_scene, scene_names
+from tactcad.scenes import left_out
 from tactcad.scenes.rig import ARRAY
 from tactcad.scenes.scene import Scene
 from tactcad.stacks.virtual_build import LEAST_YIELD, sensor
@@ -116,15 +116,16 @@ def _made(part: Record, line: Record) -> MadePart:
 @dataclass(frozen=True)
 class Reviewed:
     """A design that keeps its rules, by the present code; `known` keeps findings of parts that designs share,
-    `told` is its record of geometry if already made."""
+    `told` is its record of geometry if already made, `placed` its scenes."""
 
     design: CommonTables
     known: dict[str, tuple[Part, list[Finding]]] = field(default_factory=dict, repr=False)
     told: Record | None = None
+    placed: Sequence[Scene] = field(default=(), repr=False)
 
     @cached_property
     def scenes(self) -> Sequence[Scene]:
-        return [make_scene(self.design, name) for name in scene_names(self.design)]
+        return self.placed or all_scenes(self.design)
 
     @cached_property
     def parts(self) -> dict[str, Part]:
