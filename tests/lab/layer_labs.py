@@ -4,6 +4,7 @@ pressure, the layer's part by an integral over waves, and a contact loop on sing
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import inf
 
 import numpy as np
 from scipy.interpolate import interp1d
@@ -70,6 +71,7 @@ class Bench:
         if np.isfinite(h):
             C = C + layer_part(nu, h)(np.hypot(dx, dy)) * self.area
         self.C = C * (1 - nu**2) / np.pi  # of a pressure, E = 1
+        self.inverse = np.linalg.inv(self.C)
         self.arm = 1 + (X[None] / lever[:, None])  # what a pad's patches sink where its middle sinks by 1
 
     def sinks(self, E, K, height, slope, load, stop=np.inf):
@@ -85,14 +87,21 @@ class Bench:
         return out
 
     def _sinks(self, E, K, height, slope, load, closed, stop):
+        """Springs are of rank one each, so that R, from pressures to what patches sink turned round, is the
+        face's own and Woodbury's few rows. The gap under patches that do not press follows from R's block of
+        these, or the pressures from the other block: the smaller one is solved."""
         back = np.repeat(height, self.m) + slope[0] * self.px + slope[1] * self.py
-        M = self.C / E
-        for i in range(self.n):
+        back += np.where(np.repeat(closed, self.m), np.repeat(stop, self.m), 0.0) * self.arm.ravel()
+        springs = np.flatnonzero(~closed)
+        sink, bear = np.zeros((2, len(back), len(springs)))
+        for column, i in enumerate(springs):
             s = slice(i * self.m, (i + 1) * self.m)
-            if closed[i]:
-                back[s] += stop[i] * self.arm[i]
-            else:
-                M[s, s] += np.outer(self.arm[i], self.arm[i] * self.area[s]) / K[i]
+            sink[s, column], bear[s, column] = self.arm[i], self.arm[i] * self.area[s] / K[i]
+        R = E * self.inverse
+        across = R @ sink
+        R -= across @ np.linalg.solve(np.eye(len(springs)) + bear.T @ across, bear.T @ R)
+        right = np.stack([np.ones(len(back)), -back], 1)  # by an approach of 1, and by the backs
+        free = R @ right
         out = []
         on = np.ones(len(back), bool)
         for total in load:
@@ -100,20 +109,22 @@ class Bench:
                 out.append(np.zeros(self.n))
                 continue
             for _ in range(60):
-                rows = np.flatnonzero(on)
-                one, off = np.linalg.solve(
-                    M[np.ix_(rows, rows)], np.stack([np.ones(len(rows)), back[rows]], 1)
-                ).T
-                w = self.area[rows]
-                at = (total + off @ w) / (one @ w)
-                p = np.zeros(len(back))
-                p[rows] = at * one - off
-                gap = M[:, rows] @ p[rows] + back - at
-                now = np.where(on, p > 0, gap < 0)
+                a, b = np.flatnonzero(on), np.flatnonzero(~on)
+                pressure, gap = np.zeros((2, len(back), 2))
+                if len(b) < len(a):
+                    gap[b] = np.linalg.solve(R[np.ix_(b, b)], -free[b])
+                    pressure[a] = free[a] + R[np.ix_(a, b)] @ gap[b]
+                else:
+                    M = self.C[:, a] / E + sink @ bear[a].T
+                    pressure[a] = np.linalg.solve(M[a], right[a])
+                    gap[b] = M[b] @ pressure[a] - right[b]
+                one, off = self.area @ pressure
+                at = ((total - off) / one, 1.0)
+                now = np.where(on, pressure @ at > 0, gap @ at < 0)
                 if (now == on).all():
                     break
                 on = now
-            moment = (p * self.area).reshape(self.n, self.m) * self.arm
+            moment = (pressure @ at * self.area).reshape(self.n, self.m) * self.arm
             out.append(np.where(closed, stop, moment.sum(1) / K))
         return np.array(out).T
 
@@ -130,6 +141,50 @@ class Array:
     lever: np.ndarray
     K: np.ndarray
     K_v: np.ndarray
+
+
+def least_half_width(of, h, E, K, K_v, read, height, slope, unread, thickness, load_known=False, runs=RUNS):
+    """1.96 standard errors of ln E of a lab that knows every other quantity's true variance: Cramer and Rao's
+    bound, all distributions taken as normal; derivatives are differences of sinks.
+
+    of(h)      the bench of a layer; h and its uniform half-width `thickness`, relative
+    height     uniform half-width of the pads' heights; `unread` of ln K of pads that are not read
+    """
+    load, n = LOAD[1:], len(K)
+    benches = {0.0: of(h)} | {e: of(h * (1 + e)) for e in (0.01, -0.01) if thickness}
+
+    def sinks(e=0.0, k=None, up=0.0, tilt=0.0, more=None, off=0.0):
+        k, more = (np.zeros(m) if v is None else v for v, m in ((k, n), (more, len(load))))
+        at = (
+            E * np.exp(e),
+            K * np.exp(k),
+            np.full(n, height) + up,
+            np.array(slope) + tilt,
+            load * np.exp(more),
+        )
+        return benches[off].sinks(*at)[read]
+
+    def slopes(name, size, step=1e-3):
+        each = np.eye(size) * step if size else [step]
+        return [(sinks(**{name: v}) - sinks(**{name: -v})) / 2 / step for v in each]
+
+    sink, signal = sinks(), K_v[read, None]
+    by_calibration = EACH / runs**0.5
+    own = np.eye(len(sink))[:, :, None]
+    columns = slopes("e", 0) + slopes("tilt", 2, 1e-5) + slopes("up", n, 1e-4) + slopes("k", n)
+    known = [inf] * 3 + [height * 3**-0.5] * n + list(np.where(read, by_calibration, unread * 3**-0.5))
+    columns += [*(own * sink), *(own / signal * np.ones_like(sink))]  # K_v, and offsets, read once before
+    known += [by_calibration] * len(sink) + [NOISE] * len(sink)
+    if thickness:
+        columns += slopes("off", 0, 0.01)
+        known.append(thickness * 3**-0.5)
+    if not load_known:
+        columns += slopes("more", len(load))
+        known += [inf] * len(load)
+    A = np.array([(signal * c).ravel() for c in columns]).T / NOISE
+    N = A.T @ A + np.diag(np.array(known) ** -2.0)
+    unit = np.diag(N) ** -0.5
+    return 1.96 * float(unit[0] * np.linalg.inv(N * unit * unit[:, None])[0, 0] ** 0.5)
 
 
 def calibration(array, K, K_v, rng, runs=RUNS, each=EACH):

@@ -56,7 +56,8 @@ def test_a_target_needs_an_object_and_forces_only():
         ('name = "mine"', 'name = "con"', "target.name: not usable text"),
         ('name = "mine"', 'name = "mine"\nbase = "none"', "no design of that name"),
         ('name = "mine"', 'name = "mine"\nleast = "price"', "target.least: unknown choice"),
-        ("[grasp]", "[stock]\nalloys = ['unobtainium']\n[grasp]", "stock.alloys[0]: unknown choice"),
+        ("[grasp]", "[stock]\nalloys = ['unobtainium']\n[grasp]", "stock.alloys[0]: unknown alloy"),
+        ("[grasp]", "[stock]\nalloys = ['stainless']\n[grasp]", "17-4PH-H900 or 1.4310-C1300 or 1.4034-"),
         ("[grasp]", "[stock]\nalloys = ['7075-T6', '7075-T6']\n[grasp]", "not a list of different words"),
         ("[grasp]", "[stock]\nsheets = [3, 3.0]\n[grasp]", "stock.sheets: not a list of different numbers"),
         ("[grasp]", "[stock]\nhinge_tolerances = [0.01, 0.01]\n[grasp]", "tolerances: not a list of diff"),
@@ -92,7 +93,7 @@ def test_schemas_have_every_field(capsys):
     schema = json.loads(capsys.readouterr().out)
     for name, kind in TABLES.items():
         wanted = {f.name for f in fields(kind)}
-        assert set(schema["properties"][name]["properties"]) == wanted
+        assert set(schema["else"]["properties"][name]["properties"]) == wanted
         part = text.split(f"[{name}]")[1].split("\n\n")[0]
         assert all(f"\n  {field} " in part for field in wanted)
 

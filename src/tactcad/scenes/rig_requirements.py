@@ -81,9 +81,7 @@ def loose_wheel(a: Built) -> Array:
 # Of tolerance.tilt: what the guide levels to by the elements' signals, and what the sample's faces may be
 # off. Chosen: the other limits take the rest.
 LEVELLED = SAMPLE = 0.25
-LEVELLING_PLATE = (
-    0.005  # mm, parallelism of the plate that stands for the sample; chosen: ground stock has it
-)
+LEVELLING_PLATE = 0.005  # mm, parallelism of the plate in the sample's place; chosen: ground stock has it
 
 
 def parallel(layout: Layout, known: dict[str, DimensionLimits]) -> Requirement:

@@ -14,7 +14,7 @@ from tactcad.parts.bought.supply import MECHANICAL, Supply
 from tactcad.parts.language.description import Part
 from tactcad.scenes.builder import Builder
 from tactcad.scenes.requirement import LEAST_PRESS, Deviations, DimensionLimits, Requirement, summed, variable
-from tactcad.scenes.rig import ARRAY, Rig, none
+from tactcad.scenes.rig import ARRAY, rig_of
 from tactcad.scenes.scene import Scene
 
 from . import cell_board, parts
@@ -41,11 +41,11 @@ def scene(design: PlanarDesign, _pose: object = None) -> Scene:
     chips = {order: cell_board.chip(layout, order) for order in orders}
     for e, order in zip(layout.elements, orders, strict=True):
         b.meet(b.place("U", chips[order], (e.x, e.y, layout.board_z)), board)
-    soldered = "Solder the chips: the board comes with them from who makes it."
+    soldered = "The board comes from its maker with the chips soldered."
     if not cell_board.why_none(layout):
         soldered = (
             "Have the board fitted by its bill and places (circuit/boards). Chips of different order codes "
-            "look alike and have different addresses: each belongs to its designator. Solder the connector "
+            "look alike and have different addresses: put each at its own designator. Solder the connector "
             "J1 on the tongue."
         )
     b.step("Chips", (0, 0, -35), soldered)
@@ -69,9 +69,7 @@ def scene(design: PlanarDesign, _pose: object = None) -> Scene:
     lower = b.place("SP", parts.lower_spacer(layout), (0, 0, layout.base_z))
     b.meet(lower, base)
     b.step(
-        "Lower spacer",
-        (0, 0, -6),
-        "Lay the lower spacer on the base: its thickness is the islands' way down.",
+        "Lower spacer", (0, 0, -6), "Lay the lower spacer on the base: its thickness is the islands' travel."
     )
     foil = b.place("F", parts.foil(layout), (0, 0, 0))
     b.meet(foil, lower)
@@ -152,9 +150,9 @@ def figures(arrays: Stacked) -> dict[str, np.ndarray]:
 
 
 def limits(
-    layout: PlanarLayout, _scenes: Sequence[Scene]
+    layout: PlanarLayout, scenes: Sequence[Scene]
 ) -> tuple[dict[str, DimensionLimits], list[Requirement]]:
-    """Variables of the layers, magnets and chips, and their requirements."""
+    """Variables of the layers, magnets, chips and rigs, and their requirements."""
     d, tol, n = layout.design, layout.design.tolerance, len(layout.elements)
     name, t = d.name, layout.design.planar.thickness
     foil = d.foil_tolerance
@@ -197,6 +195,9 @@ def limits(
             - np.hypot(a.made["magnet: along x"], a.made["magnet: along y"])
         )
 
+    of_rigs: dict[str, Requirement] = {}
+    for scene in scenes:
+        of_rigs |= {r.name: r for r in rig_of(d, scene.name).requirements(layout, known)}
     lift = d.housing.lift
     return known, [
         *_slips(layout),
@@ -218,6 +219,7 @@ def limits(
             d.hall.gap,
             (("base: thickness", 1.0), ("lower spacer: thickness", 1.0)),
         ),
+        *of_rigs.values(),
     ]
 
 
@@ -288,18 +290,5 @@ def _nominal(part: Part, limit: str) -> float:
 
 
 def nothing_bends(_layout: PlanarLayout) -> Iterator[Deflection]:
-    """No part of the array is taken as rigid but the islands, which foot plates make so."""
+    """No part is taken as rigid but the islands, which foot plates make so."""
     yield from ()
-
-
-RIG = Rig(
-    name=ARRAY,
-    tables=(),
-    make=scene,
-    poses=none,
-    under_sensor=none,
-    rules=(),
-    deflections=nothing_bends,
-    requirements=lambda *_: [],
-    checks=(),
-)
