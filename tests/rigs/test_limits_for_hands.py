@@ -14,7 +14,7 @@ from tactcad.drawing.parts.part_sheet import part_plan
 from tactcad.parts.bought.standard_parts import GROOVE_DEPTHS, SECTION
 from tactcad.parts.designs import load
 from tactcad.parts.language.description import Hole, Part
-from tactcad.parts.language.fits import general
+from tactcad.parts.language.limits import general
 from tactcad.parts.language.metric import METRIC
 from tactcad.parts.rigs.cart import cart_layout
 from tactcad.scenes import make_scene, scene_names

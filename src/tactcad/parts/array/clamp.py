@@ -14,8 +14,7 @@ from tactcad.design.tree import Design
 from ..bought.screws import CAP_SCREW_LENGTHS
 from ..bought.standard_parts import dowel_diameter, dowel_lengths, dowel_limits
 from ..language.description import Extrusion, Feature, Hole, Part, Vector
-from ..language.fits import deviations, general
-from ..language.limits import FACES, Characteristic, DatumFeature, Geometric, within
+from ..language.limits import FACES, Characteristic, DatumFeature, Geometric, deviations, general, within
 from ..language.metric import (
     METRIC,
     SUNK,

@@ -10,7 +10,7 @@ from math import pi, sqrt
 from tactcad.contour import chain, circle
 
 from ..language.description import Extrusion, Material, Part, Purchase, Revolution
-from ..language.fits import deviations
+from ..language.limits import deviations
 from ..language.tables import number, rows
 
 # Least diametral play of a sliding pin, mm; chosen: the least that a plug gauge shows.

@@ -10,8 +10,7 @@ from tactcad.contour import rectangle
 from tactcad.design.materials import family
 
 from .description import Extrusion, Part, Pocket, section
-from .fits import general
-from .limits import FACES, Characteristic
+from .limits import FACES, Characteristic, general
 from .tables import number, rows
 
 # Over the finished edge, mm, by the thickness that is cut, up to `to`: after ISO 9013:2017, machining

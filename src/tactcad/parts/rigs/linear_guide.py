@@ -15,8 +15,7 @@ from ..array.clamp import PRESS_FIT
 from ..array.layout import Layout
 from ..bought.standard_parts import dowel_diameter
 from ..language.description import Extrusion, Feature, Hole, Part, Purchase
-from ..language.fits import deviations
-from ..language.limits import FACES, Geometric
+from ..language.limits import FACES, Geometric, deviations
 from ..language.metric import corners, sunk, tapped_blind
 from ..language.part_materials import CARBON_STEEL
 from ..language.plate import FRAME, PLACE, plate
