@@ -311,7 +311,7 @@ def heavy() -> list[Finding]:
     from tactcad.checks.described.weight import check_weight
     from tactcad.contour import rectangle
     from tactcad.parts.language.description import Extrusion, Part
-    from tactcad.parts.language.part_materials import CARBON_STEEL
+    from tactcad.parts.language.stock import CARBON_STEEL
 
     body = Extrusion(rectangle(0.0, 0.0, 40.0, 20.0), 20.0)
     return [*check_weight(Part("b", "Block", "milled", CARBON_STEEL, body))]

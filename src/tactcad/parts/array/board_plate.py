@@ -18,8 +18,8 @@ from tactcad.design.tree import Design
 from ..language.description import Extrusion, Hole, Material, Part, Purchase, Revolution
 from ..language.limits import FACES, DatumFeature, Geometric
 from ..language.metric import METRIC, tapped_through
-from ..language.part_materials import BRASS
 from ..language.plate import BREAK_EDGES, PLACE, plate
+from ..language.stock import BRASS
 from .board_outline import HEIGHT, LEADS_FROM_EDGE, PITCH, THICKNESS, WIDTH, BoardOutline
 
 THREAD = "M3"  # of every screw here, to fit the board's holes

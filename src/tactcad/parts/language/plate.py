@@ -11,7 +11,7 @@ from tactcad.design.tree import CommonTables
 from .description import Extrusion, Feature, Hole, Part
 from .limits import FACES, Characteristic, DatumFeature, Geometric, within
 from .metric import METRIC
-from .part_materials import plate_material
+from .stock import plate_material
 
 # A plate is faced on both sides to this, plus and minus mm, so that screws through it end in place; a thicker
 # part is a block, with general tolerances.

@@ -17,8 +17,8 @@ from ..bought.standard_parts import dowel_diameter
 from ..language.description import Extrusion, Feature, Hole, Part, Purchase
 from ..language.limits import FACES, Geometric, deviations
 from ..language.metric import corners, sunk, tapped_blind
-from ..language.part_materials import CARBON_STEEL
 from ..language.plate import FRAME, PLACE, plate
+from ..language.stock import CARBON_STEEL
 from .cart import CartLayout, cart_layout
 from .frame import (
     BAR,
