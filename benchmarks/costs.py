@@ -27,7 +27,7 @@ from scipy.optimize import nnls
 
 from tactcad.costs.grades import ANGULAR, DATA, calibration, counts, mesh_sizes, processor
 from tactcad.mechanics.accuracy import CANDIDATES
-from tactcad.parts.designs import load
+from tactcad.parts.rules import load
 from tactcad.scenes import make_scene, scene_names
 from tactcad.solids.meshing import CHORD_MM
 

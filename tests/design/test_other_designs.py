@@ -7,9 +7,8 @@ import pytest
 from tactcad.design.following import MOVING
 from tactcad.design.load import parse
 from tactcad.design.messages import InputError
-from tactcad.parts.designs import load
 from tactcad.parts.language.finding import Finding, grouped
-from tactcad.parts.rules import refuse_broken
+from tactcad.parts.rules import load, refuse_broken
 from tactcad.scenes import make_scene
 
 TEXT = open("hardware/macro-array.toml").read()

@@ -17,9 +17,8 @@ from tactcad.design.load import from_table, names, paths
 from tactcad.design.messages import InputError
 from tactcad.design.tree import Design
 from tactcad.parts.array.layout import Layout
-from tactcad.parts.designs import load
 from tactcad.parts.language.description import Part
-from tactcad.parts.rules import broken_rules, design_rules, refuse_broken
+from tactcad.parts.rules import broken_rules, design_rules, load, refuse_broken
 from tactcad.parts.rules.gauge_rules import leads_that_fit
 from tactcad.scenes import make_scene
 

@@ -79,7 +79,7 @@ PLACED = """
     b.meet(b.place("CO", cover_plate(layout), (0, 0, top), UPRIGHT, "Cover"), "CA1")
 """
 SHOWN = """
-from tactcad.parts.designs import load
+from tactcad.parts.rules import load
 from tactcad.scenes import make_scene
 from tactcad.scenes.bom import bom_rows
 
@@ -323,7 +323,7 @@ ASKED = "import test_checks_table as t; t.test_every_check_in_the_code_has_its_b
 FOUND = """
 from tactcad.checks.check import Job, described, run_each
 from tactcad.checks.check_report import Report
-from tactcad.parts.designs import load
+from tactcad.parts.rules import load
 from tactcad.scenes import make_scene
 
 design, report = load("tiny.toml"), Report("tiny")

@@ -193,7 +193,7 @@ def test_findings_are_told_with_their_parts(macro_scene):
 
 def test_a_design_is_read_back_from_an_exports_values(macro):
     from tactcad.design.load import from_table
-    from tactcad.parts.designs import load
+    from tactcad.parts.rules import load
 
     for name in ("macro-array", "soft-tissue", "smallest-bearing", "double-sample", "better-array"):
         design = load(name)

@@ -20,9 +20,8 @@ from tactcad.mechanics import gauge_signal
 from tactcad.parts.array.gauge_checks import gauge_checks, volts
 from tactcad.parts.array.hinge_section import design_readout, hinge_section
 from tactcad.parts.array.layout import Layout
-from tactcad.parts.designs import load
 from tactcad.parts.rigs.bonding_fixture import bonding_rigs
-from tactcad.parts.rules import broken_rules
+from tactcad.parts.rules import broken_rules, load
 from tactcad.scenes import left_out, make_scene, scene_names
 from tactcad.scenes.rig_requirements import PLACE_ON_HINGE
 from tactcad.solids.build import build

@@ -14,8 +14,7 @@ from small_target import SMALL
 from tactcad.cli.main import main
 from tactcad.design.load import parse, read
 from tactcad.design.messages import CheckFailure
-from tactcad.parts.designs import load
-from tactcad.parts.rules import broken_rules
+from tactcad.parts.rules import broken_rules, load
 from tactcad.synthesis import relax
 from tactcad.synthesis import target_report as write_module
 from tactcad.synthesis.candidates import order

@@ -93,7 +93,7 @@ def _picked(args: argparse.Namespace, asked: Allowance) -> tuple[Meshing, Picked
     from tactcad.costs.grades import VOLUME, check_grades, meshing_of
     from tactcad.design.allowance import pick
     from tactcad.design.messages import InputError
-    from tactcad.parts.designs import load
+    from tactcad.parts.rules import load
     from tactcad.scenes import chosen_scenes
 
     checked = []
@@ -113,8 +113,8 @@ def _checked(source: str, args: argparse.Namespace, shop: Path, meshing: Meshing
     from tactcad.design.load import find
     from tactcad.design.messages import InputError
     from tactcad.export.golden_file import check_golden, golden_path
-    from tactcad.parts.designs import load
     from tactcad.parts.language.finding import Finding
+    from tactcad.parts.rules import load
     from tactcad.scenes import chosen_scenes
 
     from .streams import progress

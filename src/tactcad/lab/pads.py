@@ -20,7 +20,7 @@ from tactcad.mechanics.strength import tip_compliance
 from tactcad.parts.array.hinge_section import design_gauge, design_readout, hinge_section, not_reached
 from tactcad.parts.array.layout import Layout
 from tactcad.parts.array.stop_gap import stop_gap
-from tactcad.parts.designs import load
+from tactcad.parts.rules import load
 
 SOFT = 0.49  # Poisson's ratio of rubber and tissue as layers: the paper's samples
 INCOMPRESSIBLE = 0.5  # Poisson's ratio of soft tissue and rubber; a half-space's shares do not depend on it

@@ -17,7 +17,7 @@ from tactcad.families.planar import cell_array, parts
 from tactcad.families.planar.cell_layout import PlanarLayout
 from tactcad.families.planar.rules import design_rules
 from tactcad.families.planar.sensor import chip_matrix, closing_force, rows, strength
-from tactcad.parts.designs import load
+from tactcad.parts.rules import load
 
 DESIGNS = Path(__file__).parents[3] / "hardware"
 PLANAR, JAW = (DESIGNS / f"{name}-array.toml" for name in ("planar", "jaw"))
