@@ -20,11 +20,12 @@ from tactcad.parts.array.hinge_section import design_readout
 from tactcad.parts.array.layout import Layout
 from tactcad.parts.bought.electronic_parts import LINK, WIRE_LINK, converter_of, unread
 from tactcad.parts.language.finding import Finding
-from tactcad.parts.rules.converter_rules import converter_has_reference, converter_reads_within_period
 from tactcad.parts.rules.gauge_rules import leads_have_room
 from tactcad.parts.rules.readout_rules import (
     boards_have_inputs,
     bridge_stays_in_range,
+    converter_has_reference,
+    converter_reads_within_period,
     gauge_bears_power,
     inputs_within_common_mode,
     leads_are_relieved,
