@@ -12,7 +12,7 @@ from tactcad.design.sensing import AMPLIFIERS, MULTIPLEXERS, SWITCHES, WIRES, Re
 from tactcad.design.tree import Design
 
 from ..array.bridge_figures import bridge_signal, heating, imbalance, sample_spacing, settling_time
-from ..array.converter_figures import bridge_supply, on_time, rate
+from ..array.converter_figures import bridge_supply, converter_supply, on_time, rate
 from ..array.hinge_section import design_readout
 from ..array.layout import Layout
 from ..array.leads import (
@@ -25,7 +25,16 @@ from ..array.leads import (
     longest_lead_resistance,
     recess_length,
 )
-from ..bought.electronic_parts import completion_resistance, completion_tolerance, converter_of
+from ..bought.electronic_parts import (
+    DROPOUT,
+    REFERENCE,
+    REFERENCE_MOST_VOLTS,
+    bridge_resistance,
+    completion_resistance,
+    completion_tolerance,
+    converter_of,
+    regulator_gives,
+)
 from ..language.finding import SAME, Finding
 from .gauge_rules import lead
 from .rule import at_least, at_most, rule, wrong
@@ -475,3 +484,21 @@ def converter_reads_within_period(layout: Layout) -> Iterator[Finding]:
     warm = "warm-up and " if layout.design.readout.power == "duty" else ""
     what = f"the {converter.name} takes {needed:.3g} s for {warm}one result of each of its elements"
     yield from at_least("readout.period", what, period, needed, f"at least {needed * 1.005:.3g} s")
+
+
+@rule(after="override_names_element")
+def regulators_take_supply(layout: Layout) -> Iterator[Finding]:
+    """VPOS is within what they take, and above what they make; they give a warm bridge its current. A
+    converter's bridges are fed with no more than they give (`supply_ohm`)."""
+    r, converter = layout.design.readout, converter_of(layout.design)
+    made = converter_supply() if converter else r.excitation
+    limits = f"from {made + DROPOUT:.3g} to {REFERENCE_MOST_VOLTS:g} V"
+    what = f"more than the board's regulator, {REFERENCE}, bears"
+    yield from at_most("readout.supply_positive", what, r.supply_positive, REFERENCE_MOST_VOLTS, limits)
+    what = f"the board's regulator, {REFERENCE}, cannot make {made:.3g} V from it"
+    yield from at_least("readout.supply_positive", what, r.supply_positive, made + DROPOUT, limits)
+    if converter is None:
+        ohm, given = bridge_resistance(layout.design), regulator_gives(r.supply_positive)
+        what = f"a bridge of {ohm:.3g} ohm takes more than the {given * 1e3:g} mA of the {REFERENCE}"
+        legal = f"at most {rounded_down(given * ohm)} V"
+        yield from at_most("readout.excitation", what, r.excitation, given * ohm, legal)
