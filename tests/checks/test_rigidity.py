@@ -27,7 +27,7 @@ from tactcad.parts.array.seating import carrier_beam, carrier_opens
 from tactcad.parts.bought.screws import seating_force
 from tactcad.parts.rigs.stiffness import calibration_loads
 from tactcad.parts.rules import broken_rules, load
-from tactcad.parts.rules.stiffness_remedy import remedy
+from tactcad.parts.rules.rule import remedy
 from tactcad.scenes import make_scene, scene_names
 from tactcad.scenes.rig import all_rigs
 

@@ -1,6 +1,6 @@
 """Whether every part of the array and its rigs that is taken as rigid keeps its allowed deflection.
 
-Rigs' rules (parts/rules/stiffness_remedy.py) use the same lines and leave the scene out that fails here; so
+Rigs' rules (parts/rules/rule.py) use the same lines and leave the scene out that fails here; so
 flags remain.
 """
 
@@ -11,7 +11,7 @@ from collections.abc import Collection
 from tactcad.design.tree import CommonTables
 from tactcad.parts.array.stiffness_table import Deflection
 from tactcad.parts.language.finding import Finding
-from tactcad.parts.rules.stiffness_remedy import remedy
+from tactcad.parts.rules.rule import remedy
 from tactcad.scenes.rig import all_rigs, rig_of
 
 from ..check import Check
