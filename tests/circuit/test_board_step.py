@@ -18,7 +18,7 @@ from tactcad.export.board_step import board_step, check_bare_board
 from tactcad.export.cache import Cache
 from tactcad.export.shapes import Shapes
 from tactcad.export.step_text import Header
-from tactcad.parts.array.board_outline import board_outline
+from tactcad.parts.array.board_plate import board_outline
 from tactcad.parts.array.layout import Layout
 
 pytestmark = pytest.mark.cad

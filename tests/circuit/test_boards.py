@@ -24,7 +24,7 @@ from tactcad.circuit.netlist_files import kicad_bytes
 from tactcad.circuit.read_board import board_netlist
 from tactcad.design.messages import CheckFailure
 from tactcad.export.board_files import check_flashes
-from tactcad.parts.array.board_outline import board_outline
+from tactcad.parts.array.board_plate import board_outline
 from tactcad.parts.array.layout import Layout
 from tactcad.parts.bought.electronic_parts import COMPLETION
 

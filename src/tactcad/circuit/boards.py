@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tactcad.parts.array.board_outline import board_outline
+from tactcad.parts.array.board_plate import board_outline
 from tactcad.parts.array.layout import Layout
 from tactcad.parts.array.leads import boards, leads
 from tactcad.parts.bought.electronic_parts import converter_of

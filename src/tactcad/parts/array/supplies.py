@@ -25,8 +25,7 @@ from ..bought.electronic_parts import (
 )
 from ..bought.supply import Supply, board_spares, bonded_spares
 from ..language.tables import rows
-from .board_outline import board_outline, card_pins, channels_of, lead_pins
-from .board_plate import BRAID, bundle
+from .board_plate import BRAID, board_outline, bundle, card_pins, channels_of, lead_pins
 from .converter_figures import ANALOGUE_OHM, bridge_supply, supply_ohm
 from .layout import Layout
 from .leads import boards, colours, lead_routes, leads

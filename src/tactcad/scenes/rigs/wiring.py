@@ -4,7 +4,6 @@ the leads is plugged last and pulled off the same way."""
 from __future__ import annotations
 
 from tactcad.design.tree import Design
-from tactcad.parts.array.board_outline import board_outline, channels_of, lead_pins
 from tactcad.parts.array.board_plate import (
     BOARD_SCREW,
     CLAMP,
@@ -17,9 +16,12 @@ from tactcad.parts.array.board_plate import (
     STAND_OFF,
     THREAD,
     UNPLUGGED,
+    board_outline,
     board_plate,
+    channels_of,
     fitted_board,
     lead_clamp,
+    lead_pins,
     lead_socket,
     stand_off,
 )
