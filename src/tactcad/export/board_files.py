@@ -15,7 +15,7 @@ from tactcad.circuit.kicad_board import board_bytes
 from tactcad.circuit.netlist import Component
 from tactcad.design.messages import CheckFailure
 from tactcad.design.tree import CommonTables
-from tactcad.parts.bought.supply import Supply
+from tactcad.parts.bought.electronic_parts import Supply
 
 from .board_step import board_step
 from .circuit_files import Nets, check_nets, kicad_file

@@ -8,7 +8,7 @@ from itertools import product
 from math import floor
 from typing import Literal
 
-from tactcad.parts.bought.supply import Supply
+from tactcad.parts.bought.electronic_parts import Supply
 from tactcad.parts.language.description import Part, Vector, envelope, vector
 
 Rotation = tuple[Vector, Vector, Vector]  # rows of the matrix that turns local into scene directions

@@ -14,7 +14,7 @@ from tactcad.design.materials import ALLOYS, family
 from tactcad.design.messages import InputError
 from tactcad.design.tree import CommonTables, Design
 
-from ..bought.supply import spare_elements
+from ..bought.electronic_parts import spare_elements
 from ..language.description import Extrusion, Material, Part
 from ..language.limits import FACES, Characteristic, DatumFeature, Geometric, within
 from ..language.plate import PLACE

@@ -13,6 +13,9 @@ from tactcad.design.sensing import AMPLIFIERS, COMPLETIONS, MULTIPLEXERS, SWITCH
 
 from ..bought.electronic_parts import (
     ON_SUPPLIES,
+    Supply,
+    board_spares,
+    bonded_spares,
     completion_drift,
     completion_resistance,
     completion_tolerance,
@@ -23,7 +26,6 @@ from ..bought.electronic_parts import (
     supply_resistance,
     value_code,
 )
-from ..bought.supply import Supply, board_spares, bonded_spares
 from ..language.tables import rows
 from .board_plate import BRAID, board_outline, bundle, card_pins, channels_of, lead_pins
 from .converter_figures import ANALOGUE_OHM, bridge_supply, supply_ohm
