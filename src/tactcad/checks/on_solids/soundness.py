@@ -21,7 +21,7 @@ from OCP.TopAbs import TopAbs_EDGE, TopAbs_FACE, TopAbs_ShapeEnum, TopAbs_SHELL,
 from OCP.TopoDS import TopoDS_Shape
 
 from tactcad.contour import LEAST_EDGE, is_sliver
-from tactcad.contour.keep_clear import keep_clear
+from tactcad.contour.inside import keep_clear
 from tactcad.parts.language.description import Part
 from tactcad.parts.language.finding import Finding
 from tactcad.profiling import making
