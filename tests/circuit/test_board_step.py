@@ -14,7 +14,7 @@ from tactcad.circuit.board_layout import lay_out
 from tactcad.circuit.kicad_board import board_bytes
 from tactcad.circuit.read_board import board_netlist
 from tactcad.design.messages import CheckFailure
-from tactcad.export.board_step import board_step, check_bare_board
+from tactcad.export.board_files import board_step, check_bare_board
 from tactcad.export.cache import Cache
 from tactcad.export.shapes import Shapes
 from tactcad.export.step_text import Header
