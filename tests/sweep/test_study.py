@@ -95,7 +95,7 @@ def test_bad_arguments(tmp_path, capsys, monkeypatch, arguments, said):
 
 @pytest.mark.parametrize("what", ["checks", "export"])
 def test_what_needs_solids_is_refused_where_there_is_no_kernel(what, tmp_path, capsys, monkeypatch):
-    monkeypatch.setattr("tactcad.design.extras.find_spec", lambda name: None if name == "OCP" else ...)
+    monkeypatch.setattr("tactcad.design.messages.find_spec", lambda name: None if name == "OCP" else ...)
     study = written(tmp_path, what=f'["{what}"]', elements="")
     assert main(["sweep", str(study), "--out", str(tmp_path / "o")]) == 2
     said = f"tactcad: measure.what, {what}: needs OCP, not installed here; legal: pip install '.[cad]' in a "

@@ -146,7 +146,7 @@ def test_an_impossible_target_ends_with_1_and_writes_nothing_but_the_best_when_a
     out = tmp_path / "out"
     assert main(["design", str(tmp_path / "no.toml"), "--out", str(out), "--within", "5%", "--in", "30"]) == 1
     assert "Impossible as asked" in capsys.readouterr().out and not out.exists()
-    monkeypatch.setattr("tactcad.design.extras.find_spec", lambda name: None)  # no CAD kernel
+    monkeypatch.setattr("tactcad.design.messages.find_spec", lambda name: None)  # no CAD kernel
     assert (
         main(
             ["design", str(tmp_path / "no.toml"), "--out", str(out), "--within", "5%", "--in", "30", "--best"]

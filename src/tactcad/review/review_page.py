@@ -20,8 +20,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
-from tactcad.design.extras import install
-from tactcad.design.messages import CheckFailure, InputError
+from tactcad.design.messages import CheckFailure, InputError, install
 
 # The page's own script, in the order in which it is put together.
 SCRIPTS = (
