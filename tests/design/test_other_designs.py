@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from tactcad.design.following import MOVING
 from tactcad.design.load import parse
 from tactcad.design.messages import InputError
+from tactcad.design.tree import MOVING
 from tactcad.parts.language.finding import Finding, grouped
 from tactcad.parts.rules import load, refuse_broken
 from tactcad.scenes import make_scene

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from .fields import Number, OneOf, Whole, given
 
-FOLLOWS = "follows the array (design/following.py): the published set-up's up to the published array's length"
+FOLLOWS = "follows the array (design/tree.py): the published set-up's up to the published array's length"
 
 
 @dataclass(frozen=True)
