@@ -14,7 +14,7 @@ from tactcad.contour import rectangle
 from tactcad.design.load import from_table
 from tactcad.drawing.assemblies.apart import Piece, pieces_of, pulled_apart
 from tactcad.drawing.assemblies.exploded import unit_views
-from tactcad.drawing.engine.extent import projected_box
+from tactcad.drawing.engine.boxes import projected_box
 from tactcad.parts.bought.screws import cap_screw
 from tactcad.parts.language.description import Extrusion, Part
 from tactcad.parts.language.stock import STAINLESS

@@ -13,7 +13,7 @@ from tactcad.checks.described.wirecut import check_wirecut
 from tactcad.checks.on_solids.interference import check_interference
 from tactcad.checks.shop import DEFAULT, load_shop
 from tactcad.circuit.element_signals import element_signals
-from tactcad.drawing.engine.extent import placed
+from tactcad.drawing.engine.boxes import placed
 from tactcad.drawing.parts.part_sheet import part_plan
 from tactcad.families.facing_rows import FAMILY
 from tactcad.mechanics import gauge_signal

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from variants import FACING_ROWS
 
-from tactcad.drawing.engine.extent import box_corners, part_box, placed
+from tactcad.drawing.engine.boxes import box_corners, part_box, placed
 from tactcad.parts.array.element import WIRE_TOLERANCE, least_passes
 from tactcad.parts.language.description import Hole
 from tactcad.parts.rules import load

@@ -412,7 +412,7 @@ def _measured(part: Part, shapes: Shapes) -> dict:
 
 
 def _compare_box(part: Part, box: Sequence[Sequence[float]]) -> None:
-    from tactcad.drawing.engine.extent import part_box
+    from tactcad.drawing.engine.boxes import part_box
 
     off = max(abs(a - b) for got, meant in zip(box, part_box(part)) for a, b in zip(got, meant))
     if off > 1e-6:

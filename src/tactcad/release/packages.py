@@ -11,7 +11,7 @@ from math import ceil, floor
 
 from tactcad.checks.shop import Feed, Shop
 from tactcad.design.tree import CommonTables
-from tactcad.drawing.engine.extent import part_box
+from tactcad.drawing.engine.boxes import part_box
 from tactcad.export import inspection
 from tactcad.export.contents import sha256_of
 from tactcad.parts.array.element import least_passes
