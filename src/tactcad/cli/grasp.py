@@ -131,7 +131,7 @@ def _number(where: str, text: str) -> float:
 
 def as_json(done: PressedArray, design: str) -> object:
     """The document of --json: mm, N, degrees, and signal_unit."""
-    from tactcad.report.plain import plain
+    from tactcad.report.report import plain
 
     return plain(
         {
