@@ -92,3 +92,15 @@ def parse_toml(text: str, where: str) -> dict[str, Any]:
         raise InputError(where, "nested too deeply", legal="tables at most 3 deep") from None
     except ValueError as error:  # an impossible date, or an integer of thousands of digits
         raise InputError(where, f"is not TOML: {error}") from None
+
+
+def rows(module: str, name: str) -> list[dict[str, str]]:
+    """The rows of data/NAME.csv beside a module (its `__file__`), in its order."""
+    return data_rows(Path(module).with_name("data") / f"{name}.csv")
+
+
+def number(text: str) -> float:
+    """A cell's number, in mm unless its table says otherwise; an integer stays an integer, as in part
+    numbers.
+    """
+    return float(text) if "." in text else int(text)

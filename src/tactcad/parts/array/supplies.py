@@ -10,6 +10,7 @@ from math import ceil
 
 from tactcad.design.materials import family
 from tactcad.design.sensing import AMPLIFIERS, COMPLETIONS, MULTIPLEXERS, SWITCHES, WIRES
+from tactcad.design.text_values import rows
 
 from ..bought.electronic_parts import (
     ON_SUPPLIES,
@@ -26,7 +27,6 @@ from ..bought.electronic_parts import (
     supply_resistance,
     value_code,
 )
-from ..language.tables import rows
 from .board_plate import BRAID, board_outline, bundle, card_pins, channels_of, lead_pins
 from .converter_figures import ANALOGUE_OHM, bridge_supply, supply_ohm
 from .layout import Layout

@@ -8,10 +8,10 @@ from dataclasses import dataclass
 from math import pi, sqrt
 
 from tactcad.contour import chain, circle
+from tactcad.design.text_values import number, rows
 
 from ..language.description import Extrusion, Material, Part, Purchase, Revolution
 from ..language.limits import deviations
-from ..language.tables import number, rows
 
 # Least diametral play of a sliding pin, mm; chosen: the least that a plug gauge shows.
 LEAST_PLAY = 0.002

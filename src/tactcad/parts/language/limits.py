@@ -13,7 +13,7 @@ from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 from typing import Literal
 
-from .tables import rows
+from tactcad.design.text_values import rows
 
 FACES = ("face z=0", "face z=thickness")
 Symbol = Literal["position", "flatness", "parallelism", "perpendicularity"]

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass, fields
 
+from tactcad.design.text_values import number, rows
+
 from .description import Hole, Vector, drill_point_height
-from .tables import number, rows
 
 
 @dataclass(frozen=True)

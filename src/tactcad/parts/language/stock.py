@@ -8,11 +8,11 @@ from dataclasses import dataclass, replace
 
 from tactcad.contour import rectangle
 from tactcad.design.materials import ALLOYS, family
+from tactcad.design.text_values import number, rows
 from tactcad.design.tree import CommonTables
 
 from .description import Extrusion, Material, Part, Pocket, section
 from .limits import FACES, Characteristic, general
-from .tables import number, rows
 
 # Densities in kg/m3: usual values of these materials.
 ALUMINIUM = Material("aluminium", 2700, magnetic="no")
