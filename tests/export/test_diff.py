@@ -16,7 +16,8 @@ import pytest
 from tactcad.cli.main import main
 from tactcad.contour import circle, rectangle
 from tactcad.design.messages import InputError
-from tactcad.export.difference import Change, _path, page
+from tactcad.export.difference import Change
+from tactcad.export.difference_page import _path, page
 from tactcad.export.sides import compare_sides, read_side
 
 ROOT = Path(__file__).parents[2]

@@ -29,7 +29,7 @@ from tactcad.export import golden_file as golden
 from tactcad.export import manifest, sides
 from tactcad.export.cache import Cache
 from tactcad.export.contents import sealed
-from tactcad.export.difference import page
+from tactcad.export.difference_page import page
 from tactcad.export.dxf import dxf_bytes
 from tactcad.export.geometry import geometry
 from tactcad.export.inspection import inspection_bytes

@@ -111,7 +111,7 @@ def run(args: argparse.Namespace) -> int:
     if args.freecad or args.review:
         made |= _material(args, old, new, changes, meant)
     if args.html:
-        from tactcad.export.difference import page
+        from tactcad.export.difference_page import page
 
         made[args.html] = page(old, new, changes, html(meant))
     if args.markdown:
