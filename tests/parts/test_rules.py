@@ -320,12 +320,7 @@ def test_every_rule_has_a_witness():
 
 
 @pytest.mark.parametrize(
-    "rule",
-    [
-        n
-        for n in WITNESSES
-        if design_rules()[n].find.__module__.endswith(("readout_rules", "converter_rules", "supply_rules"))
-    ],
+    "rule", [n for n in WITNESSES if design_rules()[n].find.__module__.endswith("readout_rules")]
 )
 def test_a_rule_names_the_unread_parts_that_it_asks(rule):
     """In the finding on each of its bad designs: every part of which it took a figure to get there."""

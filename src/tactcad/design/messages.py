@@ -1,4 +1,4 @@
-"""Refusal of bad input: its place, value, and the legal range."""
+"""Refusal of bad input: its place, value, and the legal range; and of what needs an extra that is missing."""
 
 from __future__ import annotations
 

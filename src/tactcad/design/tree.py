@@ -2,7 +2,8 @@
 
 Lengths in mm, forces in N, stresses in MPa, density in kg/m3. Frame: x from the middle line between the rows
 along the arms, y along the row, z = 0 on the elements' flat (gauge) face, + away from the object. A default
-of None is derived from other fields (parts/array/layout.py).
+of None is derived from other fields: here (each of the rigs' sizes is the published set-up's as long as the
+array is no longer than the published one) and in parts/array/layout.py.
 """
 
 from __future__ import annotations

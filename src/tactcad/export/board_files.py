@@ -1,5 +1,11 @@
-"""A board's files: KiCad's board and netlist, its bill, places, solid, outline, Gerber files and drills; read
-back and compared with the board before they are published."""
+"""A board's files: KiCad's board and netlist, its bill, places, solid, outline, Gerber files and drills; and
+the circuit's: KiCad's netlist, the same as a table, the SPICE deck, the leads to cut. All are read back and
+compared before they are published.
+
+Its solid for the assembly is the bare board with the holes of its screws and ties, and a block for everything
+that is fitted. mm, x and y as in the outline's DXF, z = 0 on the underside. Soldered pins, which protrude 1.4
+mm below it, are left out.
+"""
 
 from __future__ import annotations
 

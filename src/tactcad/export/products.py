@@ -202,7 +202,7 @@ def circuit_files(plan: Plan) -> Iterator[Batch]:
     """The circuit that reads the array: its netlist in three forms, and the leads to cut."""
     from tactcad.circuit.digital_readout import settings_header, settings_json
 
-    from . import circuit_files as files
+    from . import board_files as files
 
     design, family = plan.design, family_of(plan.design)
     circuit = family.must("readout", "export").netlist(family.layout(design))

@@ -8,6 +8,11 @@ variance = a + b slope^2 + c (slope travel)^2 with a, b, c >= 0: the read-out's 
 same error of displacement gives more force on a stiff element), and noise that grows with the reading (a
 sensor's per cent of value). One element has too few readings to distinguish noise that grows from an outlier
 at its largest reading.
+
+A run read on the way up only bows to one side, by hysteresis and friction: force lags behind, most in the
+middle of the travel. The bow repeats in every run, so the scatter does not show it, and it shifts the slope:
+the first displacement is left out, and over the rest the line is not the chord. The bow is estimated from all
+elements of a file, which share stage and sensors, and from each element alone.
 """
 
 from __future__ import annotations

@@ -8,6 +8,9 @@ is linear over GF(2) in the bits of its place: with x_i its coordinates as whole
 so the points at 0 and at powers of two, drawn once by scipy, hold all others. scipy itself goes to a place
 step by step: for every chunk a sequence would be drawn from its beginning, and every process would load
 scipy.stats, which takes as long as a million closed forms.
+
+A field of a design is named by its path, as in messages: "element.hinge_thickness",
+"element.override.3.arm_height", "array.row_arms[0][2]".
 """
 
 from __future__ import annotations

@@ -1,4 +1,6 @@
-"""Plane geometry on the paper or in a view, mm: points, lines, upright boxes, quadrangles, what meets."""
+"""Plane geometry on the paper or in a view, mm: points, lines, upright boxes, quadrangles, what meets; and
+extents of parts and placed parts from their descriptions, without a kernel.
+"""
 
 from __future__ import annotations
 
@@ -14,7 +16,6 @@ from tactcad.contour import Arc, Contour, Point
 from tactcad.parts.language.description import Extrusion, ModelFile, Part, Pocket, Revolution, Vector, vector
 from tactcad.scenes.scene import Placement
 
-Point = tuple[float, float]
 Polyline = tuple[Point, ...]
 Chord = tuple[Point, Point]
 Box = tuple[float, float, float, float]  # x_min, y_min, x_max, y_max

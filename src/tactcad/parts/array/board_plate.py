@@ -1,5 +1,14 @@
-"""The carrier of a read-out board: a plate with stand-offs, and a clamp that relieves the leads before the
-board's connector.
+"""A read-out board as its neighbours see it (outline, holes, lead connector, heights), and its carrier: a
+plate with stand-offs, and a clamp that relieves the leads before the board's connector.
+
+      W = width
+    +-------------------------------+  y = height
+    | o     ::::::::::::::::      o |     leads come in over this edge
+    |       lead connector          |
+    |                               |
+    | o     ::::::: to the card   o |
+    +-------------------------------+  y = 0
+    x = 0
 
     :::::::  socket on the board's header
   ===========  board             leads

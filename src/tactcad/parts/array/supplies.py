@@ -10,7 +10,7 @@ from math import ceil
 
 from tactcad.design.materials import family
 from tactcad.design.sensing import AMPLIFIERS, COMPLETIONS, MULTIPLEXERS, SWITCHES, WIRES
-from tactcad.design.text_values import rows
+from tactcad.design.text_values import data_rows
 
 from ..bought.electronic_parts import (
     ON_SUPPLIES,
@@ -33,7 +33,7 @@ from .layout import Layout
 from .leads import boards, colours, lead_routes, leads
 
 COLOUR_NAMES = {"RD": "red", "WH": "white", "BK": "black"}
-ROWS = rows(__file__, "supplies")
+ROWS = data_rows(__file__, "supplies")
 # Spares of so many.
 SPARES: dict[str, Callable[[float], int]] = {"": lambda _: 0, "bonded": bonded_spares, "board": board_spares}
 

@@ -1,4 +1,6 @@
-"""Part numbers and values of the electronic parts, and how many spares are ordered."""
+"""Bill-of-materials lines without a solid, and how many spares are ordered by the losses expected in
+building; part numbers and values of the electronic parts.
+"""
 
 from __future__ import annotations
 

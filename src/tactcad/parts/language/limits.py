@@ -13,7 +13,7 @@ from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 from typing import Literal
 
-from tactcad.design.text_values import rows
+from tactcad.design.text_values import data_rows
 
 FACES = ("face z=0", "face z=thickness")
 Symbol = Literal["position", "flatness", "parallelism", "perpendicularity"]
@@ -112,7 +112,9 @@ def contradictions(
             yield f"{g.name}: {g.symbol} of {', '.join(g.features)} without datum; legal: at least one datum"
 
 
-_GRADES, _DEVIATIONS, _GENERAL = (rows(__file__, name) for name in ("it_grades", "deviations", "general"))
+_GRADES, _DEVIATIONS, _GENERAL = (
+    data_rows(__file__, name) for name in ("it_grades", "deviations", "general")
+)
 _CODE = re.compile(r"(js|JS|[a-hk-pA-HK-P])(\d{1,2})")
 # Shafts whose fundamental deviation is the upper one; the others' is the lower one.
 _BELOW = "defgh"

@@ -1,4 +1,5 @@
-"""A part's stock: flat stock as sold, the allowance on each face and edge, and the section in its cut file.
+"""Materials that no field of a design names, and a part's stock: flat stock as sold,
+the allowance on each face and edge, and the section in its cut file.
 Lengths in mm.
 """
 
@@ -8,7 +9,7 @@ from dataclasses import dataclass, replace
 
 from tactcad.contour import rectangle
 from tactcad.design.materials import ALLOYS, family
-from tactcad.design.text_values import number, rows
+from tactcad.design.text_values import data_rows, number
 from tactcad.design.tree import CommonTables
 
 from .description import Extrusion, Material, Part, Pocket, section
@@ -60,7 +61,7 @@ EDGE = ((20.0, 2.0), (50.0, 3.0), (80.0, 5.0), (120.0, 7.0))
 FACE = {"ground": 0.2, "milled": 0.5, "wire-cut": 0.2, "etched": 0.0}
 # Spring strip is rolled to any thickness up to this, mm: picked by the part's own limits; chosen.
 STRIP, THICKEST_STRIP = "EN 10151", 1.0
-_SOLD = rows(__file__, "stock")
+_SOLD = data_rows(__file__, "stock")
 
 
 @dataclass(frozen=True)

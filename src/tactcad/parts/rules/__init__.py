@@ -28,8 +28,6 @@ FIRST = (
     "clamp_rules",
     "pressed_rules",
     "readout_rules",
-    "converter_rules",
-    "supply_rules",
     "cart_rules",
     "calibration_rules",
 )

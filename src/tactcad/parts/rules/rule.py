@@ -1,4 +1,6 @@
-"""A rule between fields, and helpers that word its findings."""
+"""A rule between fields, helpers that word its findings, and the field and value that stiffen a part that
+deflects too much.
+"""
 
 from __future__ import annotations
 
