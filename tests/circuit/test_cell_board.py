@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 from test_boards import checked, needs_kicad
 
+from tactcad.circuit import printed
 from tactcad.circuit.kicad_board import board_bytes
 from tactcad.export.board_files import nets_in_board
 from tactcad.families.planar import cell_board
@@ -139,3 +140,23 @@ def test_where_none_is_laid_out_a_flag_says_why(changes, words):
     layout = PlanarLayout(d)
     assert cell_board.made(layout) == () and not cell_board.supplies(layout) and not cell_board.tongue(layout)
     assert not list(check_board(design()))
+
+
+def test_words_on_the_board_stand_apart(board, monkeypatch):
+    """By the strokes of each: at least a line's width between the inks of two words; J1 was 0.05 mm from its
+    neighbours' letters."""
+    words, strokes = [], printed._lines
+
+    def kept(text, at, upright):
+        lines = list(strokes(text, at, upright))
+        x, y = zip(*(p for line in lines for p in line))
+        words.append((text, min(x), min(y), max(x), max(y)))
+        return lines
+
+    monkeypatch.setattr(printed, "_lines", kept)
+    list(printed.printed(board, "planar-array-board B"))
+    assert {"J1", "SCL1", "U36"} <= {word for word, *_ in words}
+    for i, (one, *a) in enumerate(words):
+        for other, *b in words[:i]:
+            apart = max(a[0] - b[2], b[0] - a[2], a[1] - b[3], b[1] - a[3]) - printed.INK
+            assert apart >= 0.15 - 1e-6, (one, other, apart)

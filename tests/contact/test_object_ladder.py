@@ -7,6 +7,7 @@ from math import pi
 import numpy as np
 import object_ladder
 import pytest
+import tilted_strip
 from skfem import Basis, ElementHex2, MeshHex
 from test_layer import hayes
 
@@ -100,6 +101,24 @@ def test_newtons_matrix_is_the_derivative_of_the_forces():
     u[::2][rings.basis.doflocs[0] < 1e-9] = v[::2][rings.basis.doflocs[0] < 1e-9] = 0.0
     change = (rings.forces(u + 1e-4 * v)[0] - rings.forces(u - 1e-4 * v)[0]) / 2e-4
     assert rings.forces(u)[1] @ v == pytest.approx(change, abs=1e-6 * np.abs(change).max())
+
+
+@pytest.mark.slow
+def test_a_strip_is_squeezed_by_the_closed_form_and_large_forgets_its_tilt():
+    """One axis stretched, the others held, as above; level strips are what large goes by, one whose edge
+    falls by half of its depth is pushed back up to 1 % harder."""
+    body = Body(1.0, 0.3, 1.0)
+    strip, s = tilted_strip.Strip(body), 0.8
+    u = np.zeros((strip.basis.N, 2))
+    u[:, 1] = (s - 1) * (strip.basis.doflocs[1] + 1.0)
+    top = strip.basis.doflocs[1] > -1e-9
+    pressed = strip.forces(u.ravel())[0].reshape(-1, 2)[top, 1].sum()
+    J = s ** (-2 / 3)
+    slope = strip.mu * J * (s - (2 + s * s) / 3 / s) + strip.kappa * (s - 1)
+    assert pressed == pytest.approx(slope * np.ptp(strip.basis.doflocs[0]), rel=1e-6)
+    assert tilted_strip.errors(body, 0.0)[1] == pytest.approx(0, abs=1e-9)
+    depth, off = tilted_strip.errors(body, 0.5)
+    assert (off < 0).all() and 0.004 < -np.interp(0.1, depth, off) < 0.01
 
 
 def test_large_strain_tends_to_the_layer_and_bears_the_load():

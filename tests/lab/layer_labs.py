@@ -4,6 +4,7 @@ pressure, the layer's part by an integral over waves, and a contact loop on sing
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import inf
 
 import numpy as np
 from scipy.interpolate import interp1d
@@ -130,6 +131,50 @@ class Array:
     lever: np.ndarray
     K: np.ndarray
     K_v: np.ndarray
+
+
+def least_half_width(of, h, E, K, K_v, read, height, slope, unread, thickness, load_known=False, runs=RUNS):
+    """1.96 standard errors of ln E of a lab that knows every other quantity's true variance: Cramer and Rao's
+    bound, all distributions taken as normal; derivatives are differences of sinks.
+
+    of(h)      the bench of a layer; h and its uniform half-width `thickness`, relative
+    height     uniform half-width of the pads' heights; `unread` of ln K of pads that are not read
+    """
+    load, n = LOAD[1:], len(K)
+    benches = {0.0: of(h)} | {e: of(h * (1 + e)) for e in (0.01, -0.01) if thickness}
+
+    def sinks(e=0.0, k=None, up=0.0, tilt=0.0, more=None, off=0.0):
+        k, more = (np.zeros(m) if v is None else v for v, m in ((k, n), (more, len(load))))
+        at = (
+            E * np.exp(e),
+            K * np.exp(k),
+            np.full(n, height) + up,
+            np.array(slope) + tilt,
+            load * np.exp(more),
+        )
+        return benches[off].sinks(*at)[read]
+
+    def slopes(name, size, step=1e-3):
+        each = np.eye(size) * step if size else [step]
+        return [(sinks(**{name: v}) - sinks(**{name: -v})) / 2 / step for v in each]
+
+    sink, signal = sinks(), K_v[read, None]
+    by_calibration = EACH / runs**0.5
+    own = np.eye(len(sink))[:, :, None]
+    columns = slopes("e", 0) + slopes("tilt", 2, 1e-5) + slopes("up", n, 1e-4) + slopes("k", n)
+    known = [inf] * 3 + [height * 3**-0.5] * n + list(np.where(read, by_calibration, unread * 3**-0.5))
+    columns += [*(own * sink), *(own / signal * np.ones_like(sink))]  # K_v, and offsets, read once before
+    known += [by_calibration] * len(sink) + [NOISE] * len(sink)
+    if thickness:
+        columns += slopes("off", 0, 0.01)
+        known.append(thickness * 3**-0.5)
+    if not load_known:
+        columns += slopes("more", len(load))
+        known += [inf] * len(load)
+    A = np.array([(signal * c).ravel() for c in columns]).T / NOISE
+    N = A.T @ A + np.diag(np.array(known) ** -2.0)
+    unit = np.diag(N) ** -0.5
+    return 1.96 * float(unit[0] * np.linalg.inv(N * unit * unit[:, None])[0, 0] ** 0.5)
 
 
 def calibration(array, K, K_v, rng, runs=RUNS, each=EACH):

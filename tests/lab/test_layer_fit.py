@@ -75,6 +75,27 @@ def test_intervals_hold_the_modulus_of_simulated_labs():
     assert np.median(half) < 0.1
 
 
+def least(h: float, E: float, angle: float, load_known: bool = False) -> float:
+    """Half-width of a lab that knows all true variances, on a coarse bench."""
+
+    def of(h: float) -> labs.Bench:
+        return labs.Bench(PADS.x, PADS.y, 2.0, 3.0, 1 / MOVE[:, 1], NU, h, 5, 6)
+
+    slope = np.tan(np.radians(angle * np.array([0.6, 0.8])))
+    thickness = 0.05 if h < inf else 0.0
+    height = DESIGN.tolerance.pad_height
+    return labs.least_half_width(of, h, E, K, K_V, READ, height, slope, 0.1, thickness, load_known)
+
+
+@pytest.mark.slow
+def test_half_widths_are_near_those_of_a_lab_that_knows_all_variances():
+    """On 6 mm and 0.3 MPa, inclined by 3 degrees: at most 1.3 times, even of one that trusts the loads, which
+    the fit does not; level on 10 mm even that lab does not keep 10 %."""
+    half = np.median(held(6.0, 0.3, 3.0, 4, 2, seed=5)[1])
+    assert 0.9 * least(6.0, 0.3, 3.0) < half < 1.3 * least(6.0, 0.3, 3.0, load_known=True)
+    assert 0.1 < least(10.0, 0.3, 0.0) < 0.11
+
+
 @pytest.mark.nightly
 @pytest.mark.parametrize("h", [3.0, 6.0, 10.0, inf])
 @pytest.mark.parametrize("E", [0.3, 1.0])
@@ -88,7 +109,7 @@ def test_coverage_of_every_cell(h, E, angle):
     )
     # labs on one press share its heights and thickness: a share is known to some 1.5 %
     assert 0.92 < right[:, 0].mean() < 0.99 and 0.92 < np.nanmean(right[:, 1:]) < 0.99
-    assert np.median(half) < 0.12
+    assert np.median(half) < min(0.12, 1.3 * least(h, E, angle))
 
 
 def test_a_fit_ends_where_the_truth_costs_no_less():

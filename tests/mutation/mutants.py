@@ -55,7 +55,7 @@ GATE = re.compile(
 NO_GATES = {
     "_own_folder",  # another export takes too long
     "replacing",  # somebody wrote to the zips meanwhile
-    "settle",  # somebody wrote to the earlier folder meanwhile
+    "publish",  # somebody wrote to the earlier folder meanwhile
     "changes_against",  # a golden file that cannot be read
     "written",  # the kernel says itself that it failed
     "side_by_side",  # a process was killed

@@ -5,10 +5,12 @@ from __future__ import annotations
 import re
 from html import unescape
 
+import numpy as np
 import pytest
 from variants import variant
 
 from tactcad.drawing import guide
+from tactcad.parts.designs import load
 from tactcad.scenes import make_scene
 
 
@@ -51,6 +53,14 @@ def test_latch_and_stop_are_there_before_they_are_used():
     assert text.index("set the latch under it") < text.index("screw it on the carriage")
     level, sample = order.index("Pads level with the lid"), order.index("Sample")
     assert order.index("Cart on the base plate") < level < sample < order.index("Weights")
+
+
+def test_levelling_is_measured():
+    """To a quarter of 0.1 degree over rows of 16 mm, 4 mm apart, and over a sample of 32 mm."""
+    text = sections(guide.page(load("macro-array"), make_scene(load("macro-array"), "grasping")).decode())
+    said = re.findall(r"within ([\d.]+) um", text["Pads level with the lid"][0])
+    sides = np.array([16.0, 4.0, 32.0])
+    assert [float(v) for v in said[:3]] == pytest.approx(1e3 * sides * np.tan(np.radians(0.025)), rel=0.03)
 
 
 def test_the_moving_weight_is_in_grams_too():

@@ -8,7 +8,7 @@ from pose_program import nearest_pose
 
 from tactcad.parts.rules import load
 from tactcad.scenes.requirement import DimensionLimits
-from tactcad.scenes.rig_requirements import AXLE_HEIGHT, BORES, SHANKS, WHEEL, loose_wheel
+from tactcad.scenes.rig_requirements import AXLE_HEIGHT, BORES, PARALLEL, SHANKS, WHEEL, loose_wheel
 from tactcad.stacks.mechanic import Assembled
 from tactcad.stacks.stack import stack
 from tactcad.stacks.variables import STACK_LENGTH, made
@@ -115,6 +115,22 @@ def test_wheels_by_hand(macro, lines):
     free = Assembled(macro.layout, {**none, BORES: np.zeros((1, 4)), SHANKS: np.full((1, 4), -0.1)})
     assert loose_wheel(free) == 0.0
     assert lines["wheels touch"].worst_high == pytest.approx(0.068, abs=1e-6)
+
+
+def test_parallelism_by_hand(macro, lines):
+    """Levelled to and sample within 0.025 degree each; plate 5 um of 32 mm, lid 20 of 48, rail's face 10 of
+    the carriage's 28.9. At the worst wheels are 68 um off and the cart rocks over 59 mm, wheel to wheel."""
+    line = lines[PARALLEL]
+    once = np.degrees([0.005 / 32, 0.020 / 48, 0.010 / 28.9])
+    assert line.requirement.upper == 0.1 and line.kept > 0.995
+    assert line.worst_high == pytest.approx(0.05 + once.sum() + np.degrees(0.068 / 59), rel=1e-6)
+    # two standard deviations of normal parts are at the limits, cut there; a sum's absolute value
+    spread = 0.87963 * 0.5 * np.hypot(0.025 * 2**0.5, np.linalg.norm(once))
+    assert line.sigma == pytest.approx(spread * (1 - 2 / np.pi) ** 0.5, rel=0.1)
+    made_ = {n: np.zeros((1, v.pieces)) for n, v in macro.variables.items()}
+    made_["sample: parallel faces, degrees"] = np.array([[0.01, -0.03]])
+    value = line.requirement.value(Assembled(macro.layout, made_))
+    assert value == pytest.approx(np.array([[0.01, 0.03]]))
 
 
 def test_wheels_by_another_way(macro):

@@ -13,6 +13,7 @@ from .letters import strokes, width
 INK = 0.15  # mm wide; board houses print from 0.12 to 0.15 on
 HIGH = 0.8  # mm; board houses print letters from 0.8 on
 AROUND = 0.07  # mm from pads and drills: the mask's opening is 0.05 larger
+APART = INK  # mm between letters of two texts, at least; chosen: below, they read as one
 CHANNEL_PINS = {"RED": "R", "PLUS": "W", "FOOT": "B"}
 SHORT = {"ENABLE": "EN"}
 MARKED = ("amplifier", "multiplexer", "converter", "decoder", "regulator", "supply", "diode", "sensor")
@@ -33,7 +34,7 @@ def printed(board: BoardCopper, name: str) -> Iterator[tuple[Point, Point]]:
         *_pins(board),
         (name, board.label or (board.width / 4, board.height - 8.0), False),
     ):
-        taken.append(_box(text, at, upright))
+        taken.append(_box(text, at, upright, APART))
         yield from _lines(text, at, upright)
     for placed in board.placed:
         text = placed.component.designator
@@ -41,7 +42,7 @@ def printed(board: BoardCopper, name: str) -> Iterator[tuple[Point, Point]]:
         if (found := next(free, None)) is None:
             raise CheckFailure(f"circuit board: no place to print {text}")
         at, upright = found
-        taken.append(_box(text, at, upright))
+        taken.append(_box(text, at, upright, APART))
         yield from _lines(text, at, upright)
 
 
@@ -65,9 +66,9 @@ def _around(at: Point, w: float, h: float, more: float = AROUND) -> Box:
     return at[0] - w, at[1] - h, at[0] + w, at[1] + h
 
 
-def _box(text: str, at: Point, upright: bool) -> Box:
+def _box(text: str, at: Point, upright: bool, more: float = 0.0) -> Box:
     w, h = width(text, HIGH) + INK, HIGH + INK
-    return _around(at, h, w, 0.0) if upright else _around(at, w, h, 0.0)
+    return _around(at, h, w, more) if upright else _around(at, w, h, more)
 
 
 def _meets(box: Box, others: list[Box]) -> bool:

@@ -61,7 +61,9 @@ def run(args: argparse.Namespace) -> int:
     tables = parse_toml(read_text(args.target, MOST_BYTES, "a target file (TOML)"), args.target)
     for family in all_families().values():
         if family.targets and family.name in tables:
-            return int(family.targets(args))
+            status = int(family.targets.design(args, asked, lambda: _next(args.out)))
+            _say_overrun(asked, time.perf_counter() - started)
+            return status
     target = read_target(args.target)
     report.refuse_unwritable(args.out)
     picked = pick(yield_grades(), Allowance(asked.within), YIELD) if asked.within else None
@@ -81,7 +83,7 @@ def run(args: argparse.Namespace) -> int:
             r = report.record(got)
             print(report.answer(r))
             for bound in r["bounds"]:
-                print(f"  {_bound(bound)}")
+                print(f"  {report.bound_line(bound)}")
             for field, by in r["room"].items() if got.met else ():
                 print(f"  {field}: {by}")
             if is_written(got):
@@ -109,9 +111,13 @@ def run(args: argparse.Namespace) -> int:
             print(f"{args.out}: written\nnext: {_next(args.out)}")
         elif args.best:
             print(f"{args.out}: not written: no candidate keeps every limit and rule, so none is the best")
+    _say_overrun(asked, took)
+    return 0 if got.met else 1
+
+
+def _say_overrun(asked: Allowance, took: float) -> None:
     if asked.seconds and took > LATE * asked.seconds:
         print(f"tactcad: took {took:.3g} s, not {asked.seconds:g} s: {OVERRUN}", file=sys.stderr)
-    return 0 if got.met else 1
 
 
 def _next(out: str) -> str:
@@ -125,26 +131,14 @@ def _next(out: str) -> str:
     )
 
 
-def _bound(b: dict) -> str:
-    from tactcad.synthesis.target_report import beyond
-
-    return (
-        f"bound: {b['field']} {_text(b['value'])} ({b['whose']}); one step beyond, {_text(b['beyond'])}: "
-        f"half-width {beyond(b)}"
-    )
-
-
 def _print(got: Synthesis, r: dict) -> None:
-    from tactcad.synthesis.target_report import no_other_change
+    from tactcad.synthesis.target_report import limit_line, no_other_change, said
 
     for limit in r["binding"][:5]:
-        print(
-            f"  {limit['field']}: {_text(limit['value'])} eased to {_text(limit['eased'])}: half-width "
-            f"{100 * limit['half_width']:.3g} % ({-100 * limit['gain']:.2g} %)"
-        )
+        print(f"  {limit_line(limit)}")
     for change in r["changes"]:
         print(
-            f"  possible with {change['field']} {_text(change['needed'])} instead of {_text(change['value'])}"
+            f"  possible with {change['field']} {said(change['needed'])} instead of {said(change['value'])}"
         )
     if not got.met:
         print(f"  {no_other_change(got)}")
@@ -152,9 +146,3 @@ def _print(got: Synthesis, r: dict) -> None:
         print(f"  left out of the report for time: {', '.join(r['left_out'])}")
     for note in r["notes"]:
         print(f"  note: {note}")
-
-
-def _text(value: object) -> str:
-    if isinstance(value, (list, tuple)):
-        return "[" + ", ".join(map(_text, value)) + "]"
-    return f"{value:.4g}" if isinstance(value, float) else str(value)

@@ -146,6 +146,18 @@ class FamilyRobot:
 
 
 @dataclass(frozen=True)
+class FamilyTargets:
+    """Target files of the family's own: those with a table of its name.
+
+    design  `tactcad design`: (arguments, time allowed, what to do next as text) to the exit status
+    tables  () to the class of every table of a target file by name, all of which it must have
+    """
+
+    design: Late
+    tables: Late
+
+
+@dataclass(frozen=True)
 class Family:
     """A kind of sensor.
 
@@ -169,8 +181,7 @@ class Family:
                and sweeps measure no rung
     checks     name of the folder or module that declares its checks, besides those of all families
     robot      its motion, for robots' simulators; None: unknown
-    targets    `tactcad design` of a target file with a table of the family's name: (arguments) to the exit
-               status; None: there are none
+    targets    its own target files; None: there are none
     """
 
     name: str
@@ -189,7 +200,7 @@ class Family:
     variables: Late | None
     checks: str
     robot: FamilyRobot | None = None
-    targets: Late | None = None
+    targets: FamilyTargets | None = None
     boards: FamilyBoards | None = None
 
     def __post_init__(self) -> None:

@@ -1,11 +1,11 @@
-"""Requirements on the rigs: four wheels on a plane, the roller in its seat; and for bonding gauges: place on
-the hinge, leaf on its backing, pins."""
+"""Requirements on the rigs: four wheels on a plane, array and sample parallel, the roller in its seat; and
+for bonding gauges: place on the hinge, leaf on its backing, pins."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from math import inf
+from math import degrees, inf
 from typing import TYPE_CHECKING
 
 from tactcad.design.fields import present
@@ -25,13 +25,12 @@ from tactcad.parts.rigs.bonding_fixture import (
     bonding_rigs,
     kind_suffix,
 )
-from tactcad.parts.rigs.cart import AXLES, AXLES_OVER, LOOSE_WHEEL, cart_layout
+from tactcad.parts.rigs.cart import AXLES, AXLES_OVER, LID_FLAT, LOOSE_WHEEL, cart_layout
 from tactcad.parts.rigs.force_gauge import SEAT, SEAT_RADIUS, seat_radius
+from tactcad.parts.rigs.frame import CARRIAGE_LENGTH
+from tactcad.parts.rigs.linear_guide import RAIL_FLAT, guide_layout
 
 from .requirement import LEAST_PRESS, SHEET, Built, DimensionLimits, Requirement, of_element, summed, variable
-
-if TYPE_CHECKING:
-    from tactcad.mechanics.section import Array
 
 if TYPE_CHECKING:
     from tactcad.mechanics.section import Array
@@ -77,6 +76,56 @@ def loose_wheel(a: Built) -> Array:
     play = np.maximum(a.made[BORES] - a.made[SHANKS], 0.0)
     off = np.abs(heights @ np.array(AROUND)) - play.sum(axis=1) / 2
     return np.maximum(off, 0.0)[:, np.newaxis]
+
+
+# Of tolerance.tilt: what the guide levels to by the elements' signals, and what the sample's faces may be
+# off. Chosen: the other limits take the rest.
+LEVELLED = SAMPLE = 0.25
+LEVELLING_PLATE = 0.005  # mm, parallelism of the plate in the sample's place; chosen: ground stock has it
+
+
+def parallel(layout: Layout, known: dict[str, DimensionLimits]) -> Requirement:
+    """Requirement of grasping: array parallel to the sample, along x and along y. Foot, bar, post, cart and
+    the array's own tilt are levelled out; what comes after adds up: other faces on the lid, a cart that rocks
+    to its loose wheel, the carriage on its rail. Adds the variables, apart, to `known`.
+
+    A face within its flatness over a length is taken as a plane that leans by as much; a bow, the usual form,
+    leans less.
+    """
+    import numpy as np
+
+    design = layout.design
+    rig = present(guide_layout(design))
+    cart, tilt, name = rig.cart, design.tolerance.tilt, design.name
+    own = {
+        "grasping: levelled by signals, degrees": (LEVELLED * tilt, ()),
+        "sample: parallel faces, degrees": (SAMPLE * tilt, ()),
+        "levelling plate: parallel faces, degrees": (_lean(LEVELLING_PLATE, cart.sample.side), ()),
+        "holder's lid: flatness, degrees": (
+            _lean(LID_FLAT, cart.holder_side),
+            ((f"{name}-holder-lid", "flatness"),),
+        ),
+        "riser: flatness under the rail, degrees": (
+            _lean(RAIL_FLAT, CARRIAGE_LENGTH),
+            ((f"{name}-riser", "flatness"),),
+        ),
+    }
+    for each, (half, of) in own.items():
+        known[each] = replace(variable(each, -half, half, 2, of), apart=True)
+    bases = np.array([cart.cart.wheel_base, 2 * cart.wheel_y])
+
+    def value(a: Built) -> Array:
+        return np.abs(sum(a.made[each] for each in own)) + np.degrees(loose_wheel(a) / bases)
+
+    return Requirement(PARALLEL, "degree", -inf, tilt, value, fields=("tolerance.tilt",))
+
+
+PARALLEL = "array parallel to the sample"
+
+
+def _lean(flat: float, length: float) -> float:
+    """Angle, degrees, of a face that is off by `flat` over a length, mm."""
+    return degrees(flat / length)
 
 
 def roller(layout: Layout, known: dict[str, DimensionLimits]) -> list[Requirement]:

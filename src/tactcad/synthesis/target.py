@@ -6,6 +6,7 @@ Lengths in mm, forces in N, stiffnesses in N/mm, stresses in MPa.
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from math import ceil, floor, inf
 from pathlib import Path
@@ -13,7 +14,7 @@ from typing import Any
 
 from tactcad.contact.elastic_body import Body
 from tactcad.contact.press import THINNEST, pad_stiffness
-from tactcad.design.family import family_of, taken_as
+from tactcad.design.family import all_families, family_of, taken_as
 from tactcad.design.fields import Number, Numbers, OneOf, SomeOf, TextLine, Whole, given, shown_text
 from tactcad.design.files import read_text
 from tactcad.design.load import DEFAULT_DESIGN, MOST_BYTES, read, read_table, unknown_field
@@ -257,21 +258,35 @@ REQUIRED = ("target", "object", "grasp")
 
 
 def target_schema() -> dict[str, Any]:
-    """JSON Schema (2020-12) of the target file."""
-    tables = {name: table_schema(kind) for name, kind in TABLES.items()} | {"origin": {"type": "object"}}
-    return {
+    """JSON Schema (2020-12) of the target file, of this family or, if it has such a table, of another."""
+    schema = {
         "$schema": "https://json-schema.org/draft/2020-12/schema",
         "title": "tactcad target file",
         "type": "object",
-        "properties": tables,
-        "required": list(REQUIRED),
-        "additionalProperties": False,
     }
+    own = _file_schema(TABLES, REQUIRED)
+    for name, tables in _of_others().items():
+        other = _file_schema(tables, tuple(tables))
+        own = {"if": {"required": [name]}, "then": other, "else": own}
+    return schema | own
+
+
+def _file_schema(tables: Mapping[str, type], required: Sequence[str]) -> dict[str, Any]:
+    known = {name: table_schema(kind) for name, kind in tables.items()} | {"origin": {"type": "object"}}
+    return {"properties": known, "required": list(required), "additionalProperties": False}
+
+
+def _of_others() -> dict[str, Mapping[str, type]]:
+    """Tables of the target files of families that have their own, by the family's name."""
+    return {f.name: f.targets.tables() for f in all_families().values() if f.targets}
 
 
 def target_text() -> str:
     """Every table of a target file with its fields: name, default, legal values, meaning."""
     lines = [line for name, kind in TABLES.items() for line in table_text(name, kind, name not in REQUIRED)]
+    for name, tables in _of_others().items():
+        lines += [f"A target file with [{name}] has these tables instead:", ""]
+        lines += [line for own, kind in tables.items() for line in table_text(own, kind, False)]
     return "\n".join([*lines, '[origin] holds the source of any value, as "grasp.force" = "measured: ..."'])
 
 
@@ -309,7 +324,7 @@ def parse_target(text: str, where: str, folder: Path = Path()) -> Target:
         stock.powers or (base.readout.power,),
     )
     written = frozenset(f"{name}.{field}" for name in TABLES for field in table.get(name, {}))
-    target = Target(**values, base=base, origin=_origins(table.get("origin", {}), values), written=written)
+    target = Target(**values, base=base, origin=origins_of(table.get("origin", {}), values), written=written)
     _refuse_contradictions(target)
     return target
 
@@ -325,7 +340,8 @@ def _base(name: str, folder: Path) -> Design:
         raise InputError("target.base", str(error), value=name) from error
 
 
-def _origins(table: dict[str, Any], values: dict[str, Any]) -> dict[str, str]:
+def origins_of(table: dict[str, Any], values: dict[str, Any]) -> dict[str, str]:
+    """[origin] of a target file. Raises InputError for a path that its tables do not have."""
     known = [f"{name}.{f.name}" for name, value in values.items() for f in dataclasses.fields(value)]
     for path, text in table.items():
         if path not in known:

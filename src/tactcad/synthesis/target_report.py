@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import asdict
 from html import escape
 from pathlib import Path
@@ -252,7 +252,7 @@ def report_page(got: Synthesis) -> bytes:
     """The page (HTML, UTF-8), pictures inside."""
     r = record(got)
     title = f"{got.target.target.name}: a sensor from a target"
-    parts = [f"<h1>{escape(title)}</h1>", _answer(got, r), _bounds_part(r)]
+    parts = [f"<h1>{escape(title)}</h1>", _answer(got, r), bounds_part(r)]
     if got.found.accepted:
         parts.append(_size_part(got, r))
         parts += [
@@ -266,6 +266,11 @@ def report_page(got: Synthesis) -> bytes:
         parts += [_elements_part(r)]
     if r["left_out"]:
         parts.append(f"<p>Left out for time: {escape(', '.join(r['left_out']))}.</p>")
+    return page(title, parts)
+
+
+def page(title: str, parts: Sequence[str]) -> bytes:
+    """An offline page (HTML, UTF-8) of these parts."""
     body = "\n".join(parts)
     return (
         f'<!doctype html>\n<html lang="en"><head><meta charset="utf-8"><title>{escape(title)}</title>'
@@ -278,25 +283,49 @@ def _answer(got: Synthesis, r: dict[str, Any]) -> str:
     text += "".join(f"<p>Note: {escape(note)}.</p>" for note in r["notes"])
     if got.met:
         return text
-    rows = [(c["field"], _value(c["value"]), _value(c["needed"])) for c in r["changes"]]
+    rows = [(c["field"], value(c["value"]), value(c["needed"])) for c in r["changes"]]
     if rows:
         text += "<p>Each of these changes alone makes it possible:</p>"
-        text += _table(("field", "asked", "needed"), rows)
+        text += table(("field", "asked", "needed"), rows)
     return text + f"<p>{escape(no_other_change(got).capitalize())}.</p>"
 
 
-def _bounds_part(r: dict[str, Any]) -> str:
+def bounds_part(r: dict[str, Any]) -> str:
+    """The bounds that the answer lies on."""
     if not r["bounds"]:
         return ""
-    rows = [(b["field"], _value(b["value"]), b["whose"], _value(b["beyond"]), beyond(b)) for b in r["bounds"]]
+    rows = [(b["field"], value(b["value"]), b["whose"], value(b["beyond"]), beyond(b)) for b in r["bounds"]]
     heads = ("field", "value", "whose", "one step beyond", "half-width there")
-    text = "<h2>Bounds that the answer lies on</h2>" + _table(heads, rows)
+    text = "<h2>Bounds that the answer lies on</h2>" + table(heads, rows)
     return text + "".join(f"<p>{escape(field)}: {escape(by)}.</p>" for field, by in r["room"].items())
 
 
 def beyond(b: dict[str, Any]) -> str:
     """The half-width one step beyond a bound."""
     return "no design there" if b["half_width"] is None else percent(b["half_width"])
+
+
+def bound_line(b: dict[str, Any]) -> str:
+    """A bound in one line, for the terminal."""
+    return (
+        f"bound: {b['field']} {said(b['value'])} ({b['whose']}); one step beyond, {said(b['beyond'])}: "
+        f"half-width {beyond(b)}"
+    )
+
+
+def limit_line(limit: dict[str, Any]) -> str:
+    """A field that limits the answer in one line, for the terminal."""
+    return (
+        f"{limit['field']}: {said(limit['value'])} eased to {said(limit['eased'])}: half-width "
+        f"{100 * limit['half_width']:.3g} % ({-100 * limit['gain']:.2g} %)"
+    )
+
+
+def said(of: object) -> str:
+    """A field's value as the terminal has it."""
+    if isinstance(of, (list, tuple)):
+        return "[" + ", ".join(map(said, of)) + "]"
+    return f"{of:.4g}" if isinstance(of, float) else str(of)
 
 
 def _size_part(got: Synthesis, r: dict[str, Any]) -> str:
@@ -326,27 +355,33 @@ def _size_part(got: Synthesis, r: dict[str, Any]) -> str:
     )
 
 
-def _value(value: Any) -> str:
-    if value is None:
+def value(of: Any) -> str:
+    """A field's value as the page has it."""
+    if of is None:
         return ""
-    if isinstance(value, (list, tuple)):
-        return ", ".join(f"{v:.4g}" for v in value)
-    return f"{value:.4g}" if isinstance(value, float) else str(value)
+    if isinstance(of, (list, tuple)):
+        return ", ".join(f"{v:.4g}" for v in of)
+    return f"{of:.4g}" if isinstance(of, float) else str(of)
 
 
-def _table(heads: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
+def table(heads: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
+    """A table of the page."""
     head = "".join(f"<th>{escape(h)}</th>" for h in heads)
     body = "".join("<tr>" + "".join(f"<td>{escape(c)}</td>" for c in row) + "</tr>" for row in rows)
     return f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
 
 
 def _interval_part(got: Synthesis, r: dict[str, Any]) -> str:
-    x = np.array([p["object"] for p in r["object_interval"]])
-    low = np.array([p["low"] for p in r["object_interval"]])
-    high = np.array([p["high"] for p in r["object_interval"]])
+    picture = interval_picture(r, "all elements")
+    return f"<h2>How surely it feels</h2>{picture}<p>{_pressed_how(r)} {_read_from(r)}</p>"
+
+
+def interval_picture(r: dict[str, Any], of: str) -> str:
+    """The interval over the object's stiffness, of all elements and of pairs (SVG)."""
+    x, low, high = (np.array([p[key] for p in r["object_interval"]]) for key in ("object", "low", "high"))
     with panels(1, 1, (9.0, 4.2)) as (figure, ax):
         ax.fill_between(x, 100 * (low / x - 1), 100 * (high / x - 1), color=SKY, alpha=0.45, lw=0)
-        ax.plot(x, 100 * (high - low) / 2 / x, color=BLUE, lw=2, label="half-width, all elements")
+        ax.plot(x, 100 * (high - low) / 2 / x, color=BLUE, lw=2, label=f"half-width, {of}")
         for i, pair in enumerate(r["pairs"]):
             ax.plot(
                 x,
@@ -355,12 +390,12 @@ def _interval_part(got: Synthesis, r: dict[str, Any]) -> str:
                 ls=("--", ":", "-.")[i % 3],
                 label=f"one pair, elements {pair['measuring']} and {pair['reference']}",
             )
-        ax.axhline(100 * r["wanted_half_width"], color=GREY, lw=1, label="half-width to keep")
+        if r["wanted_half_width"] is not None:
+            ax.axhline(100 * r["wanted_half_width"], color=GREY, lw=1, label="half-width to keep")
         ax.set(xscale="log", xlabel="object's stiffness, N/mm", ylabel="95 % interval, % of K_obj")
         log_ticks(ax.xaxis, _ticks(float(x[0]), float(x[-1])))
         ax.legend()
-        picture = svg(figure, "interval")
-    return f"<h2>How surely it feels</h2>{picture}<p>{_pressed_how(r)} {_read_from(r)}</p>"
+        return svg(figure, "interval")
 
 
 def _pressed_how(r: dict[str, Any]) -> str:
@@ -398,29 +433,14 @@ def _yield_part(r: dict[str, Any]) -> str:
         f"strength, keep their stops open "
         f"and give an interval within {percent(r['wanted_half_width'])} everywhere on the range.</p>"
     )
-    return text + (_table(("lacking", "arrays"), rows) if rows else "")
+    return text + (table(("lacking", "arrays"), rows) if rows else "")
 
 
 def _limits_part(r: dict[str, Any]) -> str:
     if not r["binding"] and not r["shares"]:
         return ""
     text = "<h2>What limits it</h2>"
-    if r["binding"]:
-        best = r["binding"][0]
-        rows = [
-            (
-                b["field"],
-                f"{_value(b['value'])} to {_value(b['eased'])}",
-                percent(b["half_width"]),
-                f"-{percent(b['gain'])}",
-            )
-            for b in r["binding"][:LISTED]
-        ]
-        text += (
-            f"<p>The one change that helps most: <code>{escape(best['field'])}</code>. Each field "
-            f"eased by one step, the rest "
-            "searched anew:</p>" + _table(("field", "eased", "half-width", "change"), rows)
-        )
+    text += binding_part(r)
     if not r["shares"]:
         return text
     shown = [s for s in r["shares"] if s["total"] > 0][:LISTED]
@@ -437,10 +457,31 @@ def _limits_part(r: dict[str, Any]) -> str:
         ax.legend(loc="lower right")
         text += svg(figure, "shares")
     rows = [tuple([s["cause"], *(_whole_percent(s, key) for key in ("first", "total"))]) for s in shown]
-    text += _table(("cause", "alone", "with interactions"), rows)
+    text += table(("cause", "alone", "with interactions"), rows)
     none = [s["cause"] for s in r["shares"] if s["total"] <= 0]
     below = f" Below 0.05 %: {escape('; '.join(none))}." if none else ""
     return text + f"<p><small>\u00b1: standard error of the sampling.{below}</small></p>"
+
+
+def binding_part(r: dict[str, Any]) -> str:
+    """What limits the answer besides its bounds."""
+    if not r["binding"]:
+        return ""
+    best = r["binding"][0]
+    rows = [
+        (
+            b["field"],
+            f"{value(b['value'])} to {value(b['eased'])}",
+            percent(b["half_width"]),
+            f"-{percent(b['gain'])}",
+        )
+        for b in r["binding"][:LISTED]
+    ]
+    return (
+        f"<p>The one change that helps most: <code>{escape(best['field'])}</code>. Each field "
+        f"eased by one step, the rest "
+        "searched anew:</p>" + table(("field", "eased", "half-width", "change"), rows)
+    )
 
 
 def _whole_percent(share: dict[str, Any], key: str) -> str:
@@ -493,12 +534,12 @@ def _front_part(r: dict[str, Any]) -> str:
             str(f["elements"]),
             f"{f['carrier_area_mm2'] / 100:.1f}",
             f"{f['hinge_tolerance_mm']:g}",
-            _value(f["stiffness_N_per_mm"]),
+            value(f["stiffness_N_per_mm"]),
         )
         for f in front
     ]
     heads = ("design", "half-width", "elements", "carrier, cm2", "hinge +-, mm", "K of its kinds, N/mm")
-    return f"<h2>Alternatives</h2>{picture}{_table(heads, rows)}"
+    return f"<h2>Alternatives</h2>{picture}{table(heads, rows)}"
 
 
 def _elements_part(r: dict[str, Any]) -> str:
@@ -517,7 +558,7 @@ def _elements_part(r: dict[str, Any]) -> str:
     ]
     by_solid = ["by solid elements"] if solid else []
     heads = ("element", "row", "arm, mm", "hinge, mm", "K, N/mm", *by_solid, "largest force, N")
-    return "<h2>Elements</h2>" + _table(heads, rows)
+    return "<h2>Elements</h2>" + table(heads, rows)
 
 
 def percent(share: float) -> str:
@@ -601,16 +642,21 @@ def refuse_unwritable(out: str | Path) -> None:
 
 
 def write(got: Synthesis, out: str | Path) -> None:
-    """design.toml, report.json and report.html: the whole folder in one step, or nothing.
+    """design.toml, report.json and report.html, as `write_folder`."""
+    heading = f"{got.target.target.name}: by `tactcad design`.\n{answer(record(got))}"
+    write_folder(out, lambda: {"design.toml": design_text(got.design, heading).encode(), **_report(got)})
+
+
+def write_folder(out: str | Path, make: Callable[[], dict[str, bytes]]) -> None:
+    """The files that `make` gives, by name: the whole folder in one step, or nothing.
 
     Raises InputError if `out` is taken or cannot be written to, CheckFailure if there is no room.
     """
     folder = absolute(out)
     refuse_taken(out)
     make_folder(folder.parent)
-    heading = f"{got.target.target.name}: by `tactcad design`.\n{answer(record(got))}"
     try:
-        files = {"design.toml": design_text(got.design, heading).encode(), **_report(got)}
+        files = make()
         with staged_folder(folder.parent, folder.name) as own:
             making = own / MAKING
             making.mkdir()

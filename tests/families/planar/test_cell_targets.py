@@ -4,7 +4,7 @@ what is answered and refused."""
 from __future__ import annotations
 
 import json
-from dataclasses import asdict, replace
+from dataclasses import asdict, fields, replace
 from functools import cache
 from pathlib import Path
 
@@ -12,7 +12,8 @@ import numpy as np
 import pytest
 
 from tactcad.cli.main import main
-from tactcad.families.planar import cell_targets
+from tactcad.families.planar import cell_answers, cell_targets
+from tactcad.families.planar.cell_board import why_none
 from tactcad.families.planar.cell_layout import PlanarLayout
 from tactcad.families.planar.cell_targets import (
     CellChoice,
@@ -33,7 +34,7 @@ TEXT = TARGET.read_text("utf-8").replace("foils = [0.04, 0.05]", "foils = [0.04]
 @pytest.fixture(autouse=True)
 def few(monkeypatch):
     """Arrays enough to see that nearly all keep the half-width."""
-    monkeypatch.setattr(cell_targets, "ARRAYS", 30)
+    monkeypatch.setattr(cell_answers, "ARRAYS", 30)
 
 
 @pytest.fixture(scope="module")
@@ -87,6 +88,10 @@ def test_the_answer_is_a_design_that_loads_and_reads_as_said(file, tmp_path, cap
     assert said["met"] is True and said["yield"] >= 0.95 and said["yield_interval"][0] < said["yield"]
     assert sum(s["share"] for s in said["shares"]) == pytest.approx(1.0)
     assert [b["field"] for b in said["binding"]][0] == "planar.matrices"
+    assert said["base"] == {"name": "jaw-array", "half_width": pytest.approx(0.0431, abs=5e-4), "breaks": []}
+    page = (tmp_path / "jaw" / "report.html").read_text("utf-8")
+    assert "planar.pitch[1]" in page and page.count("<svg") == 2
+    assert said["notes"] == [f"no circuit board is laid out for it: {why_none(layout)}"]
     x, y = layout.half
     assert 2 * x <= 28.0 + 1e-9 and 2 * y <= 10.0 + 1e-9 and len(layout.elements) == 12
 
@@ -110,8 +115,9 @@ def test_no_design_drawn_by_chance_near_it_is_better(file):
 
 def test_a_target_that_cannot_be_met_writes_nothing_but_on_demand(file, tmp_path, capsys, monkeypatch):
     known = answer(file)
-    monkeypatch.setattr(cell_targets, "search", lambda t: replace(known, target=t))
-    monkeypatch.setattr(cell_targets, "binding", lambda *_: [])
+    monkeypatch.setattr(cell_answers, "search", lambda t, _: replace(known, target=t))
+    for part in ("binding", "bounds"):
+        monkeypatch.setattr(cell_answers, part, lambda *_: [])
     path = tmp_path / "hard.toml"
     path.write_text(TEXT.replace("half_width = 5.0", "half_width = 0.5"))
     assert main(["design", str(path), "--out", str(tmp_path / "out")]) == 1
@@ -119,6 +125,76 @@ def test_a_target_that_cannot_be_met_writes_nothing_but_on_demand(file, tmp_path
     assert not (tmp_path / "out").exists()
     assert main(["design", str(path), "--out", str(tmp_path / "out"), "--best"]) == 1
     assert (tmp_path / "out" / "design.toml").exists()
+
+
+def test_bounds_say_whose_they_are_and_what_lies_beyond(file):
+    """Beyond the rule, the choice is refused and would read better; a written end of the pitch is moved."""
+    known = answer(file)
+    t, best = known.target, known.best
+    found = {b.field: b for b in cell_answers.bounds(t, best)}
+    whose = {name: b.whose for name, b in found.items()}
+    assert whose["planar.pitch[1]"] == whose["planar.force"] == "written"
+    assert whose["rating.yield_factor"] == "base design"
+    assert found["planar.pitch[1]"].value == 4.0 and found["planar.pitch[1]"].beyond == pytest.approx(4.4)
+    by_rule = next(b for b in found.values() if b.whose.startswith("rule "))
+    refused = {v: k for k, v in cell_answers.FIELDS.items()}[by_rule.field]
+    step = evaluated(t, replace(best.choice, **{refused: by_rule.beyond}))
+    assert not isinstance(step, CellFound) and by_rule.whose == f"rule {step[0].check} refuses the step"
+    assert by_rule.half_width < best.half_width
+
+
+def test_a_base_that_misses_says_by_what(file):
+    t = read_target(file)
+    t = replace(t, planar=replace(t.planar, length=20.0, cells=40, foils=(0.05,)))
+    assert [line.partition(":")[0] for line in cell_answers.of_base(t)["breaks"]] == [
+        "planar.length",
+        "planar.cells",
+        "planar.foils",
+    ]
+
+
+def test_a_short_time_is_kept_or_its_overrun_said(file, tmp_path, capsys):
+    assert main(["design", str(file), "--out", str(tmp_path / "out"), "--in", "0.01"]) == 0
+    said = capsys.readouterr()
+    assert "left out for time: a longer search, bounds and limits" in said.out
+    assert "not 0.01 s: one search, the yield" in said.err and (tmp_path / "out" / "report.html").exists()
+
+
+def test_without_a_half_width_asked_the_best_counts_as_met(file, tmp_path, capsys, monkeypatch):
+    known = answer(file)
+    monkeypatch.setattr(cell_answers, "search", lambda t, _: replace(known, target=t))
+    for part in ("binding", "bounds"):
+        monkeypatch.setattr(cell_answers, part, lambda *_: [])
+    path = tmp_path / "best.toml"
+    path.write_text(TEXT.replace("half_width = 5.0", ""))
+    assert main(["design", str(path), "--out", str(tmp_path / "out"), "--json"]) == 0
+    said = json.loads(capsys.readouterr().out)
+    assert said["met"] is None and said["yield"] >= 0.95
+    assert said["half_width"] <= said["wanted_half_width"] < 1.5 * said["half_width"]
+
+
+def test_a_board_takes_more_buses_where_its_layout_needs_them():
+    """From the three that the addresses of 36 chips want on, the first number that has a board."""
+    d = load("planar-array")
+    assert why_none(PlanarLayout(d)) == ""
+    few = replace(d, hall=replace(d.hall, buses=3))
+    found = cell_targets.with_buses(few)
+    assert why_none(PlanarLayout(found)) == "" and found.hall.buses >= 3
+    assert found.hall.buses == next(
+        n for n in range(3, 9) if not why_none(PlanarLayout(replace(d, hall=replace(d.hall, buses=n))))
+    )
+
+
+def test_the_schema_has_every_field_of_a_planar_target(capsys):
+    assert main(["schema", "target"]) == 0
+    text = capsys.readouterr().out.split("A target file with [planar]")[1]
+    assert main(["schema", "target", "--json"]) == 0
+    schema = json.loads(capsys.readouterr().out)
+    assert schema["if"] == {"required": ["planar"]}
+    for name, kind in cell_targets.TABLES.items():
+        wanted = {f.name for f in fields(kind)}
+        assert set(schema["then"]["properties"][name]["properties"]) == wanted
+        assert all(f"\n  {field} " in text.split(f"[{name}]")[1] for field in wanted)
 
 
 @pytest.mark.parametrize(

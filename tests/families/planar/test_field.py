@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tactcad.families.planar.field import Magnet, felt, field, on_axis, sensitivity
+from tactcad.families.planar.field import MU0, Magnet, felt, field, on_axis, pull, sensitivity
 
 DISC = Magnet(0.75, 1.0, 1.2)
 
@@ -49,3 +49,21 @@ def test_a_turn_of_magnet_and_chip_together_turns_the_field():
     a = 1e-6
     b = felt(DISC, 1.5, 1.04, np.array([0, -(2.54) * a, 0, a, 0, 0]))
     assert b[1] / a == pytest.approx(-on_axis(DISC, 1.5), rel=1e-4)
+
+
+def test_magnets_pull_each_other():
+    """Far ones as dipoles, 3 mu0 m^2/(4 pi d^4); near ones as the flux of Maxwell's stress through the plane
+    between them, of both fields, pulls: equal ones side by side repel, and their mirror plane carries B along
+    itself only, so that F is the integral of B^2/(2 mu0)."""
+    moment = 1.2 / MU0 * np.pi * 0.75**2 * 1e-9
+    for d in (30.0, 60.0):
+        assert pull(DISC, (d, 0.0)) == pytest.approx(3e-7 * moment**2 / (1e-3 * d) ** 4, rel=5e-3)
+    assert pull(DISC, (4.0, 3.0)) == pytest.approx(pull(DISC, (0.0, 5.0)), rel=1e-6)
+    side = np.sinh(np.linspace(-4.0, 4.0, 161))  # of the plane x = d/2, mm
+    y, z = np.meshgrid(side, side + 0.5, indexing="ij")
+    weight = np.gradient(side)
+    one = field(DISC, np.stack([np.full_like(y, 1.5), y, z], axis=-1))
+    other = field(DISC, np.stack([np.full_like(y, -1.5), y, z], axis=-1))
+    b = 1e-3 * (one + other)
+    stress = (b[..., 1] ** 2 + b[..., 2] ** 2 - b[..., 0] ** 2) / (2.0 * MU0)
+    assert pull(DISC, (3.0, 0.0)) == pytest.approx(1e-6 * weight @ stress @ weight, rel=5e-3)

@@ -159,6 +159,8 @@ BROKEN = {
     "screws_fit": ("cover_thickness = 3.0", "cover_thickness = 1.0"),
     "stop_protects": ("stop_gap = 0.2", "stop_gap = 0.6"),
     "field_in_scale": ("gap = 1.8", "gap = 1.0"),
+    "magnets_keep_apart": ("[hall]", "[magnet]\ndiameter = 4.0\n\n[hall]"),
+    "foil_leaves_magnets_alone": ("1.4310-C1300", "maraging-300-aged"),
 }
 
 
@@ -170,6 +172,50 @@ def test_every_rule_refuses_its_witness_in_one_line(name):
     layout = PlanarLayout(parse(text.replace(old, new), "broken.toml"))
     (finding,) = design_rules()[name](layout)
     assert finding.limit and "\n" not in finding.broken
+
+
+FAULTS = {  # by what was asked: a change of the design, the rule that it breaks, part of its message
+    "beams that do not fit": ("island = 3.0", "island = 5.5", "beams_in_range", "w/s = 0.947"),
+    "islands that meet": ("island = 3.0", "island = 7.3", "islands_fit_pitch", "island meets the frame"),
+    "a slot too narrow": ("slot = 0.35", "slot = 0.09", "beams_can_be_cut", "slot narrower"),
+    "a beam too narrow": ("beam_width = 0.4", "beam_width = 0.09", "beams_can_be_cut", "beam narrower"),
+    "a web too narrow": (
+        "web = 0.6", "web = 0.1\nprocess = \"wire-cut\"", "foil_suits_process", "narrower than the process",
+    ),
+    "magnets that pull their neighbours": (
+        "[hall]", "[magnet]\nheight = 8.0\n\n[hall]", "magnets_keep_apart", "magnet pulls a measuring cell",
+    ),
+    "magnets that pull the foil": (
+        "1.4310-C1300", "17-4PH-H900", "foil_leaves_magnets_alone", "magnetic foil",
+    ),
+    "magnets that meet the base": (
+        "border = 5.0", "border = 5.0\nwell = 0.35", "island_lands_on_base", "magnet meets the base",
+    ),
+    "fields out of range": ("gap = 1.8", "gap = 1.0", "field_in_scale", "MLX90393 takes 50"),
+    "a stop that closes too early": (
+        "stop_gap = 0.2", "stop_gap = 0.12", "stop_protects", "closes before the rated force",
+    ),
+    "posts that meet": ("pad = 2.4", "pad = 7.6", "island_takes_post", "meet at rated shear"),
+    "two chips of one address": ("buses = 3", "buses = 2", "chips_fit", "two would have one address"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("fault", FAULTS)
+def test_each_named_fault_is_refused_by_its_rule(fault):
+    old, new, name, said = FAULTS[fault]
+    text = PLANAR.read_text("utf-8")
+    assert old in text
+    layout = PlanarLayout(parse(text.replace(old, new), "broken.toml"))
+    found = [f for rule in design_rules().values() for f in rule(layout)]
+    assert name in {f.check for f in found}, [f.broken for f in found]
+    message = next(f.broken for f in found if f.check == name)
+    assert said in message and "legal: " in message and "\n" not in message
+
+
+def test_a_steel_base_is_no_legal_value():
+    text = PLANAR.read_text("utf-8").replace("border = 5.0", 'border = 5.0\nplate_alloy = "17-4PH-H900"')
+    with pytest.raises(InputError, match="housing.plate_alloy"):
+        parse(text, "steel.toml")
 
 
 def test_every_rule_has_a_witness():

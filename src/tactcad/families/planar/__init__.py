@@ -11,6 +11,7 @@ from tactcad.design.family import (
     FamilyReadings,
     FamilyRobot,
     FamilyStack,
+    FamilyTargets,
     Late,
 )
 
@@ -54,7 +55,9 @@ FAMILY = Family(
         calibrate=Late(f"{HERE}.cell_commands:calibrate"), stiffness=Late(f"{HERE}.cell_commands:stiffness")
     ),
     variables=None,
-    targets=Late(f"{HERE}.cell_targets:design"),
+    targets=FamilyTargets(
+        design=Late(f"{HERE}.cell_targets:design"), tables=Late(f"{HERE}.cell_targets:tables")
+    ),
     checks=f"{HERE}.checks",
     robot=FamilyRobot(
         mechanism=Late(f"{HERE}.cell_joints:cells"), jobs=Late("tactcad.robot.robot_files:jobs")

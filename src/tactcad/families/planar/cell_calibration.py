@@ -8,6 +8,7 @@ for all of them, and then only the runs count.
 
 The design's nonlinearity (`cell_response.bend`) is subtracted. Tilted magnets have another one: the rest of a
 run is m q + c q (q - q_full), so that a column m holds at the largest load, and c is common to its runs.
+The design's limits of tilt and place say how large c can be: by Bayes' rule, readings count against that.
 """
 
 from __future__ import annotations
@@ -26,7 +27,7 @@ from tactcad.lab.regression import fit_lines, require_level, steps, t_quantile
 
 from .cell_layout import Kind, PlanarLayout
 from .cell_matrices import AXES, CellMatrix
-from .cell_response import all_bends, matrix
+from .cell_response import all_bends, bow_variance, matrix, stiffness_limit
 from .sensor import pad_compliance
 
 Array = NDArray[np.float64]
@@ -75,14 +76,16 @@ def calibrate(layout: PlanarLayout, path: str | Path, level: float) -> list[Cell
     refuse_strangers(layout, rows)
     force, field = (np.stack([rows.values(f.name) for f in of], axis=1) for of in (FORCE, FIELD))
     bent = all_bends(layout, [places[n].kind for n in element], force)
-    runs = {n: _cell_runs(places[n].kind, rows, own, force, field, bent) for n, own in groups(element)}
+    given = {n: (places[n].kind, rows, own, force, field, bent) for n, own in groups(element)}
+    runs = {n: _cell_runs(*of, np.ones((3, 3))) for n, of in given.items()}
+    spare = sum(c.spare for c in runs.values())
+    noise = np.sum([c.scatter for c in runs.values()], axis=0) / max(spare, 1)
+    runs = {n: _cell_runs(*of, _kept(layout, of[0], runs[n], noise)) for n, of in given.items()}
     laws = {
         kind.name: _law([r.runs for n, r in runs.items() if places[n].kind.name == kind.name])
         for kind in layout.used
         if any(places[n].kind.name == kind.name for n in runs)
     }
-    spare = sum(c.spare for c in runs.values())
-    noise = np.sum([c.scatter for c in runs.values()], axis=0) / max(spare, 1)
     return [
         _cell(
             layout, places[n].kind, n, c, laws[places[n].kind.name], noise, level, int((element == n).sum())
@@ -119,7 +122,7 @@ def refuse_overrange(layout: PlanarLayout, rows: Rows) -> None:
 class _Cell:
     """A cell's runs, and what bends beyond the design's law, as of `CellMatrix`.
 
-    lever      by axis what the variance of c is over that of a reading, 1/N^4
+    lever      what the variance of c is over that of a reading, 1/N^4, [field, axis]
     scatter    squares of what the lines leave of the three fields, mT^2, and their degrees of freedom
     """
 
@@ -131,15 +134,21 @@ class _Cell:
     spare: int
 
 
+def _kept(layout: PlanarLayout, kind: Kind, cell: _Cell, noise: Array) -> Array:
+    """Share of what the readings say of c that is kept beside what the design's limits say."""
+    limits = bow_variance(layout, kind, cell.full)
+    return np.asarray(limits / (limits + noise[:, None] * cell.lever))
+
+
 def _cell_runs(
-    kind: Kind, rows: Rows, own: NDArray[np.int64], force: Array, field: Array, bent: Array
+    kind: Kind, rows: Rows, own: NDArray[np.int64], force: Array, field: Array, bent: Array, kept: Array
 ) -> _Cell:
     sinks = rows.columns.get(SINK.name, np.full(len(rows), np.nan))
     taken: list[list[tuple[int, NDArray[np.int64]]]] = [[], [], []]
     for number, picked in groups(rows.values("run").astype(int)[own]):
         at = own[picked]
         taken[_axis(rows, number, at, force[at])].append((number, at))
-    runs, bow, full, lever = [], np.zeros((3, 3)), np.zeros(3), np.zeros(3)
+    runs, bow, full, lever = [], np.zeros((3, 3)), np.zeros(3), np.zeros((3, 3))
     scatter, spare = np.zeros(3), 0
     for axis, of_axis in enumerate(taken):
         if len(of_axis) < LEAST_RUNS:
@@ -158,7 +167,7 @@ def _cell_runs(
         for r in range(len(of_axis)):
             one = which == r
             left[one] = fit_lines(q[one], v[one, None], np.zeros(one.sum())).residual[:, 0]
-        bow[:, axis], lever[axis] = left @ y / (left @ left), 1.0 / (left @ left)
+        bow[:, axis], lever[:, axis] = kept[:, axis] * np.array([left @ y, np.ones(3)]) / (left @ left)
         spare += len(v) - 2 * len(of_axis) - 1
         y = y - np.outer(v, bow[:, axis])
         for r, (number, at) in enumerate(of_axis):
@@ -276,7 +285,6 @@ def _cell(
     off = np.abs(m / np.diag(m)) - np.eye(3)
     sink = float(np.mean([r.sink for r in found if r.axis == 2]))
     measured = not np.isnan(sink)
-    foil = layout.design.foil_tolerance / layout.design.planar.thickness
     stiffness = 1.0 / sink if measured else 1.0 / float(pad_compliance(kind, layout.pad_height)[2, 2])
     return CellMatrix(
         number,
@@ -285,7 +293,7 @@ def _cell(
         len(found),
         m,
         cell.bow,
-        np.outer(noise, cell.lever),
+        noise[:, None] * cell.lever,
         cell.full,
         half,
         spread,
@@ -294,5 +302,5 @@ def _cell(
         max(r.deviation for r in found),
         stiffness,
         stiffness * (law.sink / each[2]) ** 0.5 if measured else 0.0,
-        0.0 if measured else (1.0 + foil) ** 3 - 1.0,
+        0.0 if measured else stiffness_limit(layout),
     )

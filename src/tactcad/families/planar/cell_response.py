@@ -29,13 +29,47 @@ def matrix(layout: PlanarLayout, kind: Kind) -> Array:
 def bend(layout: PlanarLayout, kind: Kind, force: Array) -> Array:
     """Difference of the field from `matrix` times forces, [n, 3]: the cell stiffens as it sinks, and a
     magnet's field is nonlinear."""
-    inner = force * DOWN
-    load = np.stack([wrench(f, layout.pad_height) for f in np.eye(3)], axis=1)
-    motion = inner @ (kind.cell.compliance @ load).T
-    motion[:, 2] = stiffened(kind, motion[:, 2])
     gap, lever = layout.design.hall.gap, magnet_lever(layout)
-    change = felt(layout.magnet, gap, lever, motion) - sensitivity(layout.magnet, gap, lever)[0]
-    return np.asarray(change - inner @ chip_matrix(layout, kind).T)
+    change = felt(layout.magnet, gap, lever, _motion(layout, kind, force))
+    change -= sensitivity(layout.magnet, gap, lever)[0]
+    return np.asarray(change - force * DOWN @ chip_matrix(layout, kind).T)
+
+
+def _motion(layout: PlanarLayout, kind: Kind, force: Array) -> Array:
+    """Of the island, mm and rad, [n, 6]."""
+    load = np.stack([wrench(f, layout.pad_height) for f in np.eye(3)], axis=1)
+    motion = np.asarray(force * DOWN @ (kind.cell.compliance @ load).T)
+    motion[:, 2] = stiffened(kind, motion[:, 2])
+    return motion
+
+
+def bow_variance(layout: PlanarLayout, kind: Kind, full: Array) -> Array:
+    """Of c of `cell_calibration` before any reading, mT^2/N^4, [field, axis]: by a magnet that is tilted or
+    off its chip and by the foil's thickness, within the design's limits, two standard deviations each.
+
+    The loads along each axis reach `full` (N, [3]).
+    """
+    gap, lever, tol = layout.design.hall.gap, magnet_lever(layout), layout.design.tolerance
+    force = np.array([share * np.diag(full) for share in (0.0, 0.5, 1.0)])
+    motion = _motion(layout, kind, force.reshape(-1, 3)).reshape(3, 3, 6)
+
+    def bow(tilt: Array, aside: Array, softer: float) -> Array:
+        about_its_face = np.concatenate([-np.cross(tilt, [0.0, 0.0, -lever]), tilt])
+        moved = (1.0 + softer) * motion + about_its_face
+        rest, middle, most = felt(layout.magnet, gap, lever, moved, (aside[0], aside[1]))
+        return np.asarray((2.0 * (most - 2.0 * middle + rest) / full[:, None] ** 2).T)
+
+    none, drawn = np.zeros(3), bow(np.zeros(3), np.zeros(3), 0.0)
+    tilt, off = np.radians(tol.magnet_tilt) / 2.0, np.hypot(tol.magnet_place, tol.chip_place) / 2.0
+    axes = np.eye(3)[:2]
+    causes = [bow(tilt * a, none, 0.0) for a in axes] + [bow(none, off * a, 0.0) for a in axes]
+    causes.append(bow(none, none, stiffness_limit(layout) / 2.0))
+    return np.asarray(sum((c - drawn) ** 2 for c in causes))
+
+
+def stiffness_limit(layout: PlanarLayout) -> float:
+    """Largest relative deviation of a cell's stiffness by its foil's thickness."""
+    return (1.0 + layout.design.foil_tolerance / layout.design.planar.thickness) ** 3 - 1.0
 
 
 def all_bends(layout: PlanarLayout, kinds: Sequence[Kind], force: Array) -> Array:

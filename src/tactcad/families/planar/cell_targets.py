@@ -2,52 +2,46 @@
 
 A pair of neighbours, one cell of each kind, is pressed until one of them is at its rated force. The relative
 error of K_obj is that of F_m/F_r over its slope: noise of the readings, and the error of both matrices. A
-coarse grid over all that varies is refined from its best design that every rule accepts.
+coarse grid over all that varies is refined from its best design that every rule accepts. What is said of the
+answer is in `cell_answers`.
 """
 
 from __future__ import annotations
 
 import argparse
-import json
+import time
 from collections.abc import Callable, Iterator
-from dataclasses import asdict, astuple, dataclass, replace
-from math import ceil, floor
+from dataclasses import astuple, dataclass, replace
+from math import ceil, floor, inf
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.special import betaincinv
 
-from tactcad.design.design_text import design_text
+from tactcad.design.allowance import Allowance
 from tactcad.design.fields import Number, Numbers, TextLine, Whole, given
-from tactcad.design.files import absolute, make_folder, read_text, write_whole
+from tactcad.design.files import read_text
 from tactcad.design.load import MOST_BYTES, read, read_table, unknown_field
 from tactcad.design.messages import InputError
 from tactcad.design.text_values import parse_toml
 from tactcad.design.tree import Identity
 from tactcad.parts.language.finding import Finding
 from tactcad.parts.rules.rule import wrong
+from tactcad.synthesis.target import origins_of
 
+from .cell_board import why_none
 from .cell_layout import PlanarLayout
 from .cell_tables import Planar, PlanarDesign
 from .rules import design_rules
 from .sensor import chip_matrix, closing_force, force_noise, pad_compliance, rated_force, rated_stress
 
 Array = NDArray[np.float64]
-LEVEL, Z = 0.95, 1.959964  # of the interval, and the normal distribution's quantile
+Z = 1.959964  # the normal distribution's quantile, of a 95 % interval
 POINTS = 9  # stiffnesses of the object at which the half-width is asked for, and of the curve
-ARRAYS = 200  # built virtually
 STEP = 0.005  # mm, of a stop's gap; beams and islands in twice that
 WIDTHS = 6  # beams' widths of a kind that the grid tries, and half as many islands, gaps and pitches
 KINDS = ("measuring", "reference")
-EASED: dict[str, Callable[[Any], Any]] = {  # how a field of [planar] is eased to see whether it binds
-    "planar.pitch": lambda v: (v[0], round(1.1 * v[1], 6)),
-    "planar.force": lambda v: round(1.1 * v, 6),
-    "planar.shear": lambda v: round(0.9 * v, 6),
-    "planar.readings": lambda v: round(1.2 * v + 0.5),
-    "planar.matrices": lambda v: round(0.9 * v, 9),
-}
 
 
 def _range(low: float, high: float, unit: str, meaning: str) -> Numbers:
@@ -102,12 +96,20 @@ class CellMeans:
 TABLES = {"target": CellWish, "object": CellObject, "planar": CellMeans}
 
 
+def tables() -> dict[str, type]:
+    """Classes of a target file's tables, by name."""
+    return TABLES
+
+
 @dataclass(frozen=True)
 class CellTarget:
+    """A target file; `written` are the paths of the fields that it has."""
+
     target: CellWish
     object: CellObject
     planar: CellMeans
     base: PlanarDesign
+    written: frozenset[str] = frozenset()
 
     @property
     def points(self) -> Array:
@@ -120,11 +122,12 @@ def read_target(path: str | Path) -> CellTarget:
     """A planar target file. Raises InputError for what is missing, unknown, illegal or contradicts itself."""
     table = parse_toml(read_text(path, MOST_BYTES, "a target file (TOML)"), str(path))
     for name, value in table.items():
-        if name not in TABLES:
-            raise unknown_field(name, [*TABLES])
+        if name not in (*TABLES, "origin"):
+            raise unknown_field(name, [*TABLES, "origin"], "tactcad schema target")
         if not isinstance(value, dict):
             raise InputError(name, "not a table", value=value, legal=f"a table [{name}]")
     values = {name: read_table(kind, table.get(name, {}), name) for name, kind in TABLES.items()}
+    origins_of(table.get("origin", {}), values)
     wish, means = values["target"], values["planar"]
     named = wish.base
     base = read(Path(path).parent / named if "/" in named or named.endswith(".toml") else named)
@@ -136,7 +139,8 @@ def read_target(path: str | Path) -> CellTarget:
                 where, "its first value is above its second", value=list(pair), legal="low, high"
             )
     foils = means.foils or (base.planar.thickness,)
-    return CellTarget(wish, values["object"], replace(means, foils=foils), base)
+    written = frozenset(f"{name}.{field}" for name in TABLES for field in table.get(name, {}))
+    return CellTarget(wish, values["object"], replace(means, foils=foils), base, written)
 
 
 @dataclass(frozen=True)
@@ -190,6 +194,13 @@ def designed(t: CellTarget, c: CellChoice) -> PlanarDesign | None:
         ear = max(kind.ear, 2.0 * corner, process.web(c.foil))
         d = replace(d, **{name: replace(kind, fillet=fillet, slot=slot, ear=ear)})
     return replace(d, hall=replace(d.hall, buses=-(-columns * rows // PlanarLayout(d).chip.addresses)))
+
+
+def with_buses(d: PlanarDesign) -> PlanarDesign:
+    """As few buses as the chips need, or more if a board can only be laid out so."""
+    least = d.hall.buses
+    tries = (replace(d, hall=replace(d.hall, buses=n)) for n in range(least, least + d.planar.columns))
+    return next((more for more in tries if not why_none(PlanarLayout(more))), d)
 
 
 def with_stops(d: PlanarDesign) -> PlanarDesign:
@@ -247,6 +258,12 @@ def half_width(soft: CellRead, stiff: CellRead, m: CellMeans, k: Array) -> Array
     return Z * np.sqrt(sum(variances(soft, stiff, m, k)))
 
 
+def pair_half_width(t: CellTarget, layout: PlanarLayout) -> float:
+    """The largest half-width over the target's range of a pair of the layout's kinds."""
+    soft, stiff = (of_kind(layout, name) for name in KINDS)
+    return float(half_width(soft, stiff, t.planar, t.points).max())
+
+
 @dataclass(frozen=True)
 class CellFound:
     """A design that keeps every rule."""
@@ -272,6 +289,7 @@ def evaluated(t: CellTarget, c: CellChoice) -> CellFound | list[Finding]:
     if broken := next((b for rule in rules if (b := rule(layout))), None):
         return broken
     soft, stiff = (of_kind(layout, name) for name in KINDS)
+    d = with_buses(d)
     return CellFound(c, d, soft, stiff, float(half_width(soft, stiff, t.planar, t.points).max()))
 
 
@@ -308,35 +326,46 @@ def _of(t: CellTarget, c: CellChoice, kind: int) -> Iterator[tuple[CellChoice, C
 TRIED = 300  # best choices of the grid that are tried with every rule
 
 
-def refined(t: CellTarget, best: CellFound, rounds: int = 4) -> CellFound:
+STEPS = {"pitch": 0.4, "soft": 0.04, "stiff": 0.08, "island": 0.1, "gap": 0.1}  # mm, the first ones
+ROUNDS = 4  # of steps, each half of the one before
+
+
+def beside(t: CellTarget, c: CellChoice, shorter: float = 1.0) -> Iterator[tuple[str, CellChoice]]:
+    """Choices one step away along each value, with its name."""
+    for name, by in STEPS.items():
+        for sign in (1.0, -1.0):
+            value = round(getattr(c, name) + sign * by * shorter, 3)
+            low, high = t.planar.pitch if name == "pitch" else (STEP, 40.0)
+            if low <= value <= high:
+                yield name, replace(c, **{name: value})
+
+
+def refined(t: CellTarget, best: CellFound, rounds: int = ROUNDS, until: float = inf) -> CellFound:
     """Steps along one value at a time, halved when none helps."""
-    step = {"pitch": 0.4, "soft": 0.04, "stiff": 0.08, "island": 0.1, "gap": 0.1}
-    for _ in range(rounds):
+    for halved in range(rounds):
         better = True
         while better:
             better = False
-            for name, by in step.items():
-                for sign in (1.0, -1.0):
-                    value = round(getattr(best.choice, name) + sign * by, 3)
-                    low, high = t.planar.pitch if name == "pitch" else (STEP, 40.0)
-                    if not low <= value <= high:
-                        continue
-                    found = evaluated(t, replace(best.choice, **{name: value}))
-                    if isinstance(found, CellFound) and found.half_width < best.half_width * (1 - 1e-4):
-                        best, better = found, True
-        step = {name: by / 2.0 for name, by in step.items()}
+            for _, choice in beside(t, best.choice, 0.5**halved):
+                if time.perf_counter() > until:
+                    return best
+                found = evaluated(t, choice)
+                if isinstance(found, CellFound) and found.half_width < best.half_width * (1 - 1e-4):
+                    best, better = found, True
+                    break
     return best
 
 
 @dataclass(frozen=True)
 class CellAnswer:
     """Of a search; `best` is None where no choice keeps every rule, and `refused` says of which the last one
-    broke."""
+    broke. `cut`: the clock ended it."""
 
     target: CellTarget
     best: CellFound | None
     refused: str
     front: tuple[tuple[float, float, float], ...]
+    cut: bool = False
 
     @property
     def wanted(self) -> float | None:
@@ -344,9 +373,15 @@ class CellAnswer:
         return None if w is None else w / 100.0
 
 
-def search(t: CellTarget) -> CellAnswer:
-    """The best design, and the grid's best half-width by foil and pitch, before rules are tried."""
-    every = sorted(grid(t), key=lambda pair: (pair[0], astuple(pair[1])))
+def search(t: CellTarget, until: float = inf) -> CellAnswer:
+    """The best design, and the grid's best half-width by foil and pitch, before rules are tried; `until` of
+    `time.perf_counter`."""
+    every: list[tuple[float, CellChoice]] = []
+    for pair in grid(t):
+        if every and pair[1].foil != every[0][1].foil and time.perf_counter() > until:
+            break  # at least the first foil's whole grid
+        every.append(pair)
+    every.sort(key=lambda pair: (pair[0], astuple(pair[1])))
     front: dict[tuple[float, float], float] = {}
     for width, c in every:
         front.setdefault((c.foil, c.pitch), width)
@@ -354,138 +389,18 @@ def search(t: CellTarget) -> CellAnswer:
     for _, c in every[:TRIED]:
         found = evaluated(t, c)
         if isinstance(found, CellFound):
-            best = refined(t, found)
+            best = refined(t, found, until=until)
             break
         refused = str(found[0])
-    return CellAnswer(t, best, refused, tuple((f, p, w) for (f, p), w in sorted(front.items())))
+    shown = tuple((f, p, w) for (f, p), w in sorted(front.items()))
+    return CellAnswer(t, best, refused, shown, time.perf_counter() > until)
 
 
-def made(t: CellTarget, best: CellFound, seed: int = 1) -> Array:
-    """Half-widths of arrays built virtually, each read at the drawn design's rated forces: foil, etching, gap
-    and remanence are one cause each for both kinds."""
-    rng, d = np.random.default_rng(seed), best.design
-    cut = PlanarLayout(d).process.tolerance(d.planar.thickness)
-    out = []
-    for foil, width, gap, remanence in rng.standard_normal((ARRAYS, 4)) / 2.0:
-        as_made = replace(
-            d,
-            planar=replace(d.planar, thickness=d.planar.thickness + d.foil_tolerance * foil),
-            hall=replace(d.hall, gap=d.hall.gap + 2.0 * d.tolerance.stop_gap * gap),
-            magnet=replace(d.magnet, remanence=d.magnet.remanence * (1.0 + d.magnet.tolerance * remanence)),
-            **{k: replace(v := getattr(d, k), beam_width=v.beam_width + cut * width) for k in KINDS},
-        )
-        layout = PlanarLayout(as_made)
-        cells = [read_at(layout, name, drawn.rated) for name, drawn in zip(KINDS, (best.soft, best.stiff))]
-        out.append(half_width(cells[0], cells[1], t.planar, t.points).max())
-    return np.array(out)
+def design(args: argparse.Namespace, asked: Allowance, ready: Callable[[], str]) -> int:
+    """`tactcad design` of a planar target: 0 if it is met or asks for no half-width, else 1; `ready` gives
+    the next command."""
+    from .cell_answers import answered
 
-
-def binding(t: CellTarget, best: CellFound) -> list[dict[str, Any]]:
-    """Fields that limit, the worst first: each eased alone by a step, refined from the best design."""
-    found = []
-    for path, ease in EASED.items():
-        table, name = path.split(".")
-        value = getattr(t.planar, name)
-        eased = replace(t, planar=replace(t.planar, **{name: ease(value)}))
-        start = evaluated(eased, best.choice)
-        width = refined(eased, start, 1).half_width if isinstance(start, CellFound) else best.half_width
-        gain = best.half_width - width
-        if gain > 1e-3 * best.half_width:
-            found.append(
-                {"field": path, "value": value, "eased": ease(value), "half_width": width, "gain": gain}
-            )
-    return sorted(found, key=lambda entry: -entry["gain"])
-
-
-def record(a: CellAnswer) -> dict[str, Any]:
-    """The answer as plain data: the keys of a target of facing rows, as far as they mean something here."""
-    t, best = a.target, a.best
-    out: dict[str, Any] = {
-        "name": t.target.name,
-        "family": "planar",
-        "met": False,
-        "wanted_half_width": a.wanted,
-        "half_width": best.half_width if best else None,
-        "yield_wanted": t.target.share,
-        "level": LEVEL,
-        "object_range": list(t.object.stiffness),
-        "refused": "" if best else a.refused,
-        "object_interval": [],
-        "binding": [],
-        "shares": [],
-        "front": [{"thickness": f, "pitch": p, "half_width": w} for f, p, w in a.front],
-    }
-    if best is None:
-        return out
-    k = t.points
-    width = half_width(best.soft, best.stiff, t.planar, k)
-    limit = a.wanted if a.wanted is not None else 1.1 * best.half_width
-    arrays = made(t, best)
-    kept = int((arrays <= limit).sum())
-    tail = (1.0 - LEVEL) / 2.0
-    low = float(betaincinv(kept, ARRAYS - kept + 1.0, tail)) if kept else 0.0
-    high = float(betaincinv(kept + 1.0, ARRAYS - kept, 1.0 - tail)) if kept < ARRAYS else 1.0
-    reached = best.half_width <= limit and kept / ARRAYS >= t.target.share
-    worst = int(np.argmax(width))
-    parts = [float(v[worst]) for v in variances(best.soft, best.stiff, t.planar, k)]
-    causes = ("noise of the measuring cell", "noise of the reference cell", "matrices")
-    return out | {
-        "met": (None if a.wanted is None else True) if reached else False,
-        "yield": kept / ARRAYS,
-        "yield_interval": [low, high],
-        "yield_arrays": ARRAYS,
-        "object_interval": [
-            {"object": float(x), "low": float(x * (1 - w)), "high": float(x * (1 + w))}
-            for x, w in zip(k, width)
-        ],
-        "binding": binding(t, best),
-        "shares": [{"cause": c, "share": v / sum(parts)} for c, v in zip(causes, parts)],
-        "choice": asdict(best.choice),
-        "cells": {name: asdict(cell) for name, cell in zip(KINDS, (best.soft, best.stiff))},
-    }
-
-
-def to_text(r: dict[str, Any]) -> str:
-    """As people read it."""
-    low, high = r["object_range"]
-    if r["half_width"] is None:
-        return f"Impossible as asked: no design keeps every rule; {r['refused']}"
-    c, cells = r["choice"], r["cells"]
-    asked = "" if r["wanted_half_width"] is None else f", asked {100 * r['wanted_half_width']:.3g} %"
-    first = {True: "", None: "Best to be had: ", False: "Impossible as asked, the best there is: "}[r["met"]]
-    lines = [
-        f"{first}a pair feels {low:.3g} to {high:.3g} N/mm within {100 * r['half_width']:.2g} % "
-        f"(half the 95 % interval{asked}); {100 * r['yield']:.3g} % of {r['yield_arrays']} arrays made keep "
-        f"that ({100 * r['yield_interval'][0]:.3g} to {100 * r['yield_interval'][1]:.3g} %)",
-        f"  foil {c['foil']:g}, pitch {c['pitch']:g}, beams {c['soft']:g} and {c['stiff']:g} wide, reference "
-        f"island {c['island']:g}, chips' gap {c['gap']:g} mm",
-        *(
-            f"  {name}: {v['stiffness']:.3g} N/mm, rated {v['rated']:.3g} N, noise {1e3 * v['noise']:.3g} mN"
-            for name, v in cells.items()
-        ),
-        *(f"  {s['cause']}: {100 * s['share']:.3g} % of the variance" for s in r["shares"]),
-        *(
-            f"  binds: {b['field']} {b['value']} eased to {b['eased']}: {100 * b['half_width']:.3g} %"
-            for b in r["binding"]
-        ),
-    ]
-    return "\n".join(lines)
-
-
-def design(args: argparse.Namespace) -> int:
-    """`tactcad design` of a planar target: 0 if it is met, else 1; writes DIR/design.toml and report.json."""
-    for option, given_ in (("--within", args.within), ("--in", args.seconds)):
-        if given_ is not None:
-            raise InputError(option, "does not take planar targets", value=given_, legal="none")
-    folder = absolute(args.out)
-    if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
-        raise InputError("--out", "is there already", value=str(args.out), legal="a new or empty folder")
-    answer = search(read_target(args.target))
-    r = record(answer)
-    if answer.best and (r["met"] is not False or args.best):
-        make_folder(folder)
-        text = design_text(answer.best.design, f"{r['name']}: by `tactcad design`.\n{to_text(r)}")
-        write_whole(folder / "design.toml", text.encode())
-        write_whole(folder / "report.json", (json.dumps(r, indent=1) + "\n").encode())
-    print(json.dumps(r, indent=1) if args.json else to_text(r))
-    return 1 if r["met"] is False else 0
+    if asked.within is not None:
+        raise InputError("--within", "does not take planar targets", value=args.within, legal="none")
+    return answered(args, read_target(args.target), asked.seconds, ready)

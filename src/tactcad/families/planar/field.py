@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 RADII, ANGLES = 16, 48
+MU0 = 4e-7 * pi  # T m/A
 STEP = 1e-20  # of the complex-step derivative: no digits are lost
 
 
@@ -48,6 +49,16 @@ def field(magnet: Magnet, at: NDArray) -> NDArray:
         distance = np.sqrt((d * d).sum(axis=-1))
         total += sign * np.einsum("...qi,q->...i", d / distance[..., None] ** 3, area)
     return 1e3 * magnet.remanence / (4.0 * pi) * total
+
+
+def pull(magnet: Magnet, away: tuple[float, float]) -> float:
+    """Force, N, of an equal magnet beside this one: the other's field on each charge of its discs."""
+    x, y, area = _charges(magnet.radius)
+    total = np.zeros(3)
+    for z, sign in ((magnet.height, 1.0), (0.0, -1.0)):
+        at = np.stack([x + away[0], y + away[1], np.full_like(x, z)], axis=-1)
+        total += sign * 1e-9 * magnet.remanence / MU0 * (area[:, None] * field(magnet, at)).sum(axis=0)
+    return float(np.hypot(total[0], total[1]))
 
 
 def on_axis(magnet: Magnet, z: float) -> float:

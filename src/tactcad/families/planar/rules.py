@@ -5,16 +5,21 @@ from __future__ import annotations
 from collections.abc import Iterator
 from math import hypot
 
+from tactcad.design.materials import ALLOYS
 from tactcad.parts.language.finding import Finding
 from tactcad.parts.language.metric import METRIC
 from tactcad.parts.rules.rule import Rule, at_least, at_most, rule, wrong
 
 from . import beam
 from .cell_layout import Kind, PlanarLayout
+from .field import pull
 from .parts import CHIP_ROOM, FOOT_INSET, SCREW, WEB, dowel_length, screw_length, stack_height
 from .sensor import closing_force, kind_figures, neighbours_field, rated_force, stop_stress
 
 LAND = 0.1  # mm of an island on the base around its well, at least; chosen
+PULL = (
+    0.01  # of the rated force, which a neighbour's magnet may pull; chosen: matrices are known to about that
+)
 CLEAR = 0.1  # mm between parts that pass each other, at least; chosen
 
 
@@ -216,6 +221,35 @@ def stop_protects(layout: PlanarLayout) -> Iterator[Finding]:
                 gap,
                 f"at most {low:.3g} mm",
             )
+
+
+@rule(after="beams_in_range")
+def magnets_keep_apart(layout: PlanarLayout) -> Iterator[Finding]:
+    d = layout.design
+    if len(layout.elements) < 2:
+        return
+    force = pull(layout.magnet, (d.planar.pitch, 0.0))
+    rated, name = min(
+        (rated_force(layout, kind, kind_figures(layout, name).stress)[1], name)
+        for name, kind in _each(layout)
+    )
+    if force > PULL * rated:
+        most = d.magnet.diameter * (PULL * rated / force) ** 0.25  # force goes with the square of its volume
+        yield wrong(
+            "magnet.diameter",
+            f"a neighbour's magnet pulls a {name} cell by {1e3 * force:.3g} mN, more than {100 * PULL:g} % "
+            f"of its rated force of {rated:.3g} N",
+            d.magnet.diameter,
+            f"at most {most:.2g} mm, a lower magnet, or a larger pitch",
+        )
+
+
+@rule()
+def foil_leaves_magnets_alone(layout: PlanarLayout) -> Iterator[Finding]:
+    alloy = layout.design.material.alloy
+    if ALLOYS[alloy].magnetic == "yes":
+        legal = ", ".join(name for name, other in ALLOYS.items() if other.magnetic != "yes")
+        yield wrong("material.alloy", "a magnetic foil pulls the magnets and bends their field", alloy, legal)
 
 
 @rule(after="chips_fit")

@@ -8,7 +8,7 @@ have no stop gap, because the scenes of a design must be known without the estim
 from __future__ import annotations
 
 from collections.abc import Iterator
-from math import floor
+from math import floor, radians, tan
 
 from tactcad.design.fields import present
 from tactcad.design.tree import Design
@@ -65,7 +65,7 @@ from tactcad.parts.rules.rule import fits, wrong
 
 from ..builder import Builder
 from ..rig import Rig, none
-from ..rig_requirements import wheels
+from ..rig_requirements import LEVELLED, LEVELLING_PLATE, SAMPLE, parallel, wheels
 from ..scene import (
     AGAINST_Y,
     ALONG_Y,
@@ -120,12 +120,13 @@ def grasping(design: Design, pose: Pose = REST) -> Scene:
     b.step(
         "Pads level with the lid",
         (0, 0, 0),
-        "Lay a flat plate, as thick as the sample, on the lid in its place. Hold the bar, pull the latch "
-        "out by its front end, put it in its outer hole, and lower the array by hand on the plate: no "
-        "light may show under any pad; the signal of each element tells the rest. A tilt of "
-        f"{design.tolerance.tilt:g} degree is allowed, shim under the foot. Then lift it, set the latch "
-        "under the carriage again, and take the plate away.",
-        tools=("flat plate, as thick as the sample", SHIMS),
+        "Lay the flat plate on the lid, in the sample's place. Hold the bar, pull the latch out by its front "
+        "end, put it in its outer hole, and lower the array by hand on the plate: every pad must touch. "
+        f"Signals over K_v are the elements' sinks; {_levelled(rig.array)}. If not, shim under the foot. "
+        "Then lift it, set the latch under the carriage again, and take the plate away. The array is then "
+        f"parallel to the sample within {design.tolerance.tilt:g} degree if the sample's edges are equally "
+        f"thick within {1e3 * tan(radians(SAMPLE * design.tolerance.tilt)) * rig.cart.sample.side:.0f} um.",
+        tools=(f"flat plate, as thick as the sample, parallel within {LEVELLING_PLATE * 1e3:g} um", SHIMS),
         order=[*_latched(False), Move(axis, up, (STILL,)), Move(axis, STILL, (up,)), *_latched(True)],
         needs=(
             Need((lid, "CA1"), "the array is lowered on the lid"),
@@ -171,6 +172,17 @@ def grasping(design: Design, pose: Pose = REST) -> Scene:
     )
     elements = {p.designator for p in rig.array.elements}
     return b.scene("grasping", motions, cover=set(b.groups["axis"]) - elements)
+
+
+def _levelled(layout: Layout) -> str:
+    """What the sinks on a flat plate must agree within."""
+    spans = [max(along) - min(along) for along in zip(*pad_middles(layout))]
+    said = [
+        f"{where} within {1e3 * tan(radians(LEVELLED * layout.design.tolerance.tilt)) * span:.1f} um"
+        for where, span in (("at both ends of the rows", spans[1]), ("in both rows", spans[0]))
+        if span
+    ]
+    return f"their means must agree {' and '.join(said)}"
 
 
 def _latched(on: bool) -> list[Move]:
@@ -444,6 +456,6 @@ RIG = Rig(
     under_sensor=none,
     rules=(*FITS, ballast_trims_moving_weight),
     deflections=grasping_lines,
-    requirements=wheels,
+    requirements=lambda layout, known: [*wheels(layout, known), parallel(layout, known)],
     checks=(("moving weight", check_moving_weight),),
 )

@@ -1,0 +1,395 @@
+"""What `tactcad design` says of a planar target: yield, bounds, limits, the base compared; text, JSON, a page
+and the design, in a folder written in one step."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import asdict, replace
+from html import escape
+from math import ceil, inf
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.special import betaincinv
+
+from tactcad.design.design_text import design_text
+from tactcad.synthesis import target_report as page
+from tactcad.synthesis.bounds import Bound
+
+from .cell_board import why_none
+from .cell_layout import PlanarLayout
+from .cell_targets import (
+    KINDS,
+    ROUNDS,
+    STEPS,
+    CellAnswer,
+    CellFound,
+    CellTarget,
+    beside,
+    designed,
+    evaluated,
+    fits,
+    half_width,
+    pair_half_width,
+    read_at,
+    refined,
+    search,
+    variances,
+)
+from .rules import design_rules
+
+Array = NDArray[np.float64]
+LEVEL = 0.95  # of the intervals
+ARRAYS = 200  # built virtually
+SHARE = 0.5  # of the seconds asked for, for the search
+NEAR = 1e-9  # relative; a value nearer to a bound lies on it
+# Fields whose step beyond eases the target, and the factor of that step; counts go by one.
+EASED = {
+    "planar.pitch[0]": 1 / 1.1,
+    "planar.pitch[1]": 1.1,
+    "planar.foils[0]": 1 / 1.1,
+    "planar.foils[1]": 1.1,
+    "planar.length": 1.1,
+    "planar.width": 1.1,
+    "planar.force": 1.1,
+    "planar.shear": 0.9,
+    "planar.readings": 1.2,
+    "planar.matrices": 0.9,
+    "rating.yield_factor": 1 / 1.1,
+}
+LIMITS = ("planar.shear", "planar.readings", "planar.matrices")  # of every answer: no bound to lie on
+FIELDS = {  # of the design, by what the search varies
+    "pitch": "planar.pitch",
+    "soft": "measuring.beam_width",
+    "stiff": "reference.beam_width",
+    "island": "reference.island",
+    "gap": "hall.gap",
+}
+
+
+def stepped(t: CellTarget, field: str) -> tuple[Any, Any, CellTarget]:
+    """A field's value, its value one step beyond, and the target with that."""
+    table, _, name = field.partition(".")
+    name, _, end = name.partition("[")
+    if table != "planar":
+        value = getattr(getattr(t.base, table), name)
+        further = round(value * EASED[field], 4)
+        own = replace(getattr(t.base, table), **{name: further})
+        return value, further, replace(t, base=replace(t.base, **{table: own}))
+    value = getattr(t.planar, name)
+    if end:
+        ends = sorted(value)[0], sorted(value)[-1]
+        at = int(end[0])
+        further = round(ends[at] * EASED[field], 6)
+        whole = (further, ends[1 - at])[:: 1 - 2 * at] if name == "pitch" else (*value, further)
+        return ends[at], further, with_means(t, **{name: whole})
+    further = round(value * EASED[field] + 0.5) if isinstance(value, int) else round(value * EASED[field], 9)
+    return value, further, with_means(t, **{name: further})
+
+
+def with_means(t: CellTarget, **values: Any) -> CellTarget:
+    """The target with other values in [planar]."""
+    return replace(t, planar=replace(t.planar, **values))
+
+
+def around(t: CellTarget, best: CellFound) -> float | None:
+    """The best half-width around a found design under another target; None if none keeps the rules there."""
+    found = [evaluated(t, replace(best.choice, foil=foil)) for foil in t.planar.foils or ()]
+    if not any(isinstance(f, CellFound) for f in found):
+        found = [evaluated(t, choice) for _, choice in beside(t, best.choice)]
+    starts = [f for f in found if isinstance(f, CellFound)]
+    return min((refined(t, f, 1).half_width for f in starts), default=None)
+
+
+def touched(t: CellTarget, best: CellFound) -> list[str]:
+    """Fields whose values bound the answer."""
+    m, c = t.planar, best.choice
+    foils, rated = m.foils or (c.foil,), [best.soft.rated, best.stiff.rated]
+    wider = replace(c, pitch=c.pitch + STEPS["pitch"] / 2.0**ROUNDS)
+    full = c.pitch < m.pitch[1] and designed(t, wider) is None
+    at = {
+        "planar.pitch[0]": c.pitch <= m.pitch[0] * (1 + NEAR),
+        "planar.pitch[1]": c.pitch >= m.pitch[1] * (1 - NEAR),
+        "planar.length": full and designed(stepped(t, "planar.length")[2], wider) is not None,
+        "planar.width": full and designed(stepped(t, "planar.width")[2], wider) is not None,
+        "planar.foils[0]": c.foil <= min(foils),
+        "planar.foils[1]": c.foil >= max(foils),
+        "planar.force": max(rated) >= m.force * (1 - NEAR),
+        "rating.yield_factor": min(rated) < m.force * (1 - NEAR),
+    }
+    return [name for name, holds in at.items() if holds]
+
+
+def bounds(t: CellTarget, best: CellFound) -> list[Bound]:
+    """Bounds that the answer lies on: of target and base design with the result one step beyond, and rules
+    that refuse a better design beside it."""
+    out = []
+    for field in touched(t, best):
+        value, further, eased = stepped(t, field)
+        whose = "default" if field.startswith("planar.") else "base design"
+        whose = "written" if field.partition("[")[0] in t.written else whose
+        out.append(Bound(field, value, whose, further, around(eased, best)))
+    refused: dict[str, Bound] = {}
+    for name, choice in beside(t, best.choice, 0.5 ** (ROUNDS - 1)):
+        found, drawn = evaluated(t, choice), designed(t, choice)
+        if isinstance(found, CellFound) or drawn is None or not fits_all(layout := PlanarLayout(drawn)):
+            continue
+        width = pair_half_width(t, layout)
+        rule = found[0].check
+        if width < best.half_width and (rule not in refused or width < (refused[rule].half_width or inf)):
+            value, further = (getattr(c, name) for c in (best.choice, choice))
+            whose = f"rule {rule} refuses the step"
+            refused[rule] = Bound(FIELDS[name], value, whose, further, width)
+    return out + list(refused.values())
+
+
+def fits_all(layout: PlanarLayout) -> bool:
+    return all(fits(layout, name) for name in KINDS)
+
+
+def binding(t: CellTarget, best: CellFound) -> Iterator[dict[str, Any]]:
+    """Fields that limit besides the bounds: each eased alone by a step."""
+    for field in LIMITS:
+        value, further, eased = stepped(t, field)
+        width = around(eased, best)
+        if width is not None and (gain := best.half_width - width) > 1e-3 * best.half_width:
+            yield {"field": field, "value": value, "eased": further, "half_width": width, "gain": gain}
+
+
+def made(t: CellTarget, best: CellFound, seed: int = 1) -> Array:
+    """Half-widths of arrays built virtually, each read at the drawn design's rated forces: foil, etching, gap
+    and remanence are one cause each for both kinds."""
+    rng, d = np.random.default_rng(seed), best.design
+    cut = PlanarLayout(d).process.tolerance(d.planar.thickness)
+    out = []
+    for foil, width, gap, remanence in rng.standard_normal((ARRAYS, 4)) / 2.0:
+        as_made = replace(
+            d,
+            planar=replace(d.planar, thickness=d.planar.thickness + d.foil_tolerance * foil),
+            hall=replace(d.hall, gap=d.hall.gap + 2.0 * d.tolerance.stop_gap * gap),
+            magnet=replace(d.magnet, remanence=d.magnet.remanence * (1.0 + d.magnet.tolerance * remanence)),
+            **{k: replace(v := getattr(d, k), beam_width=v.beam_width + cut * width) for k in KINDS},
+        )
+        layout = PlanarLayout(as_made)
+        cells = [read_at(layout, name, drawn.rated) for name, drawn in zip(KINDS, (best.soft, best.stiff))]
+        out.append(half_width(cells[0], cells[1], t.planar, t.points).max())
+    return np.array(out)
+
+
+def of_base(t: CellTarget) -> dict[str, Any]:
+    """The base design as it is, under the target's forces and knowledge: half-width, and why it misses."""
+    b, m = t.base, t.planar
+    layout = PlanarLayout(replace(b, rating=replace(b.rating, force=m.force, shear=m.shear)))
+    width = None
+    if fits_all(layout):
+        width = pair_half_width(t, layout)
+    rules: list[Any] = [*design_rules().values()]
+    breaks = [f"rule {f.check}: {f.broken}" for rule in rules for f in rule(layout)]
+    for name, half, most in (("length", layout.half[0], m.length), ("width", layout.half[1], m.width)):
+        if 2.0 * half > most + 1e-9:
+            breaks.append(f"planar.{name}: {2.0 * half:g} mm, at most {most:g} mm")
+    p = b.planar
+    if len(layout.elements) < m.cells:
+        breaks.append(f"planar.cells: {len(layout.elements)}, at least {m.cells}")
+    if not m.pitch[0] - 1e-9 <= p.pitch <= m.pitch[1] + 1e-9:
+        breaks.append(f"planar.pitch: {p.pitch:g} mm, {m.pitch[0]:g} to {m.pitch[1]:g} mm")
+    if p.thickness not in (m.foils or ()):
+        breaks.append(f"planar.foils: {p.thickness:g} mm, not at hand")
+    if width is not None and t.target.half_width is not None and not 100.0 * width <= t.target.half_width:
+        breaks.append(f"target.half_width: {100 * width:.3g} %, at most {t.target.half_width:g} %")
+    return {"name": b.name, "half_width": width, "breaks": breaks}
+
+
+def record(a: CellAnswer, until: float = inf) -> dict[str, Any]:
+    """The answer as plain data: the keys of a target of facing rows, as far as they mean something here.
+
+    Parts that the time does not allow (`until` of `time.perf_counter`) are named in `left_out`.
+    """
+    t, best = a.target, a.best
+    out: dict[str, Any] = {
+        "name": t.target.name,
+        "family": "planar",
+        "met": False,
+        "wanted_half_width": a.wanted,
+        "half_width": best.half_width if best else None,
+        "base": of_base(t),
+        "bounds": [],
+        "room": {},
+        "yield_wanted": t.target.share,
+        "level": LEVEL,
+        "object_range": list(t.object.stiffness),
+        "refused": "" if best else a.refused,
+        "object_interval": [],
+        "pairs": [],
+        "binding": [],
+        "shares": [],
+        "front": [{"thickness": f, "pitch": p, "half_width": w} for f, p, w in a.front],
+        "left_out": ["a longer search"] if a.cut else [],
+        "notes": [],
+    }
+    if best is None:
+        return out
+    arrays = made(t, best)
+    limit = a.wanted
+    if limit is None:  # the least that the share asked for keeps
+        limit = max(best.half_width, float(np.sort(arrays)[ceil(t.target.share * ARRAYS) - 1]))
+    kept = int((arrays <= limit).sum())
+    tail = (1.0 - LEVEL) / 2.0
+    low = float(betaincinv(kept, ARRAYS - kept + 1.0, tail)) if kept else 0.0
+    high = float(betaincinv(kept + 1.0, ARRAYS - kept, 1.0 - tail)) if kept < ARRAYS else 1.0
+    reached = best.half_width <= limit and kept / ARRAYS >= t.target.share
+    k, layout = t.points, PlanarLayout(best.design)
+    width = half_width(best.soft, best.stiff, t.planar, k)
+    worst = int(np.argmax(width))
+    parts = [float(v[worst]) for v in variances(best.soft, best.stiff, t.planar, k)]
+    causes = ("noise of the measuring cell", "noise of the reference cell", "matrices")
+    why = why_none(layout)
+    out |= {
+        "met": (None if a.wanted is None else True) if reached else False,
+        "wanted_half_width": limit,
+        "yield": kept / ARRAYS,
+        "yield_interval": [low, high],
+        "yield_arrays": ARRAYS,
+        "object_interval": [
+            {"object": float(x), "low": float(x * (1 - w)), "high": float(x * (1 + w))}
+            for x, w in zip(k, width)
+        ],
+        "shares": [{"cause": c, "share": v / sum(parts)} for c, v in zip(causes, parts)],
+        "choice": asdict(best.choice),
+        "buses": best.design.hall.buses,
+        "elements": len(layout.elements),
+        "size_mm": [round(2.0 * half, 3) for half in layout.half],
+        "cells": {name: asdict(cell) for name, cell in zip(KINDS, (best.soft, best.stiff))},
+        "notes": [f"no circuit board is laid out for it: {why}"] if why else [],
+    }
+    if time.perf_counter() > until:
+        out["left_out"].append("bounds and limits")
+        return out
+    out["bounds"] = [asdict(bound) for bound in bounds(t, best)]
+    out["binding"] = sorted(binding(t, best), key=lambda limit: -limit["gain"])
+    return out
+
+
+def answer(r: dict[str, Any]) -> str:
+    """The result in a few sentences."""
+    (low, high), base = r["object_range"], r["base"]
+    if r["half_width"] is None:
+        none = "None found in this time" if r["left_out"] else "Impossible as asked"
+        return f"{none}: no design keeps every rule; {r['refused']}"
+    c = r["choice"]
+    first = {True: "", None: "Best to be had: ", False: "Impossible as asked, the best there is: "}[r["met"]]
+    than = f"within {page.percent(base['half_width'])}" if base["half_width"] else "not at all"
+    if base["breaks"]:
+        than = f"does not meet the target: {'; '.join(base['breaks'])}"
+    limit = f"of {r['yield_arrays']} arrays made keep {page.percent(r['wanted_half_width'])}"
+    size = " x ".join(f"{v:g}" for v in r["size_mm"])
+    return (
+        f"{first}a pair feels {low:.3g} to {high:.3g} N/mm within {100 * r['half_width']:.2g} % "
+        f"(half the 95 % interval, as drawn); {100 * r['yield']:.3g} % {limit} "
+        f"({100 * r['yield_interval'][0]:.3g} to {100 * r['yield_interval'][1]:.3g} %). "
+        f"{r['elements']} cells on {size} mm: foil {c['foil']:g}, pitch {c['pitch']:g}, "
+        f"beams {c['soft']:g} and {c['stiff']:g} wide, reference island {c['island']:g}, "
+        f"chips' gap {c['gap']:g} mm; buses: {r['buses']}. {base['name']} as it is: {than}."
+    )
+
+
+def to_text(r: dict[str, Any]) -> str:
+    """As people read it."""
+    left = ", ".join(r["left_out"])
+    return "\n".join(
+        [
+            answer(r),
+            *(
+                f"  {name}: {v['stiffness']:.3g} N/mm, rated {v['rated']:.3g} N, noise "
+                f"{1e3 * v['noise']:.3g} mN"
+                for name, v in r.get("cells", {}).items()
+            ),
+            *(f"  {s['cause']}: {100 * s['share']:.3g} % of the variance" for s in r["shares"]),
+            *(f"  {page.bound_line(b)}" for b in r["bounds"]),
+            *(f"  {page.limit_line(b)}" for b in r["binding"]),
+            *(f"  note: {note}" for note in r["notes"]),
+            *([f"  left out for time: {left}"] if left else []),
+        ]
+    )
+
+
+def as_page(a: CellAnswer, r: dict[str, Any]) -> bytes:
+    """The page with its pictures."""
+    title = f"{r['name']}: a planar sensor from a target"
+    parts = [
+        f"<h1>{escape(title)}</h1>",
+        f'<p class="answer{"" if r["met"] is not False else " no"}">{escape(answer(r))}</p>',
+        *(f"<p>Note: {escape(note)}.</p>" for note in r["notes"]),
+        page.bounds_part(r),
+        f"<h2>Cells</h2>{cells_picture(PlanarLayout(a.best.design))}" if a.best else "",
+    ]
+    rows = [
+        (name, f"{v['stiffness']:.3g}", f"{v['rated']:.3g}", f"{1e3 * v['noise']:.3g}")
+        for name, v in r["cells"].items()
+    ]
+    parts.append(page.table(("kind", "K, N/mm", "rated, N", "noise of a reading, mN"), rows))
+    parts += ["<h2>How surely a pair feels</h2>", page.interval_picture(r, "one pair")]
+    parts.append(
+        "<p>Two neighbours on separate springs, pressed until one of them is at its rated force.</p>"
+        "<h2>What limits it</h2>" + page.binding_part(r)
+    )
+    shares = [(s["cause"], page.percent(s["share"])) for s in r["shares"]]
+    parts.append(page.table(("cause", "share of the variance"), shares))
+    best = [(f"{f['thickness']:g}", f"{f['pitch']:g}", page.percent(f["half_width"])) for f in r["front"]]
+    parts.append("<h2>Foils and pitches of the grid, before rules are tried</h2>")
+    parts.append(page.table(("foil, mm", "pitch, mm", "half-width"), best))
+    if r["left_out"]:
+        parts.append(f"<p>Left out for time: {escape(', '.join(r['left_out']))}.</p>")
+    return page.page(title, parts)
+
+
+def cells_picture(layout: PlanarLayout) -> str:
+    """The foil from above (SVG): openings white, pads as circles."""
+    from matplotlib.patches import Circle, Polygon
+
+    from tactcad.report.plots import BLUE, GREY, ORANGE, panels, svg
+
+    (x, y), pad = layout.half, layout.design.post.pad / 2.0
+    with panels(1, 1, (8.0, max(2.0, 8.0 * y / x))) as (figure, ax):
+        ax.add_patch(Polygon([(-x, -y), (x, -y), (x, y), (-x, y)], facecolor=GREY, alpha=0.6))
+        for e in layout.elements:
+            for slot in e.kind.slots(layout.corner, (e.x, e.y)):
+                points = [s.at(u) for s in slot for u in np.linspace(0.0, 1.0, 6)]
+                ax.add_patch(Polygon(points, facecolor="white"))
+            colour = BLUE if e.kind.name == KINDS[0] else ORANGE
+            ax.add_patch(Circle((e.x, e.y), pad, fill=False, edgecolor=colour, lw=1.5))
+        ax.set(xlim=(-x, x), ylim=(-y, y), xlabel="x, mm", ylabel="y, mm", aspect="equal")
+        ax.grid(False)
+        picture = svg(figure, "cells")
+    return f"{picture}<p>The foil from above; pads of measuring cells blue, of reference cells orange.</p>"
+
+
+def files(a: CellAnswer, r: dict[str, Any]) -> dict[str, bytes]:
+    """The folder's files by name."""
+    assert a.best
+    heading = f"{r['name']}: by `tactcad design`.\n{answer(r)}"
+    return {
+        "design.toml": design_text(a.best.design, heading).encode(),
+        "report.json": (json.dumps(r, indent=1) + "\n").encode(),
+        "report.html": as_page(a, r),
+    }
+
+
+def answered(args: argparse.Namespace, t: CellTarget, seconds: float | None, ready: Callable[[], str]) -> int:
+    """Search, write and print; the exit status."""
+    page.refuse_unwritable(args.out)
+    now = time.perf_counter()
+    a = search(t, now + SHARE * seconds if seconds else inf)
+    r = record(a, now + SHARE * seconds if seconds else inf)
+    written = a.best is not None and (r["met"] is not False or args.best)
+    if written:
+        page.write_folder(args.out, lambda: files(a, r))
+    took = {"in_s": seconds, "took_s": round(time.perf_counter() - now, 1)}
+    print(json.dumps(r | ({"budget": took} if seconds else {}), indent=1) if args.json else to_text(r))
+    if written and not args.json:
+        print(f"{args.out}: written\nnext: {ready()}")
+    return 1 if r["met"] is False else 0
