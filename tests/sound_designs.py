@@ -77,7 +77,7 @@ class Draw:
         """By the logarithm where that is more than a decade, an end every now and then; in whole micrometres,
         or four digits if smaller."""
         if high <= low:
-            return round(low, 6)
+            return ceil(low * 1e6 - 1e-6) / 1e6
         u = self.random.choice((0.0, 1.0)) if self.once_in(self.ends) else self.random.random()
         value = exp(log(low) + u * log(high / low)) if 0 < 10 * low < high else low + u * (high - low)
         steps = 1000.0 if abs(value) >= 0.1 or value == 0 else 10 ** (3 - floor(log10(abs(value))))

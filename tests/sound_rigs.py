@@ -121,7 +121,7 @@ def _cart(d: Draw) -> None:
 
 
 def _grasping(d: Draw) -> None:
-    lift = d.number("grasping.lift", high=150.0)
+    lift = d.number("grasping.lift", high=40.0)
     d.put("grasping.rail_length", 20.0 * d.choice(*range(ceil((lift + CARRIAGE + 13) / 20), 13)))
     diameter = d.number("grasping.weight_diameter", 20.0, 2 * (GUIDE_FRONT - 0.5))
     steel = 7.85e-3 * pi * (diameter**2 - 8.5**2) / 4  # g for a mm of disc

@@ -18,6 +18,7 @@ from tactcad.lab.load_cell import LoadCell
 from tactcad.lab.readings import CalibrationReadings, GraspReadings
 from tactcad.mechanics import lumped
 from tactcad.mechanics.sample_coupling import shares_between
+from tactcad.paper import examples
 
 CELL = 57.04
 LOAD = 3.235 + 0.980665 * np.arange(8)
@@ -59,8 +60,29 @@ def test_elements_that_have_each_others_zeros_are_refused():
         grasp.evaluate(swapped, known)
     with pytest.raises(InputError, match="element 1 has the zero of element 4 .* swapped"):
         grasp.evaluate(replace(read, signal=np.roll(read.signal, 1, axis=0)), known)
-    grasp.evaluate(swapped, exact())
-    grasp.evaluate(swapped, replace(known, zero=np.array([0.7, -0.2, -1.4, 0.4])))
+    grasp.evaluate(read, replace(known, zero=np.array([0.7, -0.2, -1.4, 0.4])))
+
+
+def test_swapped_channels_are_refused_without_zeros_by_the_one_exchange_that_makes_elements_agree():
+    nine = examples.truth()
+    known = replace(exact(nine), stiffness_se=0.005 * nine.stiffness, dof=np.full(9, 6.0))
+    read = grasped(3.85, 1e-4, truth=nine)
+    assert grasp.evaluate(read, known).combined.estimate == pytest.approx(3.85, rel=0.02)
+    for i, j in ((0, 1), (2, 7), (8, 0)):
+        order = np.arange(9)
+        order[[i, j]] = j, i
+        n, m = sorted(nine.element[[i, j]])
+        with pytest.raises(InputError, match=f"once the signals of {n} and {m} are exchanged"):
+            grasp.evaluate(replace(read, signal=read.signal[order]), known)
+
+
+def test_one_channel_of_the_other_sign_is_refused():
+    """All of them are a note: the calibration may have been read the other way round."""
+    read = grasped(3.85, 1e-4)
+    for number in TRUTH.element:
+        signal = np.where((TRUTH.element == number)[:, None], -1, 1) * read.signal
+        with pytest.raises(InputError, match=f"element {number} goes the other way"):
+            grasp.evaluate(replace(read, signal=signal), exact())
 
 
 @pytest.mark.parametrize("x", [1e-3, 0.5, 3.85, 40.0, 2000.0, 1e5])

@@ -126,14 +126,15 @@ def test_the_mean_is_over_whole_periods_of_the_mains(tmp_path):
     load = np.minimum(t // 0.507, 7)
     hum = 0.01 * np.sin(2 * np.pi * 50 * t)
     log = LabLog(
-        "log", {"Time": t, "load": load, "ai1": hum + load, "ai2": hum - load}, None, np.arange(len(t))
+        "log", {"Time": t, "load": load, "ai1": hum + load, "ai2": hum - 2 * load}, None, np.arange(len(t))
     )
     text = '[log]\nkind = "grasp"\ntime = "Time"\nmains = 50\n[channels]\nai1 = 1\nai2 = 2\n'
     text += '[steps]\nby = "marks"\n'
     (tmp_path / "m.toml").write_text(text + 'column = "load"\n[load]\ncolumn = "load"\n')
     taken = log_readings.take(log, read_map(tmp_path / "m.toml"))
     assert [s.samples for s in taken.steps] == [500] * 7
-    assert np.abs(np.abs(rows_of(taken.table)[:, 2]) - np.repeat(np.arange(1, 8), 2)).max() < 1e-9
+    read = rows_of(taken.table)[:, 2].reshape(-1, 2)
+    assert read == pytest.approx(np.arange(1, 8)[:, None] * [1, -2], abs=1e-9)
 
 
 def test_ten_samples_a_state_are_no_error(tmp_path, capsys):
@@ -282,6 +283,44 @@ def test_two_channels_at_one_limit_are_saturated_not_one_channel(tmp_path):
     bad = broken(lab, ai6=railed, ai8=railed)
     taken = log_readings.take(in_memory(bad), mapped(tmp_path, lab, "grasp"))
     assert set(taken.left_out) == {6, 8} and all("saturated" in why for why in taken.left_out.values())
+
+
+def test_steps_of_few_samples_at_one_limit_are_saturated_too(tmp_path):
+    """Five samples a step, without noise."""
+    lab = labs.grasp(np.random.default_rng(8))
+    kept = np.sort(np.concatenate([np.flatnonzero(lab.step == k)[::16][:5] for k in range(-1, 19)]))
+    few = replace(
+        lab,
+        time=lab.time[kept],
+        step=lab.step[kept],
+        drift=lab.drift[:, kept],
+        columns={name: v[kept] for name, v in lab.columns.items()},
+    )
+    railed = np.where(few.columns["load"] > 1, -5.0, -0.1)
+    taken = log_readings.take(in_memory(broken(few, ai6=railed, ai8=railed)), mapped(tmp_path, few, "grasp"))
+    assert set(taken.left_out) == {6, 8} and all("saturated" in why for why in taken.left_out.values())
+
+
+def test_channels_without_noise_are_not_saturated(tmp_path):
+    """A voltmeter that rounds to millivolts reads one value throughout a step, the largest one too."""
+    lab = labs.grasp(np.random.default_rng(8))
+    load = np.where(lab.step >= 0, labs.UP_AND_DOWN[lab.step], lab.columns["load"])
+    a = labs.array()
+    _, sink = labs.approach(load, a.stiffness, labs.X)
+    volts = a.zero_signal[:, None] + a.signal_per_deflection[:, None] * sink
+    still = broken(lab, **{f"ai{n}": np.round(v, 3) for n, v in zip(a.element, volts)})
+    assert not log_readings.take(in_memory(still), mapped(tmp_path, lab, "grasp")).left_out
+
+
+@pytest.mark.parametrize("kind", ["grasp", "calibration"])
+@pytest.mark.parametrize("sign", [1, -1])
+def test_two_channels_on_one_bridge_are_one_though_each_has_noise(kind, sign, tmp_path):
+    rng = np.random.default_rng(8)
+    lab = (labs.grasp if kind == "grasp" else labs.calibration)(rng)
+    noise = 5e-4 * rng.standard_normal(len(lab.time))
+    bad = broken(lab, ai3=sign * lab.columns["ai2"] + noise)
+    with pytest.raises(log_readings.InputError, match="ai3: the same signal as ai2: elements 2 and 3"):
+        log_readings.take(in_memory(bad), mapped(tmp_path, bad, kind))
 
 
 def _refused(lab, kind="grasp"):

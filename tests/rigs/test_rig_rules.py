@@ -48,6 +48,7 @@ MISFITS = {
     "foot_holes_apart": ("grasping", {"clamp.mount_pitch_y": 40.0, "clamp.carrier_screw_offset": 6.0}),
     "pads_on_sample": ("grasping", {"array.row_arms": [[6.0] * 9, [6.0] * 9], "sample.side": 32.0}),
     "bar_clears_screws": ("grasping", {"clamp.mount_pitch_y": 36.0, "clamp.carrier_screw_offset": 2.0}),
+    "platform_clears_latch": ("grasping", {"grasping.lift": 44.1, "grasping.rail_length": 140.0}),
     "rail_is_long_enough": ("grasping", {"grasping.lift": 90.0}),
     "leads_reach_from_stages": ("calibration", {"wiring.to_board": 100.0}),
     "leads_reach_from_guide": ("grasping", {"wiring.to_board": 100.0}),

@@ -12,6 +12,8 @@ from variants import variant
 from tactcad.drawing import guide
 from tactcad.parts.designs import load
 from tactcad.scenes import make_scene
+from tactcad.scenes.moves import box, moments
+from tactcad.scenes.scene import STILL
 
 
 @pytest.fixture(scope="module", params=["grasping", "calibration"])
@@ -68,3 +70,21 @@ def test_the_moving_weight_is_in_grams_too():
     text = sections(guide.page(variant(), make_scene(variant(), "grasping")).decode())["Ballast"][0]
     newton, gram = map(float, re.search(r"([\d.]+) N, ([\d.]+) g", text).groups())
     assert gram == pytest.approx(newton / 9.80665e-3, abs=0.05)
+
+
+@pytest.mark.parametrize("weights", [0, 3])
+def test_every_part_ends_at_its_place(weights):
+    """Without weights nobody was told to lower the array."""
+    scene = make_scene(variant({"grasping.weights": weights}), "grasping")
+    at = {}
+    for moment in moments(scene):
+        at |= dict.fromkeys(moment.move.designators, moment.move.path[-1])
+    assert set(at.values()) == {STILL}
+    assert scene.steps[-1].title == ("Weights" if weights else "Lower")
+
+
+def test_a_stage_of_long_travel_is_not_driven_into_the_base_plate():
+    scene = make_scene(variant({"calibration.axis_travel": 100.0}), "sample-stiffness")
+    stage, base = (next(p for p in scene.placements if p.designator == name) for name in ("SM1", "BP1"))
+    lowest = min(z for m in moments(scene) if "SM1" in m.move.designators for *_, z in m.move.path)
+    assert box(stage)[0][2] + lowest > box(base)[1][2]

@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 
 import pytest
 from small_study import SMALL, written
 
 from tactcad.cli.main import main
+from tactcad.design.design_text import design_text
 from tactcad.design.messages import InputError
+from tactcad.parts.designs import load
 from tactcad.sweep import on_dask
+from tactcad.sweep.measured import measured
 from tactcad.sweep.study import read_study, study_schema
 
 THICKNESS = '[vary."element.hinge_thickness"]'
@@ -135,3 +139,29 @@ def test_the_order_in_which_fields_run_makes_another_study(tmp_path):
     one, other = read_study(written(tmp_path)), read_study(written(tmp_path, swapped))
     assert one.vary == other.vary and list(one.vary) == list(other.vary)[::-1]
     assert one.identity != other.identity
+
+
+@pytest.mark.parametrize("design", ["planar-array", "macro-array"])
+def test_what_estimate_says_is_measured_for_any_family(design, tmp_path, capsys):
+    """The table's numbers are those of `tactcad estimate --json`; a refused design is a row with a reason."""
+    path, field = ("hall.gap", 1.9) if design == "planar-array" else ("element.fillet_radius", 0.2)
+    (tmp_path / "one.toml").write_text(
+        f'[study]\nname = "one"\ndesign = "{design}"\n[vary."{path}"]\nvalues = [{field}, 0.3]\n'
+        '[measure]\nwhat = ["estimate"]\nelements = [2]\n'
+    )
+    study = read_study(tmp_path / "one.toml")
+    table = measured(study, 0, 2, tmp_path).to_pylist()
+    (tmp_path / "same.toml").write_text(load_text(design, path, field))
+    assert main(["estimate", str(tmp_path / "same.toml"), "--json"]) == 0
+    said = next(e for e in json.loads(capsys.readouterr().out)["elements"] if e["number"] == 2)
+    for name in ("stiffness", "rated_force"):
+        assert table[0][f"estimate.E2.{name}"] == pytest.approx(said[name], rel=1e-9)
+    if design == "planar-array":
+        assert table[1]["valid"] is False and "field_in_scale" in table[1]["reason"]
+        assert table[0]["estimate.E2.force_noise_z"] == pytest.approx(said["force_noise_z"], rel=1e-9)
+
+
+def load_text(design: str, path: str, value: float) -> str:
+    d = load(design)
+    table, name = path.split(".")
+    return design_text(replace(d, **{table: replace(getattr(d, table), **{name: value})}), "")

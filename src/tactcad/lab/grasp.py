@@ -20,6 +20,7 @@ from __future__ import annotations
 import json
 from contextlib import suppress
 from dataclasses import dataclass, replace
+from itertools import combinations
 from math import inf, isinf
 from typing import Any
 
@@ -40,6 +41,9 @@ from .layer_fit import WILD, LayeredArray, fit
 SCHEMA = "tactcad-stiffness-1"
 STRAY = 1e-4  # probability, over all elements, below which an element is reported not to follow the others
 SWAPPED = 5.0  # times nearer to others' zeros than to its own, from which on a channel is swapped; chosen
+EXCHANGED = 10.0  # times widened interval from which on swapped channels are looked for: on a layer elements
+# disagree as well, and an exchange then makes them agree by chance, up to 3 times (80 labs, measured)
+REVERSED = 0.1  # of the middle element's force, from which on one that falls is refused; chosen
 SURELY = 3.0  # standard errors below zero from which an element's force is reported to fall; chosen
 TOUCHES = 1e-3  # of the largest force on a pad, from which a pad counts as touching
 ROUNDED = 1e-9  # below which a singular value of unit columns is nought but rounding
@@ -142,14 +146,15 @@ def evaluate(
     ------
     InputError
         An element without calibration or with a constant signal, a reference that was not read, fewer than
-        two elements or than three loads above zero, two elements whose channels are swapped.
+        two elements or than three loads above zero, two elements whose channels are swapped, one whose
+        channel is reversed.
     """
     require_level(level)
-    touching = readings.load > 0
+    touching, where = readings.load > 0, f"{readings.path}: sample {readings.sample}"
     _refuse_swapped(readings, calibration)
     if touching.sum() < 3 or len(readings.element) < 2:
         raise InputError(
-            f"{readings.path}: sample {readings.sample}",
+            where,
             "too little to tell a slope from noise",
             value=f"{len(readings.element)} elements at {int(touching.sum())} loads above zero",
             legal="two elements and three loads at least",
@@ -168,10 +173,7 @@ def evaluate(
     slopes, noise = common_slopes(readings.element, signal, calibration, terms)
     smallest = np.finfo(float).tiny ** 0.5  # its square still has digits
     for constant in slopes.element[np.abs(slopes.s) < smallest][:1]:
-        raise InputError(
-            f"{readings.path}: sample {readings.sample}",
-            f"element {constant}: its signal does not change with the load",
-        )
+        raise InputError(where, f"element {constant}: its signal does not change with the load")
     number = int(readings.element[np.argmax(slopes.f / slopes.s)]) if reference is None else reference
     if number not in readings.element:
         raise InputError(
@@ -186,6 +188,8 @@ def evaluate(
     everywhere = [at for group in limits.values() for at in group]
     pairs = tuple(_pair(slopes, everywhere, int(m), r, level) for m in others)
     combined, p, widened = combine(slopes, level)
+    if widened > EXCHANGED:
+        _refuse_exchanged(readings, signal, calibration, terms, level)
     by_limits = tuple(
         (name, hull(combined, [combine(at, level)[0] for at in group])) for name, group in limits.items()
     )
@@ -200,7 +204,7 @@ def evaluate(
     notes += _strays(readings.element, signal, terms)
     load = readings.load[touching]
     wrong, rise = _wrong_forces(
-        load, readings.signal[:, touching], calibration, slopes, noise, overload_force
+        load, readings.signal[:, touching], calibration, slopes, noise, overload_force, where
     )
     notes += wrong
     borne = float(np.ptp(load)) * min(len(signal) / max(elements, 1), 1.0)
@@ -484,6 +488,29 @@ def common_slopes(
     return slopes_of(element, g, calibration, variance, dof), variance**0.5
 
 
+def _refuse_exchanged(
+    readings: GraspReadings,
+    signal: np.ndarray,
+    calibration: Sensitivity,
+    terms: np.ndarray | None,
+    level: float,
+) -> None:
+    """Refuse signals that agree once those of two elements are exchanged, and by one exchange alone."""
+    number, agree = readings.element, []
+    for i, j in combinations(range(len(number)), 2):
+        order = np.arange(len(number))
+        order[[i, j]] = j, i
+        if combine(common_slopes(number, signal[order], calibration, terms)[0], level)[2] == 1.0:
+            agree.append((int(number[i]), int(number[j])))
+    if len(agree) == 1:
+        n, m = agree[0]
+        raise InputError(
+            f"{readings.path}: sample {readings.sample}",
+            f"elements disagree, but not once the signals of {n} and {m} are exchanged: swapped channels?",
+            legal="each element's own signal",
+        )
+
+
 def _count(terms: np.ndarray | None) -> int:
     return 1 if terms is None else len(terms)
 
@@ -530,11 +557,18 @@ def _strays(element: np.ndarray, signal: np.ndarray, terms: np.ndarray | None) -
 
 
 def _wrong_forces(
-    load: np.ndarray, signal: np.ndarray, calibration: Sensitivity, slopes: Slopes, noise: float, most: float
+    load: np.ndarray,
+    signal: np.ndarray,
+    calibration: Sensitivity,
+    slopes: Slopes,
+    noise: float,
+    most: float,
+    where: str,
 ) -> tuple[list[str], float]:
     """A note if elements' forces fall as the load grows, and one if they pass `most` (N); then the rise of
     all elements' force (N). A force rises from the least load to the largest by K/K_v times the signal's
-    slope over the load. K_obj is made of ratios and shows neither.
+    slope over the load. K_obj is made of ratios and shows neither. Raises InputError if some fall and others
+    rise, each by more than REVERSED of the middle one.
     """
     away, span = load - load.mean(), float(np.ptp(load))
     if not span:
@@ -542,6 +576,16 @@ def _wrong_forces(
     rows = [_row(calibration, int(n)) for n in slopes.element]
     per_signal = calibration.stiffness[rows] / calibration.signal_per_deflection[rows] * span / (away @ away)
     rise, error = per_signal * (signal @ away), np.abs(per_signal) * noise * (away @ away) ** 0.5
+    telling = np.abs(rise) > np.maximum(SURELY * error, REVERSED * np.median(np.abs(rise)))
+    if (falls := telling & (rise < 0)).any() and (telling & (rise > 0)).any():
+        i = int(np.flatnonzero(falls == (2 * falls.sum() <= telling.sum()))[0])
+        raise InputError(
+            where,
+            f"with {span:.4g} N more load the force on element {slopes.element[i]} goes the other way than "
+            "most others': is its channel reversed?",
+            value=f"{rise[i]:.3g} N",
+            legal="the sign of the calibration",
+        )
     notes = []
     for wrong, what in (
         (rise < -SURELY * error, "falls: are signal and calibration of one sign?"),

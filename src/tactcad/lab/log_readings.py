@@ -10,6 +10,7 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass
+from itertools import combinations
 from math import floor
 
 import numpy as np
@@ -29,7 +30,13 @@ USUAL = 0.98  # share of the intervals that are usual: bursts of up to fifty sam
 FROM_MIDDLE = (
     4.0  # standard deviations of a plateau's middle half from which on a row belongs to the way there
 )
-STUCK = 8  # samples of a step at a channel's own limit from which the channel counts as saturated; chosen
+STUCK = 8  # samples in whole steps at a channel's own limit from which it counts as saturated; chosen
+APART = (
+    0.1  # of all loads, by which those at a limit differ where a channel without noise is saturated; chosen
+)
+# Two channels are one where their means agree within ALIKE of their noise, though signal and first zero are
+# FAR times it: no two bridges are out of balance alike. Chosen.
+ALIKE, FAR = 3.0, 100.0
 STATES = ("element", "run", "sample")
 TIMES = "numbers, hh:mm:ss, yyyy-mm-dd hh:mm:ss, dd.mm.yyyy hh:mm:ss or m/d/yyyy h:mm:ss AM"
 NO_MARK = ("", "0", "-", "nan")
@@ -119,6 +126,11 @@ def take(log: LabLog, by: LogMap) -> Taken:
                 raise InputError(
                     log.where(row, columns[n]), "no number within a step", legal="a number in every row"
                 )
+    noise = {
+        n: float(np.median([np.std(v[s.rows], ddof=1) if s.samples > 1 else 0.0 for s in steps]))
+        for n, v in kept.items()
+    }
+    _refuse_alike(log, steps, kept, columns, noise)
     if by.log.kind == "calibration":
         _refuse_swapped(log, steps, kept, columns)
     left_out |= _unmoved(by.log.kind, steps, kept)
@@ -127,10 +139,6 @@ def take(log: LabLog, by: LogMap) -> Taken:
     if len(kept) < least:
         why = "; ".join(f"{n}: {w}" for n, w in left_out.items())
         raise InputError(f"{log.path}: channels", f"too few tell anything ({why})", legal=f"{least} at least")
-    noise = {
-        n: float(np.median([np.std(v[s.rows], ddof=1) if s.samples > 1 else 0.0 for s in steps]))
-        for n, v in kept.items()
-    }
     table = _written(by, steps, kept, log, left_out)
     return Taken(by.log.kind, log, time, drive, steps, columns, kept, left_out, noise, table)
 
@@ -322,6 +330,24 @@ def _refuse_doubled(
             raise InputError(f"{log.path}: {columns[n]}", what, legal="a channel of its own for each element")
 
 
+def _refuse_alike(
+    log: LabLog,
+    steps: tuple[LogStep, ...],
+    kept: Mapping[int, np.ndarray],
+    columns: Mapping[int, str],
+    noise: Mapping[int, float],
+) -> None:
+    """Refuse two channels that read one signal, in one direction or in both, each with noise of its own."""
+    means = {n: np.array([v[s.rows].mean() for s in steps]) for n, v in kept.items()}
+    fewest = min(s.samples for s in steps)
+    for (n, a), (m, b) in combinations(means.items(), 2):
+        own = (noise[n] ** 2 + noise[m] ** 2) ** 0.5 / fewest**0.5
+        off = min(np.abs(a - b).max(), np.abs(a + b).max())
+        if off < ALIKE * own and min(abs(a[0]), np.ptp(a)) > FAR * own:
+            what = f"the same signal as {columns[n]}: elements {n} and {m} are one channel"
+            raise InputError(f"{log.path}: {columns[m]}", what, legal="a channel of its own for each element")
+
+
 def _silent(v: np.ndarray, steps: tuple[LogStep, ...], by: LogMap) -> str:
     """Why a channel has no information; "" if it has."""
     own = np.concatenate([v[s.rows] for s in steps])
@@ -333,10 +359,13 @@ def _silent(v: np.ndarray, steps: tuple[LogStep, ...], by: LogMap) -> str:
     ):
         if limit is not None and beyond.any():
             return f"saturated: at {limit:g} V in {int(beyond.sum())} samples"
+    driven = np.array([t.values["force" if by.log.kind == "calibration" else "load"] for t in steps])
+    noisy = np.median([np.ptp(v[t.rows]) for t in steps]) > 0
     for end in (np.nanmax(own), np.nanmin(own)):
-        stuck = [s for s in steps if s.samples >= STUCK and (v[s.rows] == end).all()]
-        if stuck and len(stuck) < len(steps):
-            return f"saturated: at {end:g} V in {len(stuck)} of {len(steps)} steps"
+        stuck = np.array([t.samples > 1 and (v[t.rows] == end).all() for t in steps])
+        enough = STUCK <= sum(t.samples for t, at in zip(steps, stuck) if at)
+        if enough and not stuck.all() and (noisy or np.ptp(driven[stuck]) > APART * np.ptp(driven)):
+            return f"saturated: at {end:g} V in {int(stuck.sum())} of {len(steps)} steps"
     return ""
 
 

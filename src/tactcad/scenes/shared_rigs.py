@@ -23,6 +23,7 @@ from tactcad.parts.rigs.frame import (
     PLATE_SCREW,
     POST,
     POST_Y,
+    STAGE,
     STAGE_HOLE,
     STAGE_PLATE,
     TIP,
@@ -232,6 +233,7 @@ def place_force_axis(
     travel = present(rig.design.calibration).axis_travel
     stage = replace(STAGES[0], travel=travel, maker="", part_no="", verified=False)
     resolution = present(rig.design.calibration).micrometer_resolution
+    aside = min(travel, STAGE / 2)  # the screws are free by then; further down is the base
     zs, z = rig.stage_middle(touch), rig.axis_middle(touch) + height
     y = POST_Y
     fixed = b.place("SF", rigs.stage_fixed(stage), (0, y, zs), AGAINST_Y)
@@ -258,7 +260,7 @@ def place_force_axis(
         f"post's rows at z = {zs - STAGE_HOLE:g} and {zs + STAGE_HOLE:g} mm, then drive it down and fix "
         "the other two. It must run square to the base plate: 0.01 mm on the whole travel against a "
         "square; where it does not, lay shim foil between post and fixed half.",
-        order=[(fixed, moving, head), *driven((moving,), fixings, (0.0, 0.0, 1.0), travel, z - height - zs)],
+        order=[(fixed, moving, head), *driven((moving,), fixings, (0.0, 0.0, 1.0), aside, z - height - zs)],
         tools=(SQUARE, SHIMS, "lever indicator, 1 um, on a stand"),
     )
     b.group("axis")

@@ -21,7 +21,7 @@ from tactcad.parts.rules import refuse_broken
 
 from .closed_forms import Refused, closed_forms, names_of
 from .designs_taken import Column, designs_taken, table_of
-from .study import BUILDS, CHECKS, EXPORT, HYPERCUBE, Study
+from .study import BUILDS, CHECKS, ESTIMATE, EXPORT, HYPERCUBE, Study, estimated
 
 if TYPE_CHECKING:
     import pyarrow as pa
@@ -148,6 +148,8 @@ def numbers_of(study: Study) -> list[str]:
     elements = [
         name for rung in study.measure.rungs for n in study.elements for name in names_of(study, rung, n)
     ]
+    if ESTIMATE in study.measure.what:
+        elements += [f"{ESTIMATE}.E{n}.{name}" for n in study.elements for name in study.figures]
     return elements + [
         name for what, names in NUMBERS.items() if what in study.measure.what for name in names
     ]
@@ -182,7 +184,7 @@ def measured_whole(study: Study, table: dict[str, Any], folder: Path) -> tuple[d
         for rung in study.measure.rungs:
             if rung in FINITE_ELEMENTS:
                 found |= _by_elements(study, design, rung)
-        for what, measure in ((BUILDS, _builds), (CHECKS, _checks)):
+        for what, measure in ((ESTIMATE, _estimate), (BUILDS, _builds), (CHECKS, _checks)):
             if what in study.measure.what:
                 found |= measure(study, design)
     except (InputError, CheckFailure) as refusal:
@@ -208,6 +210,16 @@ def _by_elements(study: Study, design: CommonTables, rung: str) -> dict[str, flo
         values = [getattr(wanted[number], name.rpartition(".")[2]) for name in names]
         found |= dict(zip(names, (np.nan if v is None else v for v in values)))
     return found
+
+
+def _estimate(study: Study, design: CommonTables) -> dict[str, float]:
+    known = {row.number: row for row in estimated(design)}
+    return {
+        f"{ESTIMATE}.E{n}.{name}": float(getattr(known[n], name))
+        for n in study.elements
+        for name in study.figures
+        if n in known and getattr(known[n], name) is not None
+    }
 
 
 def _builds(study: Study, design: CommonTables) -> dict[str, Any]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from functools import cached_property
 from math import prod
 from pathlib import Path
@@ -18,7 +18,7 @@ from tactcad.design.schema import table_schema, table_text
 from tactcad.design.text_values import parse_toml
 from tactcad.design.tree import CommonTables, Identity
 from tactcad.export.inputs import digest
-from tactcad.mechanics.ladder import CLOSED_FORMS, RUNGS
+from tactcad.mechanics.ladder import CLOSED_FORMS, DEFAULT_RUNG, RUNGS
 
 from .designs_taken import GRID, HYPERCUBE, LIST, SOBOL, Points, points_at_powers, spec_at, value_at
 
@@ -29,6 +29,7 @@ MOST_HYPERCUBE = 1_000_000
 
 DRAWN = (HYPERCUBE, SOBOL)
 STRENGTH, RULES, BUILDS, CHECKS, EXPORT = "strength", "rules", "builds", "checks", "export"
+ESTIMATE = "estimate"
 
 
 @dataclass(frozen=True)
@@ -88,13 +89,13 @@ class Measures:
 
     what: tuple[str, ...] = given(
         SomeOf(
-            (*RUNGS, STRENGTH, RULES, BUILDS, CHECKS, EXPORT),
-            "stiffness by these rungs, with the errors promised; strength by the same; rules between fields; "
-            "arrays built virtually; every check; files",
+            (*RUNGS, STRENGTH, ESTIMATE, RULES, BUILDS, CHECKS, EXPORT),
+            "stiffness by these rungs, with the errors promised; strength by the same; what `tactcad "
+            "estimate` says, of any family; rules between fields; arrays built virtually; every check; files",
         )
     )
     elements: tuple[float, ...] | None = given(
-        Numbers(Whole(1, 1000, "element number"), 1, 1000, "elements whose stiffness is measured"),
+        Numbers(Whole(1, 1000, "element number"), 1, 1000, "elements that are measured"),
         None,
         "all elements of the design",
     )
@@ -145,12 +146,24 @@ class Study:
         return values[0] if self.study.sampling == LIST else self.study.count or 0
 
     @cached_property
+    def figures(self) -> tuple[str, ...]:
+        """Numbers that the family's estimate has of every element."""
+        row = asdict(estimated(self.design)[0])
+        return tuple(n for n, v in row.items() if type(v) in (int, float, bool) and n != "number")
+
+    @cached_property
     def elements(self) -> tuple[int, ...]:
         """Numbers of the elements measured."""
         asked = self.measure.elements
         if asked is None:
             return tuple(p.number for p in family_of(self.design).layout(self.design).elements)
         return tuple(int(n) for n in asked)
+
+
+def estimated(design: CommonTables) -> list[Any]:
+    """What `tactcad estimate` says of every element, a record each."""
+    family = family_of(design)
+    return list(family.estimate.rows(family.layout(design), DEFAULT_RUNG, None))
 
 
 TABLES: dict[str, type] = {"study": StudyHead, "vary": Varied, "measure": Measures}
@@ -304,8 +317,8 @@ def _refuse_measures(study: Study) -> None:
     what = study.measure.what
     if STRENGTH in what and not study.measure.rungs:
         raise InputError("measure.what", "strength goes with a rung", legal='what = ["solid", "strength"]')
-    if study.measure.elements is not None and not study.measure.rungs:
-        raise InputError("measure.elements", "belongs to a rung", legal="left out")
+    if study.measure.elements is not None and not study.measure.rungs and ESTIMATE not in what:
+        raise InputError("measure.elements", "belongs to a rung or to estimate", legal="left out")
     family = family_of(study.design)
     if study.measure.rungs:
         family.must("variables", "measure.what: a rung")

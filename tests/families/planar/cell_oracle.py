@@ -33,9 +33,9 @@ class _Model:
         for i, row in enumerate(self.rows):
             J[i, list(row)] = list(row.values())
         scale = np.linalg.norm(J, axis=0)
-        spread = np.linalg.inv((J / scale).T @ (J / scale))
+        root = np.linalg.inv(np.linalg.qr(J / scale, mode="r"))  # (J'J)^-1 is root root'
         at = [self.columns[k] for k in of]
-        return Z * np.sqrt(np.diag(spread)[at]) / scale[at]
+        return Z * np.linalg.norm(root[at], axis=1) / scale[at]
 
 
 def law_of_bows(layout: PlanarLayout, seed: int, arrays: int) -> np.ndarray:

@@ -65,6 +65,16 @@ def rail_is_long_enough(layout: Layout) -> Iterator[Finding]:
 
 
 @fits
+def platform_clears_latch(layout: Layout) -> Iterator[Finding]:
+    """The platform comes down beside the latch, which stands at the height of the lifted carriage."""
+    rig = guide_layout(layout.design)
+    if rig is not None:
+        most = round(rig.bar_height - rig.carriage_on_bar + CARRIAGE_LENGTH / 2 - LEAST_AIR, 9)
+        what = "the platform comes down on the latch"
+        yield from at_most("grasping.lift", what, rig.grasping.lift, most)
+
+
+@fits
 def guide_stays_straight(layout: Layout) -> Iterator[Finding]:
     yield from too_much(layout, grasping_lines)
 
@@ -81,6 +91,7 @@ FITS = (
     bar_clears_screws,
     foot_holes_apart,
     rail_is_long_enough,
+    platform_clears_latch,
     leads_reach_from_guide,
     guide_stays_straight,
 )

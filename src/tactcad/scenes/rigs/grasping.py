@@ -144,16 +144,15 @@ def grasping(design: Design, pose: Pose = REST) -> Scene:
         b.meet(below, name)
         below, z = name, z + disc.extrusion.thickness
     b.group(None)
-    if weights:
-        b.step(
-            "Weights",
-            (0, 0, 330),
-            "Hold the platform, put the latch back in its outer hole, and lower the array by hand. One "
-            "disc a loading step, laid on without a knock; each is weighed before. Without any, the "
-            f"grasping force is the moving weight: {g.moving_weight:g} N.",
-            order=[*_latched(False), Move(axis, up, (STILL,))],
-            needs=(Need((sample,), "the array is lowered on it"),),
-        )
+    one_by_one = "One disc a loading step, laid on without a knock; each is weighed before. Without any, the"
+    b.step(
+        "Weights" if weights else "Lower",
+        (0, 0, 330 if weights else 0),
+        "Hold the platform, put the latch back in its outer hole, and lower the array by hand. "
+        f"{one_by_one if weights else 'The'} grasping force is the moving weight: {g.moving_weight:g} N.",
+        order=[*_latched(False), Move(axis, up, (STILL,))],
+        needs=(Need((sample,), "the array is lowered on it"),),
+    )
     if pose.height == 0:
         for place in rig.array.elements:
             b.meet(place.designator, sample)
