@@ -10,7 +10,7 @@ from tactcad.design.tree import CommonTables
 from tactcad.parts.language.description import Part
 from tactcad.parts.language.finding import Finding, Severity
 from tactcad.scenes import left_out, make_scene, overall_size
-from tactcad.scenes.poses import poses
+from tactcad.scenes.rig import poses
 from tactcad.solids.build import SolidError, build
 from tactcad.solids.meshing import USUAL, Meshing
 

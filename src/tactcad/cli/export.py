@@ -112,7 +112,7 @@ def _exported(source: str, args: argparse.Namespace, say: Progress) -> tuple[dic
     from tactcad.export.formats import ExportOptions
     from tactcad.export.pipeline import export
     from tactcad.scenes import chosen_scenes, left_out
-    from tactcad.scenes.poses import pose_of
+    from tactcad.scenes.rig import pose_of
 
     asked = allowance(args)
     design, again = read(source), None
