@@ -104,7 +104,7 @@ def signals(**changes) -> list[Finding]:
 
 
 def gauges(**changes) -> list[Finding]:
-    from tactcad.checks.facing_rows.gauge_limits import check_gauges
+    from tactcad.checks.facing_rows.circuit import check_gauges
 
     return list(check_gauges(variant({path.replace("__", "."): v for path, v in changes.items()})))
 
