@@ -24,8 +24,7 @@ from ..engine.ink import FRAME, LETTERS, THIN, DrawnSheet, Item, Text, rectangle
 from ..engine.layout_check import sheets_of
 from ..engine.paper import A3, HEIGHT, MARGIN, Page, block_of
 from ..engine.sheet_files import Written, files_of, pdf_runs
-from .around import around_page
-from .channel import channel_page
+from .channel import around_page, channel_page
 from .converter import HEADS, converter_channels, converter_notes, converter_page
 from .plan import plan_notes, plan_page
 from .symbols import printed
