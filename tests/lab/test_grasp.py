@@ -17,7 +17,7 @@ from tactcad.lab.combine import combine, scatter
 from tactcad.lab.load_cell import LoadCell
 from tactcad.lab.readings import CalibrationReadings, GraspReadings
 from tactcad.mechanics import lumped
-from tactcad.mechanics.sample_coupling import shares_between
+from tactcad.mechanics.lumped import shares_between
 
 CELL = 57.04
 LOAD = 3.235 + 0.980665 * np.arange(8)
