@@ -119,7 +119,7 @@ def _exported(source: str, args: argparse.Namespace, say: Progress) -> tuple[dic
     if args.measured:
         from tactcad.design.family import family_of
         from tactcad.design.tree import Design
-        from tactcad.lab.measured_parts import reissued
+        from tactcad.lab.inspection_sheet import reissued
         from tactcad.parts.rules import refuse_broken
 
         if not isinstance(design, Design):
