@@ -12,8 +12,7 @@ from math import ceil, cos, floor, hypot, pi, sin, sqrt
 
 from tactcad.contour import Contour, Corner, chain, circle, rectangle, rounded_polygon
 from tactcad.design.fields import present
-from tactcad.design.rigs import Cart, Holder, Sample
-from tactcad.design.tree import Design
+from tactcad.design.tree import Cart, Design, Holder, Sample
 
 from ..bought import standard_parts
 from ..bought.screws import CAP_SCREW_LENGTHS

@@ -8,8 +8,7 @@ from dataclasses import dataclass, replace
 from math import ceil, floor
 
 from tactcad.contour import chain, rectangle
-from tactcad.design.rigs import Grasping
-from tactcad.design.tree import Design
+from tactcad.design.tree import Design, Grasping
 
 from ..array.clamp import PRESS_FIT
 from ..array.layout import Layout
