@@ -118,7 +118,7 @@ def _on_hinge(
     """Each gauge within what bonding.signal_share lets it err along its hinge."""
     import numpy as np
 
-    from tactcad.parts.array.gauge_checks import allowed_places
+    from tactcad.parts.array.measurements import allowed_places
 
     places = layout.elements
     table = rigs[0].table
