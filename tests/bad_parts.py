@@ -86,7 +86,7 @@ def calibration() -> list[Finding]:
 
 
 def rigidity() -> list[Finding]:
-    from tactcad.checks.described.rigidity import check_rigidity
+    from tactcad.checks.described.goes_together import check_rigidity
 
     return check_rigidity(variant({"holder.lid_thickness": 2.0}), ["grasping"], [])
 
