@@ -22,7 +22,7 @@ from tactcad.parts.array.element import SLOT
 from tactcad.parts.array.layout import Layout
 from tactcad.parts.bought.standard_parts import BORE, LEAST_PLAY, OUTSIDE, dowel_limits
 from tactcad.parts.language.limits import deviations, general
-from tactcad.parts.language.plate import PLACE
+from tactcad.parts.language.stock import PLACE
 from tactcad.parts.rigs.bonding_fixture import (
     PLAY,
     TIP,

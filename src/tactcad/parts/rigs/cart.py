@@ -20,8 +20,7 @@ from ..bought.standard_parts import BEARINGS, Bearing
 from ..language.description import Extrusion, Feature, Hole, Part, Pocket, Purchase, Revolution
 from ..language.limits import FACES, Characteristic, DatumFeature, Geometric, within
 from ..language.metric import METRIC, SUNK, TAP_REACH, corners, engagement, sunk, tapped
-from ..language.plate import plate
-from ..language.stock import BRASS, RUBBER, STAINLESS
+from ..language.stock import BRASS, RUBBER, STAINLESS, plate
 
 # mm, largest gap of a wheel to the plane of the other three; chosen: the thinnest practical feeler.
 LOOSE_WHEEL = 0.02
