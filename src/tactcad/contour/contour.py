@@ -1,4 +1,6 @@
-"""A closed chain of exact segments, and what can be measured on it in closed form."""
+"""A closed chain of exact segments, and what can be measured on it in closed form; polygons with rounded
+corners as such chains.
+"""
 
 from __future__ import annotations
 

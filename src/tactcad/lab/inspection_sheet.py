@@ -1,6 +1,8 @@
 """Reads an inspection sheet that was filled in. Every refusal names file, line and column.
 
-Rows and columns may be in any order, and there may be further columns.
+Rows and columns may be in any order, and there may be further columns. A design is issued again from its
+measured elements: spacers as thick as pitch less measured sheet, and a place for each of the equal elements,
+so that the stop plate lies level on both rows' ledges.
 """
 
 from __future__ import annotations

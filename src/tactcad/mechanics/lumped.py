@@ -4,6 +4,12 @@ Fieller's interval for a ratio of two measured quantities, such as K_obj from a 
 Symbols as in the paper: K_r, K_m stiffness of the reference and the measuring element, K_obj of the
 object (all N/mm), Delta the approach of sensor and object (mm); d_r, d_m are the elements' own
 deflections Delta - delta_r, Delta - delta_m (mm). All arguments broadcast.
+
+The pads are coupled through one continuous rubber sample: an elastic layer bonded to a rigid base (or a
+half-space), each pad a rectangle of even pressure. In the plane of wave numbers a normal load gives the
+surface 2 (1 - nu^2)/E phi(k h)/k, with (bonded layer) phi = ((3 - 4 nu) sinh 2c - 2c)/((3 - 4 nu) cosh 2c +
+2 c^2 + 5 - 12 nu + 8 nu^2), c = k h; phi = 1 for the half-space. Source: Johnson, Contact Mechanics, and
+Gladwell, Contact Problems in the Classical Theory of Elasticity.
 """
 
 from __future__ import annotations

@@ -2,7 +2,8 @@
 
 A family of sensors names the folder or module of its rigs (facing rows: scenes/rigs). Every module there
 declares one, its `RIG`; nothing lists them. A module without, a declaration that lacks something, or two of
-one name are refused when they are imported.
+one name are refused when they are imported. Its poses are those that are checked, and what an
+option asks for.
 """
 
 from __future__ import annotations

@@ -8,8 +8,6 @@ from itertools import product
 from math import floor, pi
 from typing import Literal
 
-import numpy as np
-
 from tactcad.parts.bought.electronic_parts import Supply
 from tactcad.parts.language.description import Extrusion, Hole, Part, Revolution, Vector, envelope, vector
 
@@ -322,6 +320,8 @@ def thread_range(hole: Hole) -> tuple[float, float]:
 
 def engaged(first: Placement, second: Placement) -> Iterator[tuple[Hole, float, float]]:
     """Tapped holes of either part with the other one in their axis, and the range along that axis."""
+    import numpy as np  # listing a design's scenes does not load it
+
     for tapped, screw in ((first, second), (second, first)):
         turn, low_high = np.array(tapped.rotation), _along_z(screw.part)
         axis = np.array(screw.rotation)[:, 2]

@@ -1,8 +1,9 @@
 """Whether the circuit works: every gauge in one bridge, the read-out's rules kept, signals in range, and the
-asked force resolved.
+asked force resolved; whether the gauges bear their foil's strain.
 
 The rules (parts/rules/readout_rules.py) refuse a design that fails here; this check reads the written
-netlist.
+netlist. A limit that nobody read in a maker's sheet never decides silently: results that depend on it are
+flagged, with the parts.
 """
 
 from __future__ import annotations
@@ -230,12 +231,6 @@ def _beyond_range(design: Design, signals: Sequence[ElementSignal]) -> Iterator[
                 break
 
 
-CHECKS = (
-    Check("circuit", "design", lambda design, _: check_circuit(design), place=50, quick=True),
-    Check("signals", "design", lambda design, _: check_signals(design), place=60, quick=True),
-)
-
-
 # Results that depend on the figures of each kind of part.
 STAND_ON = {
     "amplifier": "range, common mode, settling, noise, drift",
@@ -281,4 +276,8 @@ def _overload(signal: ElementSignal) -> float:
     return signal.overload_strain
 
 
-CHECKS = (Check("gauge limits", "design", lambda design, _: check_gauges(design), place=65),)
+CHECKS = (
+    Check("circuit", "design", lambda design, _: check_circuit(design), place=50, quick=True),
+    Check("signals", "design", lambda design, _: check_signals(design), place=60, quick=True),
+    Check("gauge limits", "design", lambda design, _: check_gauges(design), place=65),
+)

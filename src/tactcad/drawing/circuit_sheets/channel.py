@@ -1,4 +1,6 @@
-"""One channel in full, for boards with an amplifier."""
+"""One channel in full, for boards with an amplifier; the periphery of a board's circuits: supplies, digital
+lines, clamps.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Measurements on every numbered element as cut: the part's characteristics, and inputs of the estimator."""
+"""Measurements on every numbered element as cut: the part's characteristics, and inputs of the estimator;
+and the limits that a bonded gauge is checked against before its element goes into the array, each with its
+origin.
+"""
 
 from __future__ import annotations
 

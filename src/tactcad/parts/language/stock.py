@@ -1,6 +1,5 @@
-"""Materials that no field of a design names, and a part's stock: flat stock as sold,
-the allowance on each face and edge, and the section in its cut file.
-Lengths in mm.
+"""Materials that no field of a design names, and a part's stock: flat stock as sold, the allowance on each
+face and edge, and the section in its cut file; plates milled from it. Lengths in mm.
 """
 
 from __future__ import annotations
