@@ -23,7 +23,7 @@ from tactcad.parts.array.measurements import gauge_checks, volts
 from tactcad.parts.rigs.bonding_fixture import bonding_rigs
 from tactcad.parts.rules import broken_rules, load
 from tactcad.scenes import left_out, make_scene, scene_names
-from tactcad.scenes.requirement import PLACE_ON_HINGE
+from tactcad.scenes.rig_requirements import PLACE_ON_HINGE
 from tactcad.solids.build import build
 from tactcad.solids.measure import measure
 from tactcad.stacks.virtual_build import sensor

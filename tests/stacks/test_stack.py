@@ -7,7 +7,8 @@ import pytest
 from pose_program import nearest_pose
 
 from tactcad.parts.rules import load
-from tactcad.scenes.requirement import AXLE_HEIGHT, BORES, SHANKS, WHEEL, DimensionLimits, loose_wheel
+from tactcad.scenes.requirement import DimensionLimits
+from tactcad.scenes.rig_requirements import AXLE_HEIGHT, BORES, SHANKS, WHEEL, loose_wheel
 from tactcad.stacks.mechanic import Assembled
 from tactcad.stacks.stack import stack
 from tactcad.stacks.variables import STACK_LENGTH, made

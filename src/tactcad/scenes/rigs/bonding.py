@@ -20,8 +20,8 @@ from tactcad.parts.rigs.stiffness import bonding_lines
 from tactcad.parts.rules.bonding_rules import FITS
 
 from ..builder import Builder
-from ..requirement import bonding_requirements
 from ..rig import Rig, none
+from ..rig_requirements import bonding_requirements
 from ..scene import AGAINST_Y, REST, UPRIGHT, Placement, Pose, Rotation, Scene
 from .array import laying_leads
 

@@ -24,8 +24,8 @@ from tactcad.parts.rigs.stiffness import calibration_lines, calibration_loads, s
 from tactcad.parts.rules.calibration_rules import FITS
 
 from ..builder import Builder
-from ..requirement import roller
 from ..rig import Rig
+from ..rig_requirements import roller
 from ..scene import AGAINST_Y, DOWN, REST, STILL, Motion, Move, Need, Pose, Rotation, Scene, Vector, whole_um
 from ..shared_rigs import (
     AXIS_LIFT,

@@ -64,8 +64,8 @@ from tactcad.parts.rules.grasping_rules import FITS
 from tactcad.parts.rules.rule import fits, wrong
 
 from ..builder import Builder
-from ..requirement import wheels
 from ..rig import Rig, none
+from ..rig_requirements import wheels
 from ..scene import (
     AGAINST_Y,
     ALONG_Y,

@@ -10,8 +10,8 @@ from tactcad.parts.rigs.stiffness import sample_lines
 from tactcad.parts.rules.grasping_rules import SAMPLE_FITS
 
 from ..builder import Builder
-from ..requirement import wheels
 from ..rig import Rig, none
+from ..rig_requirements import wheels
 from ..scene import REST, Motion, Need, Pose, Scene
 from ..shared_rigs import (
     AXIS_LIFT,
