@@ -17,7 +17,7 @@ from random_designs import raw_table
 from variants import FACING_ROWS, variant
 
 from tactcad.checks.check_report import Report, as_record
-from tactcad.checks.described.rigidity import check_rigidity, deflections
+from tactcad.checks.described.goes_together import check_rigidity, deflections
 from tactcad.design.load import from_table
 from tactcad.design.messages import InputError
 from tactcad.design.tree import Design

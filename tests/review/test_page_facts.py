@@ -24,7 +24,7 @@ from tactcad.parts.array.layout import Layout
 from tactcad.parts.language.finding import Finding
 from tactcad.review import review_page
 from tactcad.review.facts import _fact, element_facts, part_facts, scene_facts
-from tactcad.review.strain_field import strain_along, strain_field
+from tactcad.review.review_record import strain_along, strain_field
 from tactcad.scenes import make_scene
 
 WRITTEN = tomllib.loads((HARDWARE / "macro-array.toml").read_text("utf-8"))

@@ -27,7 +27,7 @@ from tactcad.parts.rigs.stand import StandLayout
 from tactcad.parts.rigs.stiffness import calibration_loads
 from tactcad.parts.rules import load
 from tactcad.scenes import make_scene, scene_names
-from tactcad.scenes.poses import pose_of, poses
+from tactcad.scenes.rig import pose_of, poses
 from tactcad.scenes.rigs.calibration import check_travel
 from tactcad.scenes.scene import Pose, Scene
 from tactcad.solids.build import build

@@ -10,7 +10,7 @@ from itertools import product
 import pytest
 from variants import DROP, variant
 
-from tactcad.checks.described.rigidity import check_rigidity
+from tactcad.checks.described.goes_together import check_rigidity
 from tactcad.checks.run import _left_out, run_checks
 from tactcad.cli.main import main
 from tactcad.design.load import paths

@@ -17,9 +17,9 @@ from tactcad.drawing.engine.boxes import placed
 from tactcad.drawing.parts.part_sheet import part_plan
 from tactcad.families.facing_rows import FAMILY
 from tactcad.mechanics import gauge_signal
-from tactcad.parts.array.gauge_checks import gauge_checks, volts
 from tactcad.parts.array.hinge_section import design_readout, hinge_section
 from tactcad.parts.array.layout import Layout
+from tactcad.parts.array.measurements import gauge_checks, volts
 from tactcad.parts.rigs.bonding_fixture import bonding_rigs
 from tactcad.parts.rules import broken_rules, load
 from tactcad.scenes import left_out, make_scene, scene_names

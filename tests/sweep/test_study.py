@@ -11,7 +11,7 @@ from small_study import SMALL, written
 from tactcad.cli.main import main
 from tactcad.design.design_text import design_text
 from tactcad.design.messages import InputError
-from tactcad.parts.designs import load
+from tactcad.parts.rules import load
 from tactcad.sweep import on_dask
 from tactcad.sweep.measured import measured
 from tactcad.sweep.study import read_study, study_schema

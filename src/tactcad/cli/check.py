@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from tactcad.checks.check_report import Report
     from tactcad.design.allowance import Allowance, Picked
-    from tactcad.solids.meshing import Meshing
+    from tactcad.solids import Meshing
 
 from .parser import UNLISTED, add_allowance, add_design, add_json, add_shop, add_strict, allowance
 
@@ -48,7 +48,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     from tactcad.checks.check_report import as_record, failure_table, json_bytes, junit_bytes
     from tactcad.checks.shop import DEFAULT, load_shop
-    from tactcad.solids.meshing import USUAL
+    from tactcad.solids import USUAL
 
     from .streams import coloured
 

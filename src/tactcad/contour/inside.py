@@ -8,9 +8,8 @@ from collections.abc import Iterator, Sequence
 from itertools import combinations, product
 from math import atan2, cos, dist, inf, pi, sin, sqrt, tau
 
-from .contour import Contour
+from .contour import ROUNDING_MM, Contour
 from .nearest import box_around, distance, distance_to, gap, meeting_points
-from .rounded import ROUNDING_MM
 from .segment import Line, Point, Segment
 
 

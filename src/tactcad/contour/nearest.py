@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from math import atan2, cos, dist, hypot, sin, sqrt, tau
 
-from .rounded import ROUNDING_MM
+from .contour import ROUNDING_MM
 from .segment import Arc, Line, Point, Segment
 
 

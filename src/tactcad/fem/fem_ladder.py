@@ -9,10 +9,9 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 from tactcad.design.messages import CheckFailure
-from tactcad.mechanics import friction
 from tactcad.mechanics.ladder import require_range
 from tactcad.mechanics.register import rungs
-from tactcad.mechanics.section import HingeSection
+from tactcad.mechanics.section import HingeSection, friction_factor
 
 from .elements import PlaneSolution, SolidSolution, solve_plane, solve_solid
 from .face_strain import SurfaceReadings, readings, solid_readings
@@ -82,7 +81,7 @@ def stiffness(s: HingeSection, rung: str, mesh: int = SOLID_MESH) -> float:
     CheckFailure
         If the design is impossible or the mesh cannot follow it.
     """
-    return converged(s, rung, mesh=mesh).stiffness * float(friction.factor(s))
+    return converged(s, rung, mesh=mesh).stiffness * float(friction_factor(s))
 
 
 def converged(
@@ -126,7 +125,7 @@ def solve(
     solution = converged(s, rung, shape, mesh)
     flat = readings(solution.plane, grid_length)
     read = solid_readings(solution.plane, solution.solids, grid_length) if solution.solids else flat
-    return ElementResult(solution.stiffness * float(friction.factor(s)), solution.error, read, flat)
+    return ElementResult(solution.stiffness * float(friction_factor(s)), solution.error, read, flat)
 
 
 def richardson(compliance: tuple[float, float], densities: tuple[int, int], order: float) -> float:

@@ -15,7 +15,7 @@ from tactcad.design.tree import CommonTables, Design
 from tactcad.lab.layer_fit import LAYERS, LayeredArray, layer
 from tactcad.lab.readings import GraspReadings
 from tactcad.mechanics import gauge_signal, ladder, readout
-from tactcad.mechanics.sample_coupling import shares_between
+from tactcad.mechanics.lumped import shares_between
 from tactcad.mechanics.strength import tip_compliance
 from tactcad.parts.array.hinge_section import design_gauge, design_readout, hinge_section, not_reached
 from tactcad.parts.array.layout import Layout

@@ -26,8 +26,7 @@ from tactcad.parts.language.description import Extrusion, Hole, Part
 from tactcad.parts.language.limits import deviations, general
 from tactcad.parts.language.metric import METRIC
 from tactcad.scenes.requirement import DimensionLimits, Requirement, summed, variable
-from tactcad.scenes.scene import Placement, Scene
-from tactcad.scenes.threads import COAXIAL, engaged, thread_range
+from tactcad.scenes.scene import COAXIAL, Placement, Scene, engaged, thread_range
 
 from .variables import STACK_LENGTH
 

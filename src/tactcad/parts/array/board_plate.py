@@ -29,8 +29,7 @@ from ..bought.electronic_parts import CARD_SIGNALS, CONTROLLER_SIGNALS, converte
 from ..language.description import Extrusion, Hole, Material, Part, Purchase, Revolution
 from ..language.limits import FACES, DatumFeature, Geometric
 from ..language.metric import METRIC, tapped_through
-from ..language.plate import BREAK_EDGES, PLACE, plate
-from ..language.stock import BRASS
+from ..language.stock import BRASS, BREAK_EDGES, PLACE, plate
 from .layout import Layout
 
 Place = tuple[float, float]

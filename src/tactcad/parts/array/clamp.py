@@ -24,8 +24,7 @@ from ..language.metric import (
     tapped_blind,
     tapped_through,
 )
-from ..language.plate import ANODISED, BREAK_EDGES, FRAME, PLACE, plate
-from ..language.stock import MAGNETIC_STAINLESS, held_for_grinding
+from ..language.stock import ANODISED, BREAK_EDGES, FRAME, MAGNETIC_STAINLESS, PLACE, held_for_grinding, plate
 from .layout import Layout
 
 # Least plate under a screw's head, and least grip of a dowel in each end plate, in mm: chosen, one

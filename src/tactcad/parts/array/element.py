@@ -17,8 +17,7 @@ from tactcad.design.tree import CommonTables, Design
 from ..bought.electronic_parts import spare_elements
 from ..language.description import Extrusion, Material, Part
 from ..language.limits import FACES, Characteristic, DatumFeature, Geometric, within
-from ..language.plate import PLACE
-from ..language.stock import held_for_grinding
+from ..language.stock import PLACE, held_for_grinding
 from .clamp import SPACER_TOLERANCE, STACK
 from .layout import ElementPlace, HingeShape, Layout
 

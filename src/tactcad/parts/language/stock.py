@@ -1,10 +1,10 @@
-"""Materials that no field of a design names, and a part's stock: flat stock as sold,
-the allowance on each face and edge, and the section in its cut file.
-Lengths in mm.
+"""Materials that no field of a design names, and a part's stock: flat stock as sold, the allowance on each
+face and edge, and the section in its cut file; plates milled from it. Lengths in mm.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
 from tactcad.contour import rectangle
@@ -12,8 +12,9 @@ from tactcad.design.materials import ALLOYS, family
 from tactcad.design.text_values import data_rows, number
 from tactcad.design.tree import CommonTables
 
-from .description import Extrusion, Material, Part, Pocket, section
-from .limits import FACES, Characteristic, general
+from .description import Extrusion, Feature, Hole, Material, Part, Pocket, section
+from .limits import FACES, Characteristic, DatumFeature, Geometric, general, within
+from .metric import METRIC
 
 # Densities in kg/m3: usual values of these materials.
 ALUMINIUM = Material("aluminium", 2700, magnetic="no")
@@ -132,3 +133,70 @@ def _is_plate(part: Part) -> bool:
         return False
     x0, y0, x1, y1 = part.body.outer.box
     return part.body.thickness < min(x1 - x0, y1 - y0)
+
+
+# A plate is faced on both sides to this, plus and minus mm, so that screws through it end in place; a thicker
+# part is a block, with general tolerances.
+THICKNESS, THICKEST = 0.05, 20.0
+# Zone of a screw hole, mm; chosen: drilled in one clamping. A screw of M3 in a hole of 3.4 takes it twice.
+PLACE = 0.1
+FRAME = ("A", "B", "C")  # the datums of a plate's holes
+FRAME_DATUMS = (DatumFeature("A", FACES[0]), DatumFeature("B", "left edge"), DatumFeature("C", "lower edge"))
+RIG_COLOUR = "#8d99a6"
+BREAK_EDGES = "break edges 0.2"
+ANODISED = "Ra 1.6, clear anodised 10 um after machining"
+
+
+def plate(
+    design: CommonTables,
+    number: str,
+    name: str,
+    body: Extrusion,
+    features: Iterable[Feature],
+    finish: str = ANODISED,
+    colour: str = RIG_COLOUR,
+    notes: tuple[str, ...] = (BREAK_EDGES,),
+    characteristics: tuple[Characteristic, ...] = (),
+    geometric: tuple[Geometric, ...] = (),
+    datums: tuple[DatumFeature, ...] = (),
+) -> Part:
+    """A plate of the design's plate alloy; its part number is the design's name and `number`.
+
+    Screw holes without a stated position get a zone each, from a face and two edges.
+    """
+    features = tuple(features)
+    limited = {f for c in characteristics for f in c.between} | {f for g in geometric for f in g.features}
+    geometric += tuple(
+        Geometric(f"{name.replace('_', ' ')} holes", "position", PLACE, (name,), FRAME, True)
+        for name in _screw_holes(features)
+        if name not in limited
+    )
+    if geometric and not datums:
+        datums = FRAME_DATUMS
+    return Part(
+        part_no=f"{design.name}-{number}",
+        name=name,
+        process="milled",
+        material=plate_material(design),
+        body=body,
+        features=features,
+        colour=colour,
+        finish=finish,
+        notes=notes,
+        characteristics=(*_thickness(body, characteristics), *characteristics),
+        geometric=geometric,
+        datums=datums,
+    )
+
+
+def _screw_holes(features: Iterable[Feature]) -> list[str]:
+    """Names of holes that screws pass or enter, each once."""
+    clearances = [m.clearance for m in METRIC.values()]
+    holes = (f for f in features if isinstance(f, Hole) and not f.tolerance)
+    return list(dict.fromkeys(h.name for h in holes if h.thread or h.counterbore or h.diameter in clearances))
+
+
+def _thickness(body: Extrusion, own: tuple[Characteristic, ...]) -> tuple[Characteristic, ...]:
+    if body.thickness > THICKEST or any(c.name == "thickness" for c in own):
+        return ()
+    return (within("thickness", body.thickness, THICKNESS, between=FACES),)

@@ -8,8 +8,7 @@ from dataclasses import dataclass, replace
 from math import ceil, floor
 
 from tactcad.contour import chain, rectangle
-from tactcad.design.rigs import Grasping
-from tactcad.design.tree import Design
+from tactcad.design.tree import Design, Grasping
 
 from ..array.clamp import PRESS_FIT
 from ..array.layout import Layout
@@ -17,8 +16,7 @@ from ..bought.standard_parts import dowel_diameter
 from ..language.description import Extrusion, Feature, Hole, Part, Purchase
 from ..language.limits import FACES, Geometric, deviations
 from ..language.metric import corners, sunk, tapped_blind
-from ..language.plate import FRAME, PLACE, plate
-from ..language.stock import CARBON_STEEL
+from ..language.stock import CARBON_STEEL, FRAME, PLACE, plate
 from .cart import CartLayout, cart_layout
 from .frame import (
     BAR,

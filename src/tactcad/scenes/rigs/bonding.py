@@ -137,7 +137,7 @@ def element_in(rig: BondingLayout) -> str:
 
 def gauge(rigs: Sequence[BondingLayout]) -> str:
     """Instructions for setting the gauge on the hinge, with the tolerance."""
-    from tactcad.parts.array.gauge_checks import allowed_places
+    from tactcad.parts.array.measurements import allowed_places
 
     rig = rigs[0]
     d, table = rig.design, rig.table
@@ -222,7 +222,7 @@ def solder(rig: BondingLayout) -> str:
 
 
 def resistance(rig: BondingLayout) -> str:
-    from tactcad.parts.array.gauge_checks import gauge_checks
+    from tactcad.parts.array.measurements import gauge_checks
 
     c = gauge_checks(rig.array)
     low, high = c.resistance
@@ -250,7 +250,7 @@ def _millivolts(volts: float) -> str:
 
 
 def zero(rig: BondingLayout) -> str:
-    from tactcad.parts.array.gauge_checks import gauge_checks, volts
+    from tactcad.parts.array.measurements import gauge_checks, volts
 
     c = gauge_checks(rig.array)
     arms = ", ".join(
@@ -267,7 +267,7 @@ def zero(rig: BondingLayout) -> str:
 
 
 def creep(rig: BondingLayout) -> str:
-    from tactcad.parts.array.gauge_checks import CREEP_FROM, CREEP_TO, gauge_checks
+    from tactcad.parts.array.measurements import CREEP_FROM, CREEP_TO, gauge_checks
 
     c, d = gauge_checks(rig.array), rig.design
     return (
