@@ -18,8 +18,7 @@ import numpy as np
 from tactcad.design.messages import CheckFailure
 
 from . import ladder, validity
-from .constants import by_sides, strain_data
-from .register import rungs
+from .register import by_sides, rungs, strain_data
 from .rungs import plane
 from .section import Array, HingeSection, friction_factor
 

@@ -10,8 +10,7 @@ import numpy as np
 
 from tactcad.design.text_values import NINE_DIGITS
 
-from .constants import ladder_data
-from .register import rungs
+from .register import ladder_data, rungs
 from .section import OPTIONAL, REQUIRED, Array, HingeSection, friction_lever
 
 ROUNDING = 1e-12  # a design on a limit is inside, however its ratios are rounded
