@@ -48,9 +48,8 @@ WIDTH, HEIGHT = 90.0, 102.0  # mm; chosen: what the routed board takes
 class BoardOutline:
     """mm, from the lower left corner of the component side; `thickness` of the bare board.
 
-    holes: x, y, diameter. connector: the middle of the lead connector's row of pins, `connector_width` long;
-    leads leave along `connector_direction` in the board's plane. highest: of the parts above the board,
-    without plugs; lowest: of the parts below it.
+    holes: x, y, diameter. connector: the middle of the lead connector's row of pins; leads leave along y.
+    highest: of the parts above the board, without plugs; lowest: of the parts below it.
     """
 
     width: float
@@ -58,10 +57,20 @@ class BoardOutline:
     thickness: float
     holes: tuple[tuple[float, float, float], ...]
     connector: Place
-    connector_width: float
-    connector_direction: Place
     highest: float
     lowest: float
+
+
+# Of each board that reads the array; all are equal.
+BOARD_OUTLINE = BoardOutline(
+    WIDTH,
+    HEIGHT,
+    THICKNESS,
+    tuple((x, y, HOLE) for y in (AT_CORNER, HEIGHT - AT_CORNER) for x in (AT_CORNER, WIDTH - AT_CORNER)),
+    (WIDTH / 2, HEIGHT - LEADS_FROM_EDGE),
+    HIGHEST,
+    PIN_LENGTH,
+)
 
 
 def channels_of(layout: Layout) -> int:
@@ -82,23 +91,6 @@ def card_pins(layout: Layout) -> int:
     if converter_of(layout.design):
         return CONTROLLER_SIGNALS
     return CARD_SIGNALS + len(MULTIPLEXERS[layout.design.readout.multiplexer].address)
-
-
-def board_outline(layout: Layout) -> BoardOutline:
-    """The outline of each board that reads the array; all are equal."""
-    at = AT_CORNER
-    holes = tuple((x, y, HOLE) for y in (at, HEIGHT - at) for x in (at, WIDTH - at))
-    return BoardOutline(
-        WIDTH,
-        HEIGHT,
-        THICKNESS,
-        holes,
-        (WIDTH / 2, HEIGHT - LEADS_FROM_EDGE),
-        lead_pins(layout) * PITCH,
-        (0.0, 1.0),
-        HIGHEST,
-        PIN_LENGTH,
-    )
 
 
 THREAD = "M3"  # of every screw here, to fit the board's holes

@@ -27,7 +27,7 @@ from ..bought.electronic_parts import (
     supply_resistance,
     value_code,
 )
-from .board_plate import BRAID, board_outline, bundle, card_pins, channels_of, lead_pins
+from .board_plate import BOARD_OUTLINE, BRAID, bundle, card_pins, channels_of, lead_pins
 from .converter_figures import ANALOGUE_OHM, bridge_supply, supply_ohm
 from .layout import Layout
 from .leads import boards, colours, lead_routes, leads
@@ -92,7 +92,7 @@ def electronic_supplies(layout: Layout) -> tuple[Supply, ...]:
         ppm=1e6 * drift,
         end=f" ({mpn}); or equal" if own and not scheme else "; any maker's",
     )
-    part, outline, converter = MULTIPLEXERS[r.multiplexer], board_outline(layout), converter_of(d)
+    part, outline, converter = MULTIPLEXERS[r.multiplexer], BOARD_OUTLINE, converter_of(d)
     free, small = channels_of(layout) * count - n, kind.package == "0805"
     links = 3 * free if small else free
     if leads(layout) == 2:

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from tactcad.design.tree import Design
 from tactcad.parts.array.board_plate import (
+    BOARD_OUTLINE,
     BOARD_SCREW,
     CLAMP,
     CLAMP_AHEAD,
@@ -16,7 +17,6 @@ from tactcad.parts.array.board_plate import (
     STAND_OFF,
     THREAD,
     UNPLUGGED,
-    board_outline,
     board_plate,
     channels_of,
     fitted_board,
@@ -56,7 +56,7 @@ SOLDERING = "soldering iron with a 0.4 mm tip, temperature controlled"
 def wiring(design: Design, pose: Pose = REST) -> Scene:
     """Scene `wiring`, on the bench at z = 0; it has no pose but rest."""
     layout, whole = Layout(design), array(design)
-    outline, pins = board_outline(layout), lead_pins(layout)
+    outline, pins = BOARD_OUTLINE, lead_pins(layout)
     stood = stands(layout)
     b = Builder()
     b.supplies += wiring_supplies(layout)
