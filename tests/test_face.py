@@ -7,6 +7,7 @@ import re
 import subprocess
 import sys
 import types
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -74,6 +75,20 @@ def test_what_follows_from_a_value_follows_it():
         (lambda d: d.estimate(force=-1), "force"),
         (lambda d: d.scene("array").add("a cover"), "a tc.Part or a build123d solid"),
         (lambda d: d.scene("array").add(own(), at=(1, 2)), "x, y, z in mm"),
+        (lambda d: d.scene("array").add(own(), at=(0, 0, float("nan"))), "x, y, z in mm"),
+        (lambda d: d.scene("array").add(own(), at="top"), "x, y, z in mm"),
+        (lambda d: d.scene("array").add(own(), step=3), "step: not text"),
+        (lambda d: d.scene("array").add(own(), touches=3), "a designator of scene array"),
+        (lambda d: d.scene("array").add(own("../own")), "part.part_no: not usable"),
+        (lambda d: d.scene("array").add(replace(own(), process="forged")), "one of wire-cut, etched"),
+        (lambda d: d.scene("array").add(replace(own(), material="6061-T6")), "a tc.Material"),
+        (lambda d: d.scene("array").add(replace(own(), body=replace(SQUARE, outer=3))), "part.body"),
+        (lambda d: d.scene("array").add(replace(own(), body=replace(SQUARE, thickness=-1))), "part.body"),
+        (lambda d: d.scene(None), "no scene None"),
+        (lambda d: d.with_(3), "not fields and values"),
+        (lambda d: d.with_({3: 4}), "3: unknown field"),
+        (lambda d: d.with_(alloy="stainless"), "did you mean 17-4PH-H900 or 1.4310-C1300 or 1.4034-hardened"),
+        (lambda d: d.export(None), "not a path"),
         (lambda d: d.scene("array").add(own(), touches="CA9"), "CA1"),
         (lambda d: d.scene("array").add(own("macro-array-carrier")), "two parts share the number"),
         (lambda d: tc.load("macro"), "macro-array"),

@@ -8,14 +8,16 @@ from __future__ import annotations
 import copy
 import io
 import json
+import re
 import tempfile
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import redirect_stdout
 from dataclasses import asdict, dataclass, field, is_dataclass, replace
 from functools import wraps
 from html import escape
+from math import isfinite, nan
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar
+from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar, get_args
 
 from tactcad.design.design_text import design_text, started
 from tactcad.design.family import family_of
@@ -187,8 +189,10 @@ class LoadedDesign:
         InputError
             If a name is unknown or of several tables, a value is not legal, or a rule is broken.
         """
+        if not isinstance(changes, Mapping | None):
+            raise InputError("with_", "not fields and values", value=changes, legal='{"array.pitch": 4.5}')
         made = copy.deepcopy(self.table)
-        given = {self._path(name): value for name, value in {**(changes or {}), **named}.items()}
+        given = {self._path(str(name)): value for name, value in {**(changes or {}), **named}.items()}
         if "material.alloy" in given:  # a new alloy comes with its own values
             made["material"] = {}
         for path, value in given.items():
@@ -277,7 +281,7 @@ class LoadedDesign:
         from tactcad.scenes.scene import REST
 
         options = ExportOptions(self._scenes(scenes), REST, guide, "full", drawings)
-        done = export(self.design, options, folder, Quiet())
+        done = export(self.design, options, _path_of(folder, "export"), Quiet())
         files = read_export(str(folder), Path(folder)).files
         whole = {"folder": str(done.folder), "files": [*map(_plain, files)], "made": list(done.made)}
         return Reply(f"{done.folder}: {len(files)} files", tuple(files), whole)
@@ -298,7 +302,7 @@ class LoadedDesign:
 
     def save(self, file: str | Path) -> Path:
         """Write the design as a new design file; one that is there is never written over."""
-        path = Path(file)
+        path = _path_of(file, "save")
         if path.exists():
             raise InputError(str(path), "is there already; nothing was changed", legal="a new file's name")
         if self.added:
@@ -313,7 +317,7 @@ class LoadedDesign:
         for name in wanted:
             if name not in known:
                 why = next((f" ({o.reason})" for o in left_out(self.design) if o.scene == name), "")
-                hint = why or in_brackets(did_you_mean(name, known))
+                hint = why or in_brackets(did_you_mean(str(name), known))
                 raise InputError(self.name, f"no scene {name!r}; there are {', '.join(known)}{hint}")
         return tuple(name for name in known if not wanted or name in wanted)
 
@@ -388,17 +392,25 @@ class OpenScene:
         from tactcad.scenes.scene import AddedPart, Placement, with_added
 
         made, design = self.made, self.of.design
-        if len(at) != 3:
+        try:
+            place = vector(map(float, at))
+        except (TypeError, ValueError):
+            place = (nan, nan, nan)
+        if not all(map(isfinite, place)):
             raise InputError("at", "not a place", value=at, legal="x, y, z in mm")
+        for where, text in (("step", step), ("name", name)):
+            if not isinstance(text, str) or not (text or where == "name"):
+                raise InputError(where, "not text", value=text, legal="a line of text")
         known = {p.designator for p in made.placements}
-        touched = (touches,) if isinstance(touches, str) else tuple(touches)
+        touched = tuple(touches) if isinstance(touches, list | tuple | set) else (touches,) if touches else ()
         if unknown := [d for d in touched if d not in known]:
-            legal = f"a designator of scene {self.name}{in_brackets(did_you_mean(unknown[0], known))}"
+            legal = f"a designator of scene {self.name}{in_brackets(did_you_mean(str(unknown[0]), known))}"
             raise InputError("touches", "nothing is called so", value=unknown[0], legal=legal)
         if not isinstance(part, Part):
             part = _from_solid(part, design.name, name, material)
+        _refuse_wrong(part)
         designator = next(d for n in range(1, len(known) + 2) if (d := f"OWN{n}") not in known)
-        new = AddedPart(self.name, Placement(designator, part, vector(map(float, at))), step, touched)
+        new = AddedPart(self.name, Placement(designator, part, place), step, touched)
         try:
             with_added(made, [new])
         except ValueError as error:
@@ -419,12 +431,34 @@ class OpenScene:
         return self.of.show(self.name)
 
 
+def _refuse_wrong(part: Part) -> None:
+    """Raises InputError if a part holds what no file can."""
+    from tactcad.contour import Contour
+    from tactcad.parts.language.description import Extrusion, Material, ModelFile, Process, Revolution
+
+    body, processes = part.body, get_args(Process)
+    cut = (body.outer, *body.openings) if isinstance(body, Extrusion) else ()
+    whole = isinstance(body, Extrusion | Revolution | ModelFile) and all(isinstance(c, Contour) for c in cut)
+    dense = isinstance(part.material, Material) and isfinite(part.material.density)
+    number = re.fullmatch("[A-Za-z0-9][A-Za-z0-9_.-]{0,79}", str(part.part_no))
+    good = {
+        "part_no": (number, "letters, digits, _.-"),
+        "name": (isinstance(part.name, str) and part.name, "a line of text"),
+        "process": (part.process in processes, f"one of {', '.join(processes)}"),
+        "material": (dense and part.material.density > 0, "a tc.Material of a density above 0 kg/m3"),
+        "body": (whole and min(part.volume, getattr(body, "thickness", 1)) > 0, "a tc.Extrusion above 0 mm3"),
+    }
+    for name, (fits, legal) in good.items():
+        if not fits:
+            raise InputError(f"part.{name}", "not usable", value=getattr(part, name), legal=legal)
+
+
 def _from_solid(shape: Any, design: str, name: str, material: str) -> Part:
     """A bought part with the shape of a build123d solid, kept as a STEP file in the cache."""
     from tactcad.export.cache import LIBRARIES, default_root
     from tactcad.parts.language.description import Material, Part, Purchase
 
-    if not hasattr(shape, "wrapped"):
+    if getattr(shape, "wrapped", None) is None:
         raise InputError("part", "no part", value=shape, legal="a tc.Part or a build123d solid")
     from tactcad.solids.step import kept_model
 
@@ -439,6 +473,13 @@ def _from_solid(shape: Any, design: str, name: str, material: str) -> Part:
         body=body,
         purchase=Purchase(f"{title}, by its own STEP file"),
     )
+
+
+def _path_of(file: Any, where: str) -> Path:
+    """A path that was given. Raises InputError."""
+    if not isinstance(file, str | Path) or not str(file):
+        raise InputError(where, "not a path", value=file, legal="text or a pathlib.Path")
+    return Path(file)
 
 
 def _fields(kind: type) -> set[str]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import json
 import math
+import re
 from pathlib import Path
 
 import pytest
@@ -59,7 +60,10 @@ def test_too_short_a_time_ends_before_anything_is_solved(capsys, monkeypatch):
 
 def test_no_time_is_foretold_of_closed_forms(capsys):
     assert main(["estimate", "--in", "0.001"]) == 0
-    assert "budget: solid: K within 0.3 %; a step less: plane, 38 %; a step more: " in capsys.readouterr().out
+    said = capsys.readouterr()
+    assert "budget: solid: K within 0.3 %; a step less: plane, 38 %; a step more: " in said.out
+    assert re.fullmatch("tactcad: took [0-9.]+ s, more than --in 0.001: .*\n", said.err)
+    assert main(["estimate", "--in", "1e6"]) == 0 and not capsys.readouterr().err
 
 
 SIZE = ("size", "--stiffness", "10", "--load-arm", "5")

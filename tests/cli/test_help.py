@@ -78,10 +78,10 @@ def test_bash_completes_a_command(tmp_path, capsys):
     (tmp_path / "tactcad").chmod(0o755)
     script = capsys.readouterr().out + (
         f"PATH={tmp_path}:$PATH; COMP_WORDS=(tactcad export mac); COMP_CWORD=2; _tactcad; "
-        "echo ${COMPREPLY[@]}"
+        "echo ${COMPREPLY[@]}; COMP_WORDS=(tactcad golden --); _tactcad; echo ${COMPREPLY[@]}"
     )
     done = subprocess.run(["bash", "-c", script], capture_output=True, text=True, check=True)
-    assert done.stdout == "macro-array\n"
+    assert done.stdout == "macro-array\n--help\n"
 
 
 class Screen(io.StringIO):

@@ -58,6 +58,14 @@ PUBLISHED = {
         "tensile_strength": 190 * KSI,
     },
     "1.4310-C1300": {"youngs_modulus": 185e3, "yield_strength": 147 * KSI, "tensile_strength": 1300},
+    "1.4034-hardened": {  # kooz.si; AK Steel's type 420 strip
+        "youngs_modulus": 220e3,
+        "density": 7730,
+        "conductivity": 30,
+        "yield_strength": 195 * KSI,
+        "tensile_strength": 230 * KSI,
+        "fatigue_strength": 670,  # makeitfrom.com, hardened 420
+    },
     "maraging-300-aged": {
         "youngs_modulus": 27500 * KSI,
         "yield_strength": 270 * KSI,
@@ -83,6 +91,7 @@ def test_published_figures_lie_within_the_row_s_spread(name):
 WARMER = {
     "17-4PH-H900": (200.0, 195.0, 80.0),  # EN 10088-1, grade 630
     "1.4310-C1300": (200.0, 194.0, 80.0),  # EN 10088-1, austenitic grades
+    "1.4034-hardened": (215.0, 205.0, 180.0),  # EN 10088-1, 13 % chromium
     "maraging-300-aged": (27.8, 27.1, 130 / 1.8),  # ASME B31.1, nickel steels
     "C17200-TF00": (14.0, 13.7, 130 / 1.8),  # ASME B31.1, tin bronze
     "Ti-6Al-4V-annealed": (15.5, 15.0, 130 / 1.8),  # ASME B31.1, unalloyed titanium
@@ -100,7 +109,7 @@ def test_the_modulus_falls_by_the_alloy_s_own_share_per_kelvin():
 
 
 def test_every_row_is_whole():
-    families = ["aluminium"] * 3 + ["titanium"] + ["steel"] * 3 + ["copper"]
+    families = ["aluminium"] * 3 + ["titanium"] + ["steel"] * 4 + ["copper"]
     assert [family(row.density) for row in ALLOYS.values()] == families
     for row in ALLOYS.values():
         assert row.standard and row.temper and row.source

@@ -155,7 +155,7 @@ def test_key_characteristics_are_found_in_the_pdf_and_held_against_the_model(ord
     again = runs[runs.index("K1") + 1]
     bare = [run if run is not again else "0.25" for run in runs]
     assert key_faults(bare, keys) == ["K1: '0.25' is no value with limits"]
-    assert f"{again!r} stands 2 times" in " ".join(key_faults([*runs, again], keys))
+    assert f"{again!r} appears 2 times" in " ".join(key_faults([*runs, again], keys))
     assert "K5" in key_faults(runs, [*keys, Characteristic("one more", 1.0, 1.1, 0.9, True)])[0]
 
 
@@ -195,7 +195,7 @@ def test_a_sheet_written_without_a_text_is_not_let_out(orders, finished, monkeyp
     without = replace(sheet, items=tuple(item for item in sheet.items if item is not lost))
     monkeypatch.setattr(pdf, "pdf_bytes", lambda sheets, *more: pdf_bytes([without], *more))
     monkeypatch.setattr(sheets, "part_sheet", lambda order: sheet)
-    with pytest.raises(CheckFailure, match=r"K1 .*stands 0 times.*; no drawing was written"):
+    with pytest.raises(CheckFailure, match=r"K1 .*appears 0 times.*; no drawing was written"):
         written(orders[ELEMENT])
 
 

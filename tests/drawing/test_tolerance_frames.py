@@ -224,10 +224,10 @@ def test_basic_dimensions_are_framed_and_count_from_the_datums(sheets, parts):
 @pytest.mark.parametrize(
     ("text", "instead", "fault"),
     [
-        ("⌀0.01 CZ", "", "tolerance frame ⌀0.01 CZ A B stands 0 times, not 1"),
-        ("⌀0.01 CZ", "⌀0.1 CZ", "tolerance frame ⌀0.01 CZ A B stands 0 times, not 1"),
-        ("B", "A", "datum B stands 0 times in frames, not 5"),
-        ("C", "", "datum C stands 0 times in frames, not 4"),
+        ("⌀0.01 CZ", "", "tolerance frame ⌀0.01 CZ A B appears 0 times, not 1"),
+        ("⌀0.01 CZ", "⌀0.1 CZ", "tolerance frame ⌀0.01 CZ A B appears 0 times, not 1"),
+        ("B", "A", "datum B appears 0 times in frames, not 5"),
+        ("C", "", "datum C appears 0 times in frames, not 4"),
     ],
 )
 def test_a_sheet_that_lacks_or_changes_a_frame_is_refused(sheets, parts, text, instead, fault):
@@ -245,13 +245,13 @@ def test_a_sheet_with_a_limit_too_many_is_refused(sheets, parts):
     """The part as it was before it stated a tolerance, or a datum: its sheet says what it does not."""
     sheet, part = sheets["end-plate-tapped"], parts["end-plate-tapped"]
     fewer = replace(part, geometric=part.geometric[1:])
-    assert any("datum A stands" in said for said in faults(sheet, fewer))
+    assert any("datum A appears" in said for said in faults(sheet, fewer))
     bare = replace(parts["stop-plate"], geometric=(), datums=())
-    assert any("datum A stands 2 times" in said for said in faults(sheets["stop-plate"], bare))
+    assert any("datum A appears 2 times" in said for said in faults(sheets["stop-plate"], bare))
     more = replace(sheet, items=(*sheet.items, Text((30, 30), "Q", 2.5, role="symbol")))
-    assert "datum Q stands 1 times in frames, not 0" in faults(more, part)
+    assert "datum Q appears 1 times in frames, not 0" in faults(more, part)
     twice = replace(sheet, items=(*sheet.items, Text((30, 30), "A", 2.5, role="symbol")))
-    assert any("datum A stands 8 times in frames, not 7" in said for said in faults(twice, part))
+    assert any("datum A appears 8 times in frames, not 7" in said for said in faults(twice, part))
 
 
 @pytest.mark.cad
@@ -325,16 +325,16 @@ def test_one_hole_has_no_pattern():
     [
         (
             {"features": (hole("a", 5, 8), hole("b", 15, 8, 4.0)), "geometric": (place("a", "b"),)},
-            r"tolerance of position \(place\) stands 2 times",
+            r"tolerance of position \(place\) appears 2 times",
         ),
         (
             {"features": (hole("a", 5, 8),), "geometric": (place("a"),), "datums": (A, C)},
             "nothing locates x = 5 from a datum",
         ),
-        ({"datums": (A, DatumFeature("B", "round"))}, "datum B stands 0 times"),
+        ({"datums": (A, DatumFeature("B", "round"))}, "datum B appears 0 times"),
         (
             {"geometric": (Geometric("form", "flatness", 0.1, ("round",)),)},
-            r"tolerance of flatness \(form\) stands 0 times",
+            r"tolerance of flatness \(form\) appears 0 times",
         ),
     ],
 )

@@ -71,6 +71,7 @@ class Bench:
         if np.isfinite(h):
             C = C + layer_part(nu, h)(np.hypot(dx, dy)) * self.area
         self.C = C * (1 - nu**2) / np.pi  # of a pressure, E = 1
+        self.inverse = np.linalg.inv(self.C)
         self.arm = 1 + (X[None] / lever[:, None])  # what a pad's patches sink where its middle sinks by 1
 
     def sinks(self, E, K, height, slope, load, stop=np.inf):
@@ -86,14 +87,21 @@ class Bench:
         return out
 
     def _sinks(self, E, K, height, slope, load, closed, stop):
+        """Springs are of rank one each, so that R, from pressures to what patches sink turned round, is the
+        face's own and Woodbury's few rows. The gap under patches that do not press follows from R's block of
+        these, or the pressures from the other block: the smaller one is solved."""
         back = np.repeat(height, self.m) + slope[0] * self.px + slope[1] * self.py
-        M = self.C / E
-        for i in range(self.n):
+        back += np.where(np.repeat(closed, self.m), np.repeat(stop, self.m), 0.0) * self.arm.ravel()
+        springs = np.flatnonzero(~closed)
+        sink, bear = np.zeros((2, len(back), len(springs)))
+        for column, i in enumerate(springs):
             s = slice(i * self.m, (i + 1) * self.m)
-            if closed[i]:
-                back[s] += stop[i] * self.arm[i]
-            else:
-                M[s, s] += np.outer(self.arm[i], self.arm[i] * self.area[s]) / K[i]
+            sink[s, column], bear[s, column] = self.arm[i], self.arm[i] * self.area[s] / K[i]
+        R = E * self.inverse
+        across = R @ sink
+        R -= across @ np.linalg.solve(np.eye(len(springs)) + bear.T @ across, bear.T @ R)
+        right = np.stack([np.ones(len(back)), -back], 1)  # by an approach of 1, and by the backs
+        free = R @ right
         out = []
         on = np.ones(len(back), bool)
         for total in load:
@@ -101,20 +109,22 @@ class Bench:
                 out.append(np.zeros(self.n))
                 continue
             for _ in range(60):
-                rows = np.flatnonzero(on)
-                one, off = np.linalg.solve(
-                    M[np.ix_(rows, rows)], np.stack([np.ones(len(rows)), back[rows]], 1)
-                ).T
-                w = self.area[rows]
-                at = (total + off @ w) / (one @ w)
-                p = np.zeros(len(back))
-                p[rows] = at * one - off
-                gap = M[:, rows] @ p[rows] + back - at
-                now = np.where(on, p > 0, gap < 0)
+                a, b = np.flatnonzero(on), np.flatnonzero(~on)
+                pressure, gap = np.zeros((2, len(back), 2))
+                if len(b) < len(a):
+                    gap[b] = np.linalg.solve(R[np.ix_(b, b)], -free[b])
+                    pressure[a] = free[a] + R[np.ix_(a, b)] @ gap[b]
+                else:
+                    M = self.C[:, a] / E + sink @ bear[a].T
+                    pressure[a] = np.linalg.solve(M[a], right[a])
+                    gap[b] = M[b] @ pressure[a] - right[b]
+                one, off = self.area @ pressure
+                at = ((total - off) / one, 1.0)
+                now = np.where(on, pressure @ at > 0, gap @ at < 0)
                 if (now == on).all():
                     break
                 on = now
-            moment = (p * self.area).reshape(self.n, self.m) * self.arm
+            moment = (pressure @ at * self.area).reshape(self.n, self.m) * self.arm
             out.append(np.where(closed, stop, moment.sum(1) / K))
         return np.array(out).T
 

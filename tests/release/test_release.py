@@ -286,7 +286,7 @@ SAYS = {  # what is then among the faults; several gates may see one change
     "drawing cut off": "0 pages instead of 1",
     "drawing of a draft": f"pdf/{ELEMENT}.pdf, sheet 1: with PRELIMINARY",
     "drawing of a sample": f"sheet 1: with {STATUS!r}",
-    "drawing with a key characteristic twice": "key characteristic K1 (hinge thickness) stands 2 times",
+    "drawing with a key characteristic twice": "key characteristic K1 (hinge thickness) appears 2 times",
     "assembly drawing of a draft": f"pdf/tiny-array_{REVISION}.pdf, sheet 1: with PRELIMINARY",
     "assembly drawing missing": f"pdf/tiny-array_{REVISION}.pdf: missing",
     "cut file changed with everything that names it but the drawing": "does not have the SHA-256 of dxf/",
@@ -324,7 +324,7 @@ def _entry(**other: object) -> tuple[zipfile.ZipInfo, bytes]:
 
 
 BY_FORM = {  # entries beside those of a release, with everything in its manifest that has a name of its own
-    "more.txt: stands twice": [_entry(), _entry()],
+    "more.txt: appears twice": [_entry(), _entry()],
     "../more.txt: leads out of the folder": [_entry(filename="../more.txt")],
     "/more.txt: leads out of the folder": [_entry(filename="/more.txt")],
     "more.txt: another date": [_entry(date_time=(2026, 11, 22, 0, 0, 0))],

@@ -82,7 +82,7 @@ def test_rows_are_as_alike_as_the_head_plates_holes_allow(case):
     """Stacks that differ by d lean the plate by d over the rows' distance: over its thickness a third of the
     play that its least holes leave the largest pins."""
     design, scene, page = case
-    alike = float(re.search(r"both rows alike within ([\d.]+) mm", step_text(page, "Stack"))[1])
+    alike = float(re.search(r"the two lengths agree within ([\d.]+) mm", step_text(page, "Stack"))[1])
     at = {p.designator: p for p in scene.placements}
     pins = [p.origin[0] for d, p in at.items() if d.startswith("DW")]
     apart = 2 * min(abs(x) for x in pins)
@@ -165,7 +165,7 @@ def test_tools_drive_every_screw_and_nut_at_its_torque(case):
 def test_hinges_are_spared_and_pads_read_again_whenever_something_was_loosened(case):
     design, _, page = case
     assert "never by its arm" in step_text(page, "Gauges")
-    assert "whenever the clamping was loosened" in step_text(page, "Coplanar pads")
+    assert "whenever the clamping has been loosened" in step_text(page, "Coplanar pads")
     for title in ("Carrier", "Hold the stop plate down"):
         assert "pads' heights" in step_text(page, title)
     assert ("pads' heights" in step_text(page, "Stop plate")) == ("calibration" in scene_names(design))

@@ -137,7 +137,7 @@ def test_the_answer_is_written_before_what_follows_it(tmp_path, capsys, monkeypa
     assert [f["name"] for f in last["front"]] == ["chosen", "elements-4"]
     assert {p.name for p in out.iterdir()} == {"design.toml", "front", "report.html", "report.json"}
     assert [p.name for p in (out / "front").iterdir()] == ["elements-4.toml"]
-    assert "not 0.01 s" in said.err  # the overrun is said, and that a longer search may find better
+    assert "more than --in 0.01" in said.err  # the overrun is said, and that a longer search may find better
     assert any("more time may find better" in note for note in last["notes"])
 
 

@@ -1,6 +1,6 @@
 """The array read by sigma-delta converters, one a board: no amplifier, no multiplexer of ours, no card.
 
-EXC --+-----------+--- REFIN+     The bridges stand in parallel: EXC is what the grids' backing bears
+EXC --+-----------+--- REFIN+     The bridges are in parallel: EXC is what the grids' backing bears
       |           |               (converter_figures.py), all the time or once a period. It is the
   bridge n    converter           converter's reference too, so its drift cancels. The converter takes
       | AIN 2n, 2n+1              one input after the other; its filter of third order needs three

@@ -14,8 +14,10 @@ import os
 import sys
 from collections.abc import Callable
 from contextlib import suppress
+from time import perf_counter
 
 from tactcad import __version__
+from tactcad.design.allowance import read_seconds
 from tactcad.design.files import NO_ROOM
 from tactcad.design.messages import CheckFailure, InputError, one_of, refusal, refuse_missing
 from tactcad.export.cache import take_libraries_in
@@ -84,6 +86,7 @@ NEEDS = {
 }
 
 DONE, FAILED, BAD_INPUT = 0, 1, 2
+LATE = 1.1  # of the seconds asked for by --in, above which an overrun is reported
 LOUD = (("-q", "--quiet"), ("-v", "--verbose"))
 LOUDNESS = [[word] for words in LOUD for word in words]
 
@@ -153,6 +156,13 @@ def _profiled(run: Callable[[argparse.Namespace], int], args: argparse.Namespace
             print(json.dumps(record, indent=1) if as_json else text(record), file=sys.stderr)
 
 
+def _report_overrun(asked: str | None, took: float) -> None:
+    """A line on standard error if a command took longer than --in allows (s)."""
+    if asked is not None and took > LATE * read_seconds(asked, "--in"):
+        why = "the least work takes so long here, or this machine is busy"
+        print(f"tactcad: took {took:.3g} s, more than --in {asked}: {why}", file=sys.stderr)
+
+
 def parser_of(command: str, raises: bool = False) -> Parser:
     """The parser of one of COMMANDS, as its --help and the reference pages show it; `raises` as of Parser."""
     module = importlib.import_module(f"tactcad.cli.{command}")
@@ -193,7 +203,10 @@ def _dispatch(argv: list[str]) -> int:
             if command == argv[0] and (not option or getattr(args, option)):
                 refuse_missing(what, *needed)
         run = importlib.import_module(f"tactcad.cli.{argv[0]}").run
-        return _profiled(run, args) if os.environ.get("TACTCAD_PROFILE") else run(args)
+        started = perf_counter()
+        status = _profiled(run, args) if os.environ.get("TACTCAD_PROFILE") else run(args)
+        _report_overrun(getattr(args, "seconds", None), perf_counter() - started)
+        return status
     if argv[:1] == ["help"] and len(argv) == 2 and argv[1] in COMMANDS:
         parser_of(argv[1]).print_help()
         return DONE

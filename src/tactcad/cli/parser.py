@@ -28,7 +28,8 @@ class Parser(argparse.ArgumentParser):
 
     def parse(self, args: Sequence[str]) -> argparse.Namespace:
         """The parsed arguments; ends the program with exit status 2 if they are wrong."""
-        if args and args[-1] == "--":
+        takes_all = any(action.nargs == argparse.REMAINDER for action in self._actions)
+        if args and args[-1] == "--" and not takes_all:
             self._refuse("--", "nothing follows it", legal="leave it out, or name what it is for")
         parsed, unknown = super().parse_known_args(args)
         if unknown:

@@ -21,7 +21,7 @@ from typing import Any, NoReturn
 from tactcad.shutdown import unfinished
 
 from .messages import CheckFailure, InputError, hidden, shortened
-from .staging import staged_file, staged_folder
+from .staging import OWN, staged_file, staged_folder
 
 PIECE = 1 << 20  # bytes read at once
 
@@ -337,7 +337,9 @@ def refusal(where: str, error: OSError) -> InputError | CheckFailure:
     """
     if error.errno not in REFUSED_BY_MACHINE:
         raise error
-    reason = f"{error.strerror} ({error.filename})" if error.filename else error.strerror
+    there = str(error.filename or where)
+    shown = there != where and OWN not in there  # a temporary path tells nobody anything
+    reason = f"{error.strerror} ({there})" if shown else error.strerror
     if error.errno in NO_ROOM:
         return CheckFailure(f"{where}: cannot be written: {reason}; nothing was changed")
     return InputError(where, f"cannot be written: {reason}; nothing was changed", legal="a writable place")

@@ -140,6 +140,7 @@ WORDS = {
     "Ti-6Al-4V-annealed": "titanium, grade 5",
     "17-4PH-H900": "stainless steel, precipitation-hardened",
     "1.4310-C1300": "stainless spring steel, 301",
+    "1.4034-hardened": "stainless steel, martensitic, 420",
     "maraging-300-aged": "maraging steel",
     "C17200-TF00": "beryllium copper",
 }
@@ -158,11 +159,11 @@ def meant(word: str) -> str:
     return f"did you mean {' or '.join(found)}?" if found and wanted else did_you_mean(word, ALLOYS)
 
 
-def alloy(name: str) -> Alloy:
+def alloy(name: str, where: str = "material.alloy") -> Alloy:
     """The table's row of that name; raises InputError naming the legal ones."""
     if name not in ALLOYS:
         legal = f"one of {described()}{in_brackets(meant(name))}"
-        raise InputError("material.alloy", "unknown alloy", value=name, legal=legal)
+        raise InputError(where, "unknown alloy", value=name, legal=legal)
     return ALLOYS[name]
 
 

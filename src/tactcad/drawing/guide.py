@@ -156,7 +156,7 @@ def page(design: CommonTables, scene: Scene) -> bytes:
         f"<h1>{escape(title)}</h1>",
         f'<p class="note">Assembly guide, revision {escape(d.revision)}, {escape(d.date)}'
         + (f", {escape(d.organisation)}" if d.organisation else "")
-        + ". Made from the scene; parts as in its bill of materials.</p>",
+        + ". Its parts are those of the scene's bill of materials.</p>",
         f'<img src="{_name(scene, "exploded")}" alt="exploded view">',
         f"<section><h2>Tools</h2><ul>{needed}</ul></section>",
     ]
@@ -189,8 +189,8 @@ def _section(design: CommonTables, scene: Scene, number: int, step: Step) -> str
         lines.append(f'<img src="{picture}" alt="step {number}; blue: the parts of this step">')
     if step.elements:
         lines.append(
-            f'<figure><img src="{_name(scene, MAP)}" alt="where each element stands">'
-            "<figcaption>Where each element stands: the sensing face, pads towards you.</figcaption></figure>"
+            f'<figure><img src="{_name(scene, MAP)}" alt="where each element is">'
+            "<figcaption>Where each element is: the sensing face, pads towards you.</figcaption></figure>"
         )
     return "\n".join([*lines, "</section>"])
 

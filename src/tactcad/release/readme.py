@@ -132,8 +132,8 @@ def _to_make(contents: ReleaseContents) -> list[str]:
     lines += paragraph(SPARES)
     return lines + paragraph(
         "Bought parts (screws, pins, bearings, gauges) are in the bills of materials with make_buy = buy; "
-        "they need no quotation unless we ask for one. The other zips split the same order by way of "
-        "making, each with only its own files."
+        "they need no quotation unless we ask for one. The other zips split the same order by "
+        "process, each with only its own files."
     )
 
 
@@ -264,8 +264,8 @@ PACKAGE_FOLDERS = {
 BOARDS = (
     "All bare boards are alike: make them by the files in gerber/ (Gerber X2, drills in millimetres; "
     "layers by their file function) and outline.dxf; 4 layers, FR-4 as thick as ordered, copper 35 um, "
-    "tracks and gaps of 0.2 mm or more, vias of 0.3 mm. To fit them, NAME-bill.csv says what stands "
-    "where, and what is left off; NAME-places.csv has the places of what a machine fits. NAME.kicad_pcb "
+    "tracks and gaps of 0.2 mm or more, vias of 0.3 mm. To fit them, NAME-bill.csv says which part "
+    "goes where, and what is left off; NAME-places.csv has the places of what a machine fits. NAME.kicad_pcb "
     "is the same board for KiCad 6, NAME.step its solid."
 )
 
@@ -350,8 +350,8 @@ def _wire_time(one: Packed, shop: Shop) -> list[str]:
     feed, source = shop.feed, shop.feed_source
     return paragraph(
         f"About {minutes / 60:.1f} h for {length / 1000:.2f} m of contour, heights "
-        f"{', '.join(f'{h:g}' for h in heights)} mm; what one pass holds as packs, all else one piece at a "
-        f"time; {ORDER} has it by part. Estimated "
+        f"{', '.join(f'{h:g}' for h in heights)} mm; parts whose limits one pass holds are cut in packs, "
+        f"all others one at a time; {ORDER} has it by part. Estimated "
         f"with a main cut of {feed.area:g} mm2/min ({source['area']}), at most {feed.most:g} mm/min "
         f"({source['most']}), every further pass {feed.skim:g} mm/min ({source['skim']}), and "
         f"{feed.threading:g} min for each contour's start ({source['threading']}). Limits of {shop.name}; "
@@ -378,9 +378,10 @@ def _sheet_table(one: Packed) -> list[str]:
     ]
     lines = table(("for part", "pieces", "at least, mm", "how"), titled)
     return lines + paragraph(
-        "Thickness is that of the stock as sold, with its limits; closer ones: picked from rolled sheet that "
-        "measures so. Sizes of blanks hold what is machined off each edge. Sheet for the wire cutter is as "
-        "large as its nest (nest/), or as its machine takes. Round and block stock is its shop's."
+        "Thickness is that of the stock as sold, with its limits; for closer limits, pick rolled sheet that "
+        "measures within them. Sizes of blanks include what is machined off each edge. Sheet for the wire "
+        "cutter is as large as its nest (nest/), or as its machine takes. The machining shop has its own "
+        "round and block stock."
     )
 
 

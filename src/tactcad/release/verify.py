@@ -66,7 +66,7 @@ def read_back(path: Path, exported: Mapping[str, str] | None = None) -> tuple[di
 
 def _form_faults(entries: Sequence[zipfile.ZipInfo]) -> list[str]:
     names = [e.filename for e in entries]
-    wrong = [f"{name}: stands twice" for name, count in Counter(names).items() if count > 1]
+    wrong = [f"{name}: appears twice" for name, count in Counter(names).items() if count > 1]
     for e in entries:
         if PurePosixPath(e.filename).is_absolute() or ".." in PurePosixPath(e.filename).parts:
             wrong.append(f"{e.filename}: leads out of the folder")

@@ -18,7 +18,7 @@ from tactcad.design.family import all_families, family_of, taken_as
 from tactcad.design.fields import Number, Numbers, OneOf, SomeOf, TextLine, Whole, given, shown_text
 from tactcad.design.files import read_text
 from tactcad.design.load import DEFAULT_DESIGN, MOST_BYTES, read, read_table, unknown_field
-from tactcad.design.materials import ALLOYS
+from tactcad.design.materials import ALLOYS, alloy
 from tactcad.design.messages import InputError
 from tactcad.design.schema import table_schema, table_text
 from tactcad.design.sensing import POWERS, StrainGauge
@@ -119,6 +119,15 @@ class Room:
     height: float = given(Number("mm", 1, 500, "from the pads to the carrier's top"), 500.0)
 
 
+class SomeAlloys(SomeOf):
+    """Names of alloys; a refusal has what each is."""
+
+    def read(self, value: Any, where: str) -> tuple[str, ...]:
+        for i, name in enumerate(value if isinstance(value, list) else ()):
+            alloy(str(name), f"{where}[{i}]")
+        return super().read(value, where)
+
+
 @dataclass(frozen=True)
 class Stock:
     """[stock]: available sheets, alloys and gauges."""
@@ -127,7 +136,7 @@ class Stock:
         Numbers(_spec(Sheet, "thickness"), 1, 8, "sheet thicknesses"), None, "the base design's"
     )
     alloys: tuple[str, ...] = given(
-        SomeOf(tuple(ALLOYS), "sheet materials, names of the table"), None, "the base design's material"
+        SomeAlloys(tuple(ALLOYS), "sheet materials, names of the table"), None, "the base design's material"
     )
     hinge_tolerances: tuple[float, ...] = given(
         Numbers(

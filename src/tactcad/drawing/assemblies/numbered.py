@@ -188,8 +188,7 @@ def _family_pages(
         )
     title = Text(
         (x0, y1 + 3.0),
-        "One of each part, in the order of item numbers; "
-        "scales that differ from the title block's stand below",
+        "One of each part, in the order of item numbers; scales other than the title block's are given below",
         3.5,
     )
     pages = []

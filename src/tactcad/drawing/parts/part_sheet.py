@@ -220,13 +220,13 @@ def geometric_faults(runs: Sequence[str], part: Part, elsewhere: Mapping[str, in
         found -= elsewhere.get(cells[0], 0) if n == 1 else 0
         longer = sum(k for other, k in frames.items() if len(other) > n and other[:n] == cells)
         if found - longer != meant:
-            wrong.append(f"tolerance frame {' '.join(cells)} stands {found - longer} times, not {meant}")
+            wrong.append(f"tolerance frame {' '.join(cells)} appears {found - longer} times, not {meant}")
     wanted = Counter(d.letter for d in part.datums)
     wanted.update(x for cells in frames.elements() for x in cells[1:])
     for letter in sorted({*wanted, *(run for run in runs if len(run) == 1 and run.isupper())}):
         found = runs.count(letter) - elsewhere.get(letter, 0)
         if found != wanted[letter]:
-            wrong.append(f"datum {letter} stands {found} times in frames, not {wanted[letter]}")
+            wrong.append(f"datum {letter} appears {found} times in frames, not {wanted[letter]}")
     return wrong
 
 
@@ -237,7 +237,7 @@ def key_faults(runs: Sequence[str], keys: Sequence[Characteristic]) -> list[str]
     for n, c in enumerate(keys, start=1):
         at = [i for i, run in enumerate(runs) if run == f"K{n}"]
         if len(at) != 1 or at[0] + 1 >= len(runs):
-            wrong.append(f"key characteristic K{n} ({c.name}) stands {len(at)} times")
+            wrong.append(f"key characteristic K{n} ({c.name}) appears {len(at)} times")
             continue
         text = runs[at[0] + 1]
         shown.append(text)
@@ -252,7 +252,7 @@ def key_faults(runs: Sequence[str], keys: Sequence[Characteristic]) -> list[str]
             has = f"{c.nominal:g} in {c.lower:g} to {c.upper:g}"
             wrong.append(f"K{n} ({c.name}) says {text}, the model has {has}")
     wrong += [
-        f"{text!r} stands {runs.count(text)} times, for {shown.count(text)} key characteristics"
+        f"{text!r} appears {runs.count(text)} times, for {shown.count(text)} key characteristics"
         for text in sorted(set(shown))
         if runs.count(text) != shown.count(text)
     ]

@@ -138,7 +138,7 @@ def closed(sketch: Sketch, views: Sequence[View]) -> None:
     shown = [(f"tolerance of {g.symbol} ({g.name})", framed[g.name], times(part, g)) for g in part.geometric]
     shown += [(f"datum {d.letter}", lettered[d.letter], 1) for d in part.datums]
     if wrong := [
-        f"{what} stands {found} times, not {meant}" for what, found, meant in shown if found != meant
+        f"{what} appears {found} times, not {meant}" for what, found, meant in shown if found != meant
     ]:
         raise CheckFailure(f"drawings: {number}: {'; '.join(wrong)}")
 

@@ -41,11 +41,11 @@ def scene(design: PlanarDesign, _pose: object = None) -> Scene:
     chips = {order: cell_board.chip(layout, order) for order in orders}
     for e, order in zip(layout.elements, orders, strict=True):
         b.meet(b.place("U", chips[order], (e.x, e.y, layout.board_z)), board)
-    soldered = "Solder the chips: the board comes with them from who makes it."
+    soldered = "The board comes from its maker with the chips soldered."
     if not cell_board.why_none(layout):
         soldered = (
             "Have the board fitted by its bill and places (circuit/boards). Chips of different order codes "
-            "look alike and have different addresses: each belongs to its designator. Solder the connector "
+            "look alike and have different addresses: put each at its own designator. Solder the connector "
             "J1 on the tongue."
         )
     b.step("Chips", (0, 0, -35), soldered)
@@ -69,9 +69,7 @@ def scene(design: PlanarDesign, _pose: object = None) -> Scene:
     lower = b.place("SP", parts.lower_spacer(layout), (0, 0, layout.base_z))
     b.meet(lower, base)
     b.step(
-        "Lower spacer",
-        (0, 0, -6),
-        "Lay the lower spacer on the base: its thickness is the islands' way down.",
+        "Lower spacer", (0, 0, -6), "Lay the lower spacer on the base: its thickness is the islands' travel."
     )
     foil = b.place("F", parts.foil(layout), (0, 0, 0))
     b.meet(foil, lower)

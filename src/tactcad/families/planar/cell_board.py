@@ -61,7 +61,7 @@ def why_none(layout: PlanarLayout) -> str:
     if layout.chip.name != BOARDS_FOR:
         return f"pins of {layout.chip.name} are unknown: boards are laid out for {BOARDS_FOR}"
     if d.planar.pitch < LEAST_PITCH:
-        return f"the chips stand {d.planar.pitch:g} mm apart, and the layout takes {LEAST_PITCH:g} mm or more"
+        return f"the chips are {d.planar.pitch:g} mm apart, and the layout takes {LEAST_PITCH:g} mm or more"
     ways = len(channels(layout))
     if d.hall.buses > ways:
         pass_ = f"at most {ways} buses pass" if ways else "no bus passes"

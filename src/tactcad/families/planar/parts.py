@@ -168,7 +168,7 @@ def _stated(layout: PlanarLayout, *bores: Characteristic) -> tuple[Characteristi
 
 def contour_note(process: FoilProcess, thickness: float) -> str:
     cut = process.tolerance(thickness)
-    return f"{process.name}; contour within ±{cut:.3g} of the DXF's where no limit stands"
+    return f"{process.name}; contour within ±{cut:.3g} of the DXF's unless a limit is given"
 
 
 def _placed(features: Sequence[Feature], zones: Mapping[str, float]) -> dict[str, Any]:

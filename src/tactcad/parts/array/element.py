@@ -477,7 +477,7 @@ def spacer(layout: Layout) -> Part:
         by_sheet: tuple[str, ...] = (f"thickness {measured}",)
     else:
         by_sheet = (
-            "ordered once the elements' sheet is measured",
+            "order after measuring the elements' sheet",
             f"thickness as drawn where the elements' sheet measures {d.sheet.thickness:g}; else "
             f"{thickness_by_sheet(d)}",
         )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Callable, Sequence
+from functools import cache
 from typing import TypeVar
 
 import numpy as np
@@ -114,9 +115,7 @@ def design_readout(design: Design) -> ReadOut:
     if converter:
         return _by_converter(layout, converter, left)
     noise = derived_noise(design) if given.noise is None else given.noise
-    own = {
-        name: getattr(given, name) for name in inspect.signature(ReadOut).parameters if hasattr(given, name)
-    }
+    own = {name: getattr(given, name) for name in _names(ReadOut) if hasattr(given, name)}
     adc_noise = ADC_NOISE * given.adc_range if given.adc_noise is None else given.adc_noise
     return ReadOut(**own | {"noise": noise, "adc_noise": adc_noise, "transmission": left})
 
@@ -139,7 +138,12 @@ def derived_noise(design: Design) -> float:
 
 def _filled(kind: Callable[..., T], table: object) -> T:
     """A record filled with the table's values of the same names."""
-    return kind(**{name: getattr(table, name) for name in inspect.signature(kind).parameters})
+    return kind(**{name: getattr(table, name) for name in _names(kind)})
+
+
+@cache
+def _names(kind: Callable[..., object]) -> tuple[str, ...]:
+    return tuple(inspect.signature(kind).parameters)
 
 
 # A section's parameters and their fields in the design file; an element may override the first four.

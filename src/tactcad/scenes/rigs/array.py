@@ -281,8 +281,8 @@ def _gauges(layout: Layout) -> str:
     face = "each flat face" if d.element.sides == "one" else "the floor of each slot on the pads' side"
     bonded = d.bonding is not None and misfit(layout, BONDING_FITS) is None
     how = (
-        f"Bond a gauge on {face} in the bonding fixture, by the guide of scene bonding, and check it as that "
-        "says; its leads lie in the wire recess, bonded at the rear end."
+        f"Bond a gauge on {face} in the bonding fixture and check it, both by the guide of scene bonding. "
+        "Its leads lie in the wire recess and are bonded at the rear end."
         if bonded
         else f"Bond a gauge on {face}, its grid centred on the hinge within 0.1 mm, carrier trimmed to "
         f"{d.gauge.carrier_arm_side + d.gauge.carrier_body_side:g} mm; cure, coat, solder its leads. "
@@ -290,9 +290,9 @@ def _gauges(layout: Layout) -> str:
     )
     return (
         f"Hold and lift an element by its rear body only, never by its arm: the hinge is {thinnest:g} mm "
-        "thick. Keep each apart from the others, rear body held, arm free. Measure and record the hinge "
-        "thickness of every element, and mark its rear body with its number: equal elements differ in what "
-        f"was measured. {how}"
+        "thick. Store each by itself, held at its rear body, its arm free. Measure and record the hinge "
+        "thickness of every element, and mark its rear body with its number: elements of one drawing differ. "
+        f"{how}"
     )
 
 
@@ -311,7 +311,7 @@ def _first_plate(layout: Layout, c: Clamping, plate: Placement) -> str:
     return (
         f"Press the dowels square into {plate.designator} ({plate.part.name.lower()}) from the stack's side, "
         f"{deep:g} mm deep: {out:g} mm stand out. Lay the plate on its outer face, dowels up, the edge with "
-        "the carrier's threads away from you. It stays so until the stack is closed."
+        "the carrier's threads away from you. Leave it so until the stack is closed."
     )
 
 
@@ -324,13 +324,13 @@ def _stacking(layout: Layout, stacked: Sequence[Placement]) -> str:
         order = ", ".join(p.designator + arms.get(p.designator, "") for p in own)
         rows.append(f"Row {row}, on the {side}: {order}.")
     return (
-        "Slide the parts on the dowels in this order, the first one on first, pads towards you and arms to "
-        f"the middle. {' '.join(rows)} Nothing is tight yet. Pressed together by hand, elements and spacers "
-        f"are {layout.stack:g} mm long within {STACK_TOLERANCE:g}, and both rows alike within "
-        f"{rows_alike(layout):g} mm, or EP1 leans on its dowels: measure both. Where they are "
-        f"not, measure the spacers: each is {layout.design.array.pitch:g} mm less what the elements' sheet "
-        f"measures, +-{SPACER_TOLERANCE:g}, as their sheet says; where only the rows differ, exchange "
-        "spacers between them."
+        "Slide the parts onto the dowels in this order, pads towards you and arms to the middle. "
+        f"{' '.join(rows)} Nothing is tight yet. Press elements and spacers together by hand and measure "
+        f"both rows: each is {layout.stack:g} mm long within {STACK_TOLERANCE:g}, and the two lengths agree "
+        f"within {rows_alike(layout):g} mm, or EP1 leans on its dowels. If a length is off, measure the "
+        f"spacers: each is {layout.design.array.pitch:g} mm less what the elements' sheet measures, "
+        f"+-{SPACER_TOLERANCE:g}, as their drawing says. If only the rows differ, exchange spacers between "
+        "them."
     )
 
 
@@ -349,8 +349,8 @@ def rows_alike(layout: Layout) -> float:
 def _other_plate(c: Clamping, plate: Placement) -> str:
     sunk = "" if c.head_plate_web is None else "counterbores up, "
     return (
-        f"Slide {plate.designator} ({plate.part.name.lower()}) on the dowels, {sunk}its edge with the "
-        "carrier's threads over the other plate's."
+        f"Slide {plate.designator} ({plate.part.name.lower()}) onto the dowels, {sunk}the edge with the "
+        "carrier's threads above that of the other plate."
     )
 
 
@@ -374,7 +374,7 @@ def setting_words(layout: Layout) -> str:
         )
     gap = (
         f"Check the gap between the rows with feelers, {2 * layout.pad_inner:g} mm nominal: the dowels set "
-        "it, force nothing between the pads. "
+        "it, so force nothing between the pads. "
         if len(d.array.row_arms) == ABREAST
         else ""
     )
@@ -385,14 +385,14 @@ def setting_words(layout: Layout) -> str:
         else ""
     )
     return (
-        "Press both end plates down on the fixture's steps, and with a bar of rubber on the ledges, between "
-        "pads and dowels, every pad down on its floor. Press nowhere behind the dowels: that lifts the pads. "
-        f"{tight} crosswise, in three rounds: a third, two thirds, the whole torque. An element can "
-        f"still turn about its dowel by {wedge(layout)}: pressed on its ledge it lies at one end of that. "
-        f"{gap}No pad may let a {2 * tolerance * 1e3:g} um feeler pass. Then lay the array on its back on a "
-        "surface plate (grade 1 or better) and read each pad with a lever indicator: all within "
-        f"{2 * tolerance * 1e3:g} um{same}. Record them; loosen and repeat if one "
-        "is off, and repeat it all whenever the clamping was loosened."
+        "Press both end plates down on the fixture's steps. With a bar of rubber on the ledges, between pads "
+        "and dowels, press every pad down on the fixture's floor; pressing behind the dowels lifts the pads. "
+        f"{tight} crosswise, in three rounds: to a third, two thirds and all of the torque. An element can "
+        f"still turn about its dowel ({wedge(layout)}); pressed on its ledge, it lies at one end of this "
+        f"play. {gap}No {2 * tolerance * 1e3:g} um feeler may pass under a pad. Then lay the array on its "
+        "back on a surface plate (grade 1 or better) and read each pad with a lever indicator: all agree "
+        f"within {2 * tolerance * 1e3:g} um{same}. Record them. If one is off, loosen and repeat; repeat all "
+        "of this whenever the clamping has been loosened."
     )
 
 
@@ -417,14 +417,16 @@ def _is_calibrated(layout: Layout) -> bool:
 
 def _laying_stop_plate(layout: Layout) -> str:
     calibrated = (
-        "An array that is still to be calibrated is wired (scene wiring) and goes to scene calibration "
-        "without stop plate and set screws, its carrier on: the stops would close before the end of the "
-        "travel. Afterwards take the carrier off again and read the pads' heights on the surface plate "
-        "once more, as before: what has moved is made coplanar and calibrated anew. "
+        "If the array is still to be calibrated, first fit its carrier, wire it (scene wiring) and calibrate "
+        "it (scene calibration) without stop plate and set screws: the stops would close before the end of "
+        "the travel. Then take the carrier off again and read the pads' heights on the surface plate as "
+        "before; if a pad has moved, make the pads coplanar and calibrate again. "
     )
     return (
-        calibrated if _is_calibrated(layout) else ""
-    ) + "Wipe ledges and plate. Lay the stop plate on the ledges; both faces are ground, either lies down."
+        (calibrated if _is_calibrated(layout) else "")
+        + "Wipe ledges and plate. Lay the stop plate on the ledges; both faces are ground, so either may "
+        "face down."
+    )
 
 
 def _hold_down(layout: Layout) -> str:
@@ -436,10 +438,10 @@ def _hold_down(layout: Layout) -> str:
     wider = floor(1e3 * (tolerance + seat(layout)) + 1e-6) / 1e3  # a micrometre is what the indicator shows
     return (
         f"Turn the set screws in, crosswise, {seating.words(layout)}, locked with a drop of thread lacquer. "
-        "Read the pads' heights once more. Check each stop: push every pad with a plastic rod; it must give "
-        f"way and come to a stop, with {', '.join(f'{gap:g} mm at arm {arm:g}' for arm, gap in gaps)} "
-        f"(to {tolerance:g} mm less, or {wider:g} mm more, one plate lying on all "
-        "ledges) on the lever indicator at the tip. Leads and boards are the scene wiring's."
+        "Read the pads' heights once more. Check each stop: push every pad with a plastic rod, the "
+        "lever indicator at the tip. The pad must give way and stop after "
+        f"{', '.join(f'{gap:g} mm at arm {arm:g}' for arm, gap in gaps)} (to {tolerance:g} mm less, or "
+        f"{wider:g} mm more, since one plate lies on all ledges). Scene wiring adds leads and boards."
     )
 
 

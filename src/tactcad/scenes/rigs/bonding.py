@@ -160,10 +160,11 @@ def clamp(rigs: Sequence[BondingLayout]) -> str:
     """Instructions for clamping: weight, time, and the leaf's load."""
     rig = rigs[0]
     return (
-        "Release film on the gauge, then at once the clamp bar down on the pins, rubber on the gauge. Let "
-        f"it lie {rig.table.cure:g} min, or as long as the adhesive's own sheet asks, at 20 to 30 degrees C "
-        f"and 30 to 65 % relative humidity for cyanoacrylates. It presses {rig.bar_pressure:.2g} MPa; "
-        f"{_bears(rigs)} Lift the bar straight up; peel film and tape back over themselves."
+        "Lay release film on the gauge and at once lower the clamp bar on the pins, rubber on the gauge. "
+        f"Leave it for {rig.table.cure:g} min, or as long as the adhesive's own sheet asks, at 20 to 30 "
+        "degrees C and 30 to 65 % relative humidity for cyanoacrylates. It presses "
+        f"{rig.bar_pressure:.2g} MPa; {_bears(rigs)} Lift the bar straight up; peel film and tape back over "
+        "themselves."
     )
 
 
@@ -171,9 +172,9 @@ def _bears(rigs: Sequence[BondingLayout]) -> str:
     try:
         backed, free = (min(borne(rig, by) for rig in rigs) for by in (True, False))
     except CheckFailure:  # far thinner than long: the elements say so
-        return "press on it no harder: what so thin a leaf bears, plane elements do not tell."
+        return "press on it no harder: plane elements do not tell what so thin a leaf bears."
     thumb = THUMB / rigs[0].pad_area
-    safe = "the leaf bears that too, backed." if thumb < backed else "do not."
+    safe = "the leaf on its tongue bears that too." if thumb < backed else "do not press so hard."
     return (
         f"the leaf yields at {backed:.2g} MPa on its tongue, and at {free:.2g} MPa if the tongue is "
         f"forgotten (plane elements). A thumb of {THUMB:g} N on the bar is {thumb:.2g} MPa: {safe}"
@@ -198,7 +199,7 @@ def borne(rig: BondingLayout, backed: bool) -> float:
 
 def terminals(rig: BondingLayout) -> str:
     return (
-        "Cut away adhesive that stands out beside the leaf, with the scalpel along the face, never across "
+        "Cut away adhesive that came out beside the leaf, with the scalpel along the face, never across "
         f"the hinge: both slots must be free. Bond the solder terminals, {rig.table.terminal_length:g} x "
         f"{rig.terminal_width:g} mm, on the floor of the wire recess, their front end {AHEAD_OF_LEADS:g} mm "
         "behind its wall: there nothing bends, and leads and solder stay "
@@ -227,11 +228,12 @@ def resistance(rig: BondingLayout) -> str:
     c = gauge_checks(rig.array)
     low, high = c.resistance
     return (
-        f"Record for every element, before it is coated. Resistance at the terminals: {low:g} to {high:g} "
-        f"ohm, which is the gauge's own within {100 * c.hurt:g} %; more says that the grid was hurt. "
-        f"Insulation from grid to element: at least {c.insulation / 1e9:g} Gohm, the least that gauge makers "
-        f"let pass in a laboratory; flux or moisture is below. Never use one below {c.leak / 1e6:.2g} Mohm: "
-        "a leak of that, which comes and goes, reads as all of the drift by warm leads."
+        "Measure both on every element before it is coated, and record them. Resistance at the terminals: "
+        f"{low:g} to {high:g} ohm, which is the gauge's own within {100 * c.hurt:g} %; more means a damaged "
+        f"grid. Insulation from grid to element: at least {c.insulation / 1e9:g} Gohm, the least that gauge "
+        "makers accept in a laboratory; flux or moisture lowers it. Never use an element below "
+        f"{c.leak / 1e6:.2g} Mohm: such a leak, which comes and goes, reads as much as all drift by warm "
+        "leads."
     )
 
 
@@ -258,11 +260,11 @@ def zero(rig: BondingLayout) -> str:
         for arm, rise in c.rise
     )
     return (
-        f"Zero: the unloaded bridge within {100 * c.zero:.2g} % of dR/R, or amplifier or converter is full "
-        "before the pad bears rating.force. Sign: hold the rear body, pad up, and set a weight of "
+        f"Zero: the unloaded bridge is within {100 * c.zero:.2g} % of dR/R, or the amplifier or converter is "
+        "full before the pad bears rating.force. Sign: hold the rear body, pad up, and set a weight of "
         f"{1e3 * c.push / STANDARD_GRAVITY:.2g} g ({c.push:g} N) on the pad, which is how the object pushes. "
-        f"The resistance must rise, by about {arms}. Where it falls, the gauge is not on the "
-        "pads' side; where only the read-out falls, two leads are exchanged."
+        f"The resistance must rise, by about {arms}. If it falls, the gauge is not on the "
+        "pads' side; if only the read-out falls, two leads are exchanged."
     )
 
 
@@ -274,8 +276,8 @@ def creep(rig: BondingLayout) -> str:
         "Not before the adhesive has cured for 24 h. Hold the rated force on the pad: between "
         f"{CREEP_FROM:g} and {CREEP_TO:g} min the signal may change by {100 * c.creep:.2g} % of itself at "
         f"most (tolerance.creep, {100 * d.tolerance.creep:g} %, for each decade of time); unloaded, the zero "
-        "must come back within as much. Where a gauge fails here or before, take it off with solvent and "
-        "bond a spare; the hinge's thickness is then measured anew."
+        "must return within the same. If a gauge fails here or before, take it off with solvent, bond a "
+        "spare, and measure the hinge's thickness again."
     )
 
 

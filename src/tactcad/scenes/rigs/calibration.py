@@ -95,7 +95,7 @@ def calibration(design: Design, pose: Pose = REST) -> Scene:
         tools=("gauge blocks, steel",),
         needs=(
             Need((contact, under), "the roller presses a block on the upper stage"),
-            Need(("CA1",), "the block stands where the array will", away=True),
+            Need(("CA1",), "the block is where the array will be", away=True),
         ),
     )
     _mounted_array(b, rig, under, contact, dx, dy, pose)
@@ -224,11 +224,10 @@ def _mounted_array(
     b.step(
         "Array on its mount",
         (0, 0, 120),
-        "On the bench: lay the array (its own guide, but without stop plate and set screws: the stops "
-        "would close before the end of the travel; leads on their sockets, guide wiring) on the mount with "
-        "its carrier down, its rows across the mount's longer side and row 1 at the end marked x, and fix "
-        "it by four screws from below. "
-        "Leads leave along x, sockets unplugged.",
+        "On the bench: lay the array on the mount with its carrier down, its rows across the mount's longer "
+        "side and row 1 at the end marked x, and fix it by four screws from below. The array is assembled by "
+        "its own guide, but without stop plate and set screws (the stops would close before the end of the "
+        "travel), its leads on their sockets (guide wiring). Leads leave along x, sockets unplugged.",
         bench=True,
         at=IN_FRONT,
     )
@@ -245,7 +244,7 @@ def _mounted_array(
         "the roller within 0.02 mm over the whole y travel; turn the mount in its holes' play before the "
         "last turn of its screws.",
         order=[raised(b), Move((*ready, mount, *screws), IN_FRONT, (high, STILL))],
-        needs=(Need((roller,), "a pad's edge is held against it"),),
+        needs=(Need((roller,), "a pad's edge is aligned with it"),),
         leaves=("AM1 on SM2: turn about z, to its holes' play, until its screws are tight",),
     )
     b.group(None)
@@ -264,8 +263,9 @@ def _series(design: Design) -> str:
         seems = f": an arm of {stiffest.place.arm:g} mm would seem {softer * 100:.2g} % softer"
     return (
         f"Stand and mount give way by {give * 1e3:.2g} um/N in series with the gauge's "
-        f"{1e3 / cell:.3g}{seems}. Newtons over millimetres of the micrometer are "
-        "calibration.load_cell_stiffness and --load-cell of tactcad calibrate, not what its sheet says."
+        f"{1e3 / cell:.3g}{seems}. Use the newtons per millimetre of the micrometer that "
+        "you measure here for calibration.load_cell_stiffness and for --load-cell of tactcad calibrate, not "
+        "the gauge's data sheet."
     )
 
 

@@ -75,7 +75,7 @@ def setting(design: Design, pose: Pose = REST) -> Scene:
         "Loose stack in the fixture",
         (0, 0, 60),
         "Lower the loose stack, as it is after the step Other end plate of the array's guide, into the "
-        "fixture, pads down: the pads stand on the floor, both end plates' lower edges on the steps. "
+        "fixture, pads down: the pads rest on the floor, both end plates' lower edges on the steps. "
         "Turn it against both pins, one at the left edge of each plate.",
         order=[Move(tuple(p.designator for p in loose.placements), (0.0, 0.0, 60.0), (STILL,))],
         held=(

@@ -109,9 +109,9 @@ def wiring(design: Design, pose: Pose = REST) -> Scene:
     b.step(
         "Array on its back",
         (0, 0, 60),
-        "Lay the array on the bench on its carrier, pads up, finished, or still to be calibrated and without "
-        "stop plate and set screws: row 1 to the right (+x): each row's "
-        "leads come out towards its board. Nothing may lie on the pads.",
+        "Lay the array on the bench on its carrier, pads up, row 1 to the right (+x), so that each row's "
+        "leads come out towards its board. An array still to be calibrated has no stop plate and set screws "
+        "yet. Nothing may lie on the pads.",
         order=[Move(tuple(p.designator for p in whole.placements), (0.0, 0.0, LIFTED), (STILL,))],
         sets=("array on the bench: along z, turn about x and y",),
         leaves=("array: along x and y, turn about z, by the leads' slack",),
@@ -123,15 +123,16 @@ def wiring(design: Design, pose: Pose = REST) -> Scene:
     b.step(
         "Leads to their socket",
         (0, 0, 90),
-        "Fix each board's wire from the array's metal, 5 mm bare, with silver-filled adhesive "
-        "in the wire recess of one of the board's elements, on its floor, scraped, "
-        "clear of the terminals: screws' heads are sunk in anodised plates, and elements touch each other "
-        "by spacers and dowels. Push the braid over each board's leads up to the rear ends and tie both, "
+        "Each board has a wire from the array's metal: fix its end, 5 mm bare, with silver-filled adhesive "
+        "on the scraped floor of the wire recess of one of the board's elements, clear of the terminals. "
+        "(Screw heads are sunk in anodised plates; spacers and dowels connect the elements.) "
+        "Push the braid over each board's leads up to the rear ends and tie both, "
         f"{design.wiring.gather:g} mm behind these. Lay the board's socket on its plate before the board, "
         "tails towards the array, a sleeve on every lead. Solder each lead to the tail that the harness "
         "file in circuit/ gives it, the braid and the wire from the array's metal to the last two, and "
-        "shrink the sleeves over the joints. Measure at the socket: from red to black a gauge, from black "
-        "to the array's metal nothing, from that to each element's rear body below 1 ohm.",
+        "shrink the sleeves over the joints. Measure at the socket: a gauge between red and black, an "
+        "open circuit between black and the array's metal, and below 1 ohm between that wire and each "
+        "element's rear body.",
         order=[Move((name,), vector((*parked[s][:2], LIFTED)), (parked[s],)) for s, name in sockets.items()],
         tools=(SOLDERING, "solder and flux, as for the gauges", "ohmmeter, four wires, 0.01 ohm"),
         sets=("leads in their socket: all, by solder",),
@@ -167,8 +168,8 @@ def wiring(design: Design, pose: Pose = REST) -> Scene:
         "Plug the leads",
         (0, 0, 0),
         "Last of all, supplies off: plug each socket on its board's J2, first pin to first pin; pull it off "
-        "and plug it again, which shows that the loop is long enough. So the array is unplugged: supplies "
-        f"off, the socket straight up by both ends, {UNPLUGGED:g} mm, then the two screws of the lead clamp.",
+        "and plug it again, which shows that the loop is long enough. To unplug the array: supplies off, "
+        f"the socket straight up by both ends, {UNPLUGGED:g} mm, then the two screws of the lead clamp.",
         order=plugging,
         sets=("sockets on J2: all, by the header's pins",),
         leaves=("sockets: up, by hand",),
