@@ -24,17 +24,17 @@ GAP = 10.0  # mm, six thicknesses and more; at four, images change forces by 0.3
 DEEPEST = 0.1  # mm, to which the poses are scaled: the body is linear
 
 
-def forces(at: Scene, body: Body, p: Pressed, cell: float = CELL) -> np.ndarray:
+def forces(at: Scene, body: Body, p: Pressed) -> np.ndarray:
     """Of every pad at its pose, by ContactMechanics, N."""
     from ContactMechanics import FreeFFTElasticHalfSpace, PeriodicFFTElasticHalfSpace, make_system
     from SurfaceTopography import Topography
 
     pads, free = at.pads, body.thickness == inf
-    around = cell if free else GAP / 2
+    around = CELL if free else GAP / 2
     half = np.array([pads.length, pads.width]) / 2
     low = np.array([pads.x.min(), pads.y.min()]) - half - around
-    number = np.round((np.array([pads.x.max(), pads.y.max()]) + half + around - low) / cell).astype(int)
-    x, y = (low[i] + cell * (np.arange(number[i]) + 0.5) for i in (0, 1))
+    number = np.round((np.array([pads.x.max(), pads.y.max()]) + half + around - low) / CELL).astype(int)
+    x, y = (low[i] + CELL * (np.arange(number[i]) + 0.5) for i in (0, 1))
     X, Y = np.meshgrid(x, y, indexing="ij")
     depth, under = np.full(X.shape, -1e3), []
     for i in range(len(pads.x)):
@@ -44,7 +44,7 @@ def forces(at: Scene, body: Body, p: Pressed, cell: float = CELL) -> np.ndarray:
         depth[on] = (p.approach - back - moved)[on]
         under.append(on)
     scale = DEEPEST / depth.max()
-    size = tuple(number * cell)
+    size = tuple(number * CELL)
     substrate = (
         FreeFFTElasticHalfSpace(tuple(number), at.modulus / (1 - body.poisson**2), size)
         if free

@@ -383,11 +383,11 @@ def _clamp(d: Draw) -> None:
     high = d.table.get("clamp.end_plate_height", lowest - plate_bottom)
     bend = bends(2 * (edge + offset), d.table["clamp.end_plate_thickness"], high)
     # pads that stand off the surface plate take from the stops' gaps: a twentieth of these
-    d.most_pad = (hole + upper / 2 - pin) / 2 + d.room / 30
+    d.most_pad = min((hole + upper / 2 - pin) / 2 + d.room / 30, 0.08 * _shortest_span(d))  # 5 degrees
     force = d.table["rating.overload_force"]
     d.put("rating.overload_force", min(force, d.most_pad / (10.5 * bend)))
     d.number("tolerance.pad_height", min(10.5 * bend * force, d.most_pad), d.most_pad)
-    d.number("tolerance.tilt", _least_tilt(d))
+    d.number("tolerance.tilt", least_tilt(d))
     for name in ("end_plate_margin", "carrier_margin"):
         d.number(f"clamp.{name}")
     # how far the pads stand from the middle
@@ -395,12 +395,16 @@ def _clamp(d: Draw) -> None:
     d.far_y = (stack - 2 * spacer) / 2
 
 
-def _least_tilt(d: Draw) -> float:
+def least_tilt(d: Draw) -> float:
     """Degrees that dowel holes and pads may leave the carrier off square."""
-    high = d.table["tolerance.pad_height"]
-    rows = min(d.table["holes.dowel_offsets"])  # from the clamp edge, which is further out than the middle
-    spans = [2 * rows, (max(map(len, d.arms)) - 1) * d.table["array.pitch"]]
-    return 1.01 * degrees(hypot(0.015 / rows, max((high / s for s in spans if s > 0), default=0.0))) + 1e-3
+    rows = min(d.table["holes.dowel_offsets"])
+    return 1.01 * degrees(hypot(0.015 / rows, d.table["tolerance.pad_height"] / _shortest_span(d))) + 1e-3
+
+
+def _shortest_span(d: Draw) -> float:
+    """Between dowels, from the clamp edge, which is further out than the middle, or along a row."""
+    spans = [2 * min(d.table["holes.dowel_offsets"]), (max(map(len, d.arms)) - 1) * d.table["array.pitch"]]
+    return min(s for s in spans if s > 0)
 
 
 def bends(span: float, width: float, high: float) -> float:

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from math import ceil, cos, pi
 
-from sound_designs import DRILL_REACH, TAP_REACH, WALL, Draw, as_table, bends
+from sound_designs import DRILL_REACH, TAP_REACH, WALL, Draw, as_table, bends, least_tilt
 
 from tactcad.design.load import from_table
 from tactcad.parts.bought.screws import CAP_SCREW_LENGTHS
@@ -146,7 +146,7 @@ def _grasping(d: Draw) -> None:
     d.number("tolerance.pad_height", low, d.most_pad)
     # bar, 30 mm between foot and carriage, 23 x 8, turned by its load's 20 mm; foot and platform are stiffer
     square = 10.5 * heavy * 20 * 30 / (69e3 * 23 * 8**3 / 12) * 180 / pi
-    d.number("tolerance.tilt", max(d.table["tolerance.tilt"], square))
+    d.number("tolerance.tilt", max(least_tilt(d), square))
 
 
 def _calibration(d: Draw, into_sample: float) -> None:

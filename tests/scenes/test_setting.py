@@ -72,6 +72,7 @@ def test_every_design_has_it_in_bill_and_guide():
         assert "Setting fixture" in {row.description for row in bom_rows(scene, "A", {})}
         text = " ".join(s.text for s in make_scene(design, "array").steps)
         assert "setting fixture" in text and "mrad" in text
+        assert ("every blank on the strip" in text) == (name == "one row")
 
 
 def test_its_steps_make_elements_stand_square():

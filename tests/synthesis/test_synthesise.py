@@ -144,17 +144,16 @@ def test_an_impossible_target_ends_with_1_and_writes_nothing_but_the_best_when_a
     text = SMALL.replace('name = "small"', 'name = "small"\nhalf_width = 0.5')
     (tmp_path / "no.toml").write_text(text)
     out = tmp_path / "out"
-    assert main(["design", str(tmp_path / "no.toml"), "--out", str(out), "--within", "5%", "--in", "30"]) == 1
-    assert "Impossible as asked" in capsys.readouterr().out and not out.exists()
+    command = ["design", str(tmp_path / "no.toml"), "--out", str(out), "--within", "5%", "--in", "30"]
+    assert main([*command, "--json"]) == 1
+    told = json.loads(capsys.readouterr().out)
+    assert told["met"] is False and told["bounds"] and not out.exists()
     monkeypatch.setattr("tactcad.design.messages.find_spec", lambda name: None)  # no CAD kernel
-    assert (
-        main(
-            ["design", str(tmp_path / "no.toml"), "--out", str(out), "--within", "5%", "--in", "30", "--best"]
-        )
-        == 1
-    )
+    assert main([*command, "--best"]) == 1
     assert parse((out / "design.toml").read_text(), "d").name == "small"
-    assert f"next: tactcad estimate {out}/design.toml (`tactcad check` needs" in capsys.readouterr().out
+    said = capsys.readouterr().out
+    assert "Impossible as asked" in said
+    assert f"next: tactcad estimate {out}/design.toml (`tactcad check` needs" in said
     assert main(["estimate", str(out / "design.toml")]) == 0
 
 

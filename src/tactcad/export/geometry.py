@@ -28,13 +28,16 @@ DIGITS = 9  # decimals; tolerances of the comparison start at the sixth
 NOT_COMPARED = ("item", "part_no", "rev", "file", "sha256")
 
 
+def all_scenes(design: CommonTables) -> list[Scene]:
+    return [make_scene(design, name) for name in scene_names(design)]
+
+
 def geometry(design: CommonTables, scenes: Sequence[Scene] | None = None) -> Record:
     """The record of a design that keeps its rules; `scenes`: all of its scenes, if already made.
 
     {parts: {part_no: ...}, scenes: {name: {placed, bom}}, elements: {E1: ...}}
     """
-    if scenes is None:
-        scenes = [make_scene(design, name) for name in scene_names(design)]
+    scenes = all_scenes(design) if scenes is None else scenes
     parts = {part.part_no: part for scene in scenes for part in scene.parts}
     return {
         "parts": {

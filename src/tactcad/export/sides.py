@@ -4,7 +4,7 @@ geometry."""
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from copy import deepcopy
 from dataclasses import dataclass
 from pathlib import Path
@@ -16,10 +16,11 @@ from tactcad.design.load import find, from_table
 from tactcad.design.messages import InputError
 from tactcad.design.text_values import parse_toml
 from tactcad.parts.rules import refuse_broken
+from tactcad.scenes.scene import Scene
 
 from .difference import Change, differences
 from .dxf import read_dxf
-from .geometry import Record, bill_line, contour_record, geometry
+from .geometry import Record, all_scenes, bill_line, contour_record, geometry
 from .golden_file import MOST_BYTES, read_golden
 from .inputs import flattened, inputs_from_json, nested
 from .manifest import Manifest, read_export
@@ -50,6 +51,7 @@ class Side:
     own_code  the record is by the code of a revision, not by the present one
     of_other  what that code makes of the design on the other side; None if it was not asked, or refuses it
     untold    what could not be compared on this side's account, one clause each
+    scenes    of the design, if the present code made them
     """
 
     source: str
@@ -63,6 +65,7 @@ class Side:
     own_code: bool = False
     of_other: Record | None = None
     untold: tuple[str, ...] = ()
+    scenes: Sequence[Scene] = ()
 
 
 def named(source: str) -> Path:
@@ -95,16 +98,17 @@ def design_side(
     or breaks a rule."""
     design = from_table(table)
     refuse_broken(design)
-    identity = design.design
+    identity, scenes = design.design, all_scenes(design)
     return Side(
         source,
         kind,
         identity.name,
         identity.revision,
-        geometry(design),
+        geometry(design, scenes),
         design_values(flattened(design)),
         table=table,
         untold=untold,
+        scenes=scenes,
     )
 
 

@@ -97,7 +97,11 @@ def meaning(old: Side, new: Side) -> Meaning:
         return _recorded(old, new, untold)
     # A record that the present code made of the whole design.
     before, after = (
-        Reviewed(d, told=side.record if side.kind in ("design", "revision") and not side.own_code else None)
+        Reviewed(
+            d,
+            told=side.record if side.kind in ("design", "revision") and not side.own_code else None,
+            placed=side.scenes,
+        )
         for d, side in zip(designs, (old, new))
         if d is not None and not isinstance(d, str)
     )

@@ -20,13 +20,14 @@ from tactcad.design.family import family_of
 from tactcad.design.messages import CheckFailure
 from tactcad.design.tree import CommonTables, Design
 from tactcad.export.difference import SHARE, differences
-from tactcad.export.geometry import Record, geometry
+from tactcad.export.geometry import Record, all_scenes, geometry
 from tactcad.mechanics import readout
+from tactcad.mechanics.ladder import DEFAULT_RUNG
 from tactcad.parts.array.hinge_section import design_gauge, design_readout, hinge_section
 from tactcad.parts.array.layout import Layout
 from tactcad.parts.language.description import NOT_MADE, Part, Vector
 from tactcad.parts.language.finding import Finding
-from tactcad.scenes import left_out, make_scene, scene_names
+from tactcad.scenes import left_out
 from tactcad.scenes.rig import ARRAY
 from tactcad.scenes.scene import Scene
 from tactcad.stacks.virtual_build import LEAST_YIELD, sensor
@@ -46,7 +47,7 @@ class ElementFigures:
 
     stiffness: float | None  # N/mm
     rated_force: float | None  # N, in use
-    signal_per_force: float | None  # V/N
+    signal_per_force: float | None  # V/N; of cells in a plane mT/N
     stop_gap: float | None  # mm
 
 
@@ -115,15 +116,16 @@ def _made(part: Record, line: Record) -> MadePart:
 @dataclass(frozen=True)
 class Reviewed:
     """A design that keeps its rules, by the present code; `known` keeps findings of parts that designs share,
-    `told` is its record of geometry if already made."""
+    `told` is its record of geometry if already made, `placed` its scenes."""
 
     design: CommonTables
     known: dict[str, tuple[Part, list[Finding]]] = field(default_factory=dict, repr=False)
     told: Record | None = None
+    placed: Sequence[Scene] = field(default=(), repr=False)
 
     @cached_property
     def scenes(self) -> Sequence[Scene]:
-        return [make_scene(self.design, name) for name in scene_names(self.design)]
+        return self.placed or all_scenes(self.design)
 
     @cached_property
     def parts(self) -> dict[str, Part]:
@@ -150,10 +152,14 @@ class Reviewed:
         )
 
     def _signals(self, count: int) -> list[float | None]:
-        """V/N of every element; None for all if one is out of the model's range, or nothing reads them."""
-        readout = family_of(self.design).readout
+        """V/N of every element, or what its estimate calls its signal; None for all if one is out of the
+        model's range, or nothing reads them."""
+        family = family_of(self.design)
         try:
-            return readout.signals(self.design) if readout else [None] * count
+            if family.readout:
+                return list(family.readout.signals(self.design))
+            rows = family.estimate.rows(family.layout(self.design), DEFAULT_RUNG, None)
+            return [getattr(row, "signal", None) for row in rows]
         except CheckFailure:
             return [None] * count
 
@@ -287,7 +293,7 @@ def same_elements(old: CommonTables, new: CommonTables) -> Pairs:
     if type(old) is not type(new):
         return [*((p.designator, None) for p in before), *((None, p.designator) for p in after)]
     pairs: list[tuple[str | None, str | None]] = []
-    for row in (1, 2):
+    for row in sorted({p.row for p in (*before, *after)}):
         was, now = ([p for p in places if p.row == row] for places in (before, after))
         if len(was) == len(now):
             pairs += [(a.designator, b.designator) for a, b in zip(was, now)]

@@ -17,7 +17,6 @@ from typing import TYPE_CHECKING, Any
 
 from tactcad.design.family import all_families
 from tactcad.design.tree import CommonTables
-from tactcad.parts.array.layout import Layout
 from tactcad.parts.array.stiffness_table import Lines
 from tactcad.parts.rules.rule import Rule
 
@@ -59,7 +58,7 @@ class Rig:
     under_sensor: Callable[[Any], Iterable[Pose]]
     rules: tuple[Rule, ...]
     deflections: Lines
-    requirements: Callable[[Layout, dict[str, DimensionLimits]], list[Requirement]]
+    requirements: Callable[[Any, dict[str, DimensionLimits]], list[Requirement]]
     checks: tuple[tuple[str, Callable[[Any, Scene], list[Finding]]], ...]
 
     def __post_init__(self) -> None:

@@ -9,7 +9,7 @@ ledges. Parts are rigid. With several dowels a row, the first one locates.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -369,7 +369,14 @@ def resting_plane(points: Array, heights: Array) -> Array:
         (arrays, 3): height at the origin and slopes along both axes, so that the plane is below no point and
         as low at the origin as possible; of planes that rock over two points, the one closest to all.
     """
+    return _resting(np.asarray(points, float).tobytes(), np.asarray(heights, float).tobytes())
+
+
+@lru_cache(maxsize=16)  # designs that are compared draw the same heights where only their hinges differ
+def _resting(places: bytes, drawn: bytes) -> Array:
+    points = np.frombuffer(places).reshape(-1, 2)
     n = len(points)
+    heights = np.frombuffer(drawn).reshape(-1, n)
     plane = np.column_stack([np.ones(n), points])
     most = np.ones((n, 1))  # the largest distance over a point, which only decides between equals
     design = np.vstack([np.hstack([-plane, 0.0 * most]), np.hstack([plane, -most])])

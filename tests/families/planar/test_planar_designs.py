@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -18,6 +19,7 @@ from tactcad.families.planar.cell_layout import PlanarLayout
 from tactcad.families.planar.rules import design_rules
 from tactcad.families.planar.sensor import chip_matrix, closing_force, rows, strength
 from tactcad.parts.rules import load
+from tactcad.review.effect import Reviewed, same_elements
 
 DESIGNS = Path(__file__).parents[3] / "hardware"
 PLANAR, JAW = (DESIGNS / f"{name}-array.toml" for name in ("planar", "jaw"))
@@ -244,3 +246,14 @@ def test_a_design_without_a_title_has_one(tmp_path):
     text = "".join(line for line in PLANAR.read_text("utf-8").splitlines(True) if "title" not in line)
     (tmp_path / "untitled.toml").write_text(text.replace('"planar-array"', '"untitled"'))
     assert load(str(tmp_path / "untitled.toml")).design.title == "Planar tactile array, 6 x 6 cells"
+
+
+def test_two_states_are_compared_cell_by_cell(layout):
+    """Every row has its pairs, and a gap's change is seen in each cell's signal."""
+    was = layout.design
+    now = replace(was, hall=replace(was.hall, gap=2.0))
+    names = [e.designator for e in layout.elements]
+    assert same_elements(was, now) == list(zip(names, names))
+    before, after = (Reviewed(d)._signals(len(names)) for d in (was, now))
+    assert before == [row.signal for row in rows(layout, "", None)]
+    assert all(b < a for a, b in zip(before, after))

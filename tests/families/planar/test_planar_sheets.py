@@ -87,13 +87,13 @@ def test_the_bench_array_s_foil_names_its_holes_and_datums():
     assert runs.count("⌀0.03 CZ") == 2 and {"A", "B", "C"} <= {*runs}
 
 
-def test_a_post_states_both_its_limits():
-    """Turned: pad over foil and foot, spigot with a field below its size; the shoulder lies on the foot."""
+def test_a_post_states_its_limits():
+    """Turned: pad over foil and foot, fields of spigot and pad below their sizes; shoulder on the foot."""
     lay = layout("jaw")
     runs = texts("jaw", parts.post(lay))
     # cover z: foil, foot, lift; cover; stand-out; less foil and foot
     length = 0.2 + 1.0 + 0.6
-    assert f"{length:g} ±0.01" in runs and "⌀1.2" in runs
+    assert f"{length:g} ±0.01" in runs and "⌀1.2 0/-0.02" in runs
     assert "⌀0.35 0/-0.01" in runs and f"{0.04 + 0.2 - 0.02:g}" in runs
 
 

@@ -19,7 +19,8 @@ EYE, UP = (0.0, 1.0, 0.0), (1.0, 0.0, 0.0)  # z to the right
 
 
 def turned_plan(part: Part, notes: Sequence[str]) -> SheetPlan:
-    """The sheet of a part that is turned about z: limits between two of its faces first, then the rest.
+    """The sheet of a part that is turned about z: limits between two of its faces first, then the rest. Edges
+    inside show where an end is bored.
 
     Raises CheckFailure if it has holes or pockets, or a dimension is missing or given twice.
     """
@@ -66,7 +67,7 @@ def turned_plan(part: Part, notes: Sequence[str]) -> SheetPlan:
         EYE,
         UP,
         view.box,
-        hidden=False,
+        hidden=not all(any(p == (0.0, z) for s in profile for p in (s.start, s.end)) for z in (z0, z1)),
         linears=tuple(linears),
         callouts=tuple(callouts),
         axes=(((z0 - margin, 0.0), (z1 + margin, 0.0)),),

@@ -10,10 +10,11 @@ foil's plane and in it, each with even moments (bend) and with a guided end (she
 
 from __future__ import annotations
 
+import csv
 import json
 from dataclasses import dataclass
 from functools import cache, lru_cache
-from math import pi
+from math import log, pi
 from pathlib import Path
 from typing import Any
 
@@ -22,7 +23,17 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 MODES = ("axial", "twist", "bend_out", "shear_out", "bend_in", "shear_in")
-DATA = Path(__file__).parent / "data" / "beam.json"
+DATA = Path(__file__).parent / "data"
+# Parts of the foil's face on which a mode's stress can be largest: in the fillets up to 0.3 of their radius
+# off the clamped edge ("root") or between them ("span"), by shares of the half width to 0.5, 0.97 and 1.
+STRESSED = {
+    "axial": ("root edge",),
+    "twist": ("root beside", "root edge", "span inside", "span beside"),
+    "bend_out": ("root inside", "root edge"),
+    "shear_out": ("root inside", "root beside", "root edge"),
+    "bend_in": ("root edge",),
+    "shear_in": ("root edge",),
+}
 KEPT = 256  # beams whose figures are kept: rules and searches ask for the same one again and again
 KAPPA = 5.0 / 6.0  # Reissner's shear factor of a rectangle
 
@@ -127,8 +138,15 @@ def terms(*x: Any) -> Array:
 
 @cache
 def fit() -> dict[str, Any]:
-    """Constants, range and errors, as benchmarks/planar_beams.py wrote them."""
-    return json.loads(DATA.read_text("utf-8"))
+    """Constants, range and errors of the stiffness, as benchmarks/planar_beams.py wrote them."""
+    return json.loads((DATA / "beam.json").read_text("utf-8"))
+
+
+@cache
+def stress_errors() -> dict[str, dict[str, float]]:
+    """By mode: rms and largest held out, and the largest that a climb found, relative, as
+    benchmarks/planar_stress.py wrote them."""
+    return json.loads((DATA / "beam-stress.json").read_text("utf-8"))["errors"]
 
 
 def out_of_range(beam: FoilBeam) -> str:
@@ -146,11 +164,6 @@ def out_of_range(beam: FoilBeam) -> str:
     return ""
 
 
-def _factors(beam: FoilBeam, kind: str) -> dict[str, float]:
-    row = terms(*groups(beam))
-    return {mode: float(np.exp(row @ np.array(c))[0]) for mode, c in fit()[kind].items()}
-
-
 @lru_cache(KEPT)
 def stiffness(beam: FoilBeam) -> dict[str, float]:
     """Stiffness of every mode: N/mm; bending and twist N mm a radian.
@@ -158,13 +171,64 @@ def stiffness(beam: FoilBeam) -> dict[str, float]:
     Beam theory times a factor that was fitted on solid elements (data/beam.json): clamped roots keep a wide
     beam from curling and its ends from warping.
     """
-    factors = _factors(beam, "stiffness")
-    return {mode: value * factors[mode] for mode, value in base(beam).items()}
+    row, factors = terms(*groups(beam)), fit()["stiffness"]
+    return {m: v * float(np.exp(row @ np.array(factors[m]))[0]) for m, v in base(beam).items()}
+
+
+def place(beam: FoilBeam) -> Array:
+    """Arguments of the stresses, each from about -1 to 1: w/s, ln(r/w), nu and ln(t/w); Poisson's ratio,
+    which matters least, by 0.3 of that."""
+    return np.array(
+        [
+            (beam.width / beam.length - 0.3) / 0.2,
+            log(beam.fillet / beam.width) / log(10.0) * 2.0 + 1.0,
+            0.3 * (beam.poisson - 0.3) / 0.1,
+            (log(beam.thickness / beam.width) + 2.05) / 1.65,
+        ]
+    )
+
+
+def spline(at: Array, points: Array) -> Array:
+    """Terms of an interpolation between points, (places, points + 15): distances cubed, and every product of
+    two arguments, one and 1."""
+    away = np.linalg.norm(at[:, None] - points[None], axis=-1)
+    whole = np.column_stack([np.ones(len(at)), at])
+    pairs = [whole[:, i] * whole[:, j] for i in range(whole.shape[1]) for j in range(i + 1)]
+    return np.column_stack([away**3, *pairs])
+
+
+def interpolated(points: Array, values: Array) -> Array:
+    """Coefficients of `spline` that meet the values at the points, (terms, columns)."""
+    rows = spline(points, points)
+    n, tail = len(points), rows[:, len(points) :]
+    side = np.zeros((tail.shape[1], rows.shape[1]))
+    side[:, :n] = tail.T
+    right = np.vstack([values, np.zeros((tail.shape[1], values.shape[1]))])
+    return np.asarray(np.linalg.solve(np.vstack([rows, side]), right))
+
+
+@cache
+def _stresses() -> tuple[list[str], Array, Array]:
+    """Names of the columns, places of the beams that solid elements solved, and coefficients."""
+    with (DATA / "beam-stress.csv").open(encoding="utf-8", newline="") as file:
+        names, *rows = csv.reader(file)
+    data = np.array(rows, dtype=float)
+    points = np.array(
+        [place(FoilBeam(1.0, w, 1.0 / slender, r * w, 1.0, nu)) for w, slender, r, nu in data[:, :4]]
+    )
+    return names[4:], points, interpolated(points, data[:, 4:])
 
 
 @lru_cache(KEPT)
 def stress(beam: FoilBeam) -> dict[str, float]:
-    """Largest von Mises stress of the foil's face per relative motion 1 of the ends (MPa/mm; MPa/rad), from
-    half a thickness off the clamped edge on."""
-    k, plain, factors = stiffness(beam), base(beam), _factors(beam, "stress")
-    return {m: v * factors[m] * k[m] / plain[m] for m, v in nominal_stress(beam).items()}
+    """Largest von Mises stress of the foil's face per relative motion 1 of the ends (MPa/mm; MPa/rad), up to
+    0.3 fillet radii off the clamped edge.
+
+    Beam theory times what solid elements find over it, interpolated by the place where it is largest.
+    """
+    k, plain, (names, points, c) = stiffness(beam), base(beam), _stresses()
+    over = dict(zip(names, np.exp(spline(place(beam)[None], points) @ c)[0]))
+    return {
+        m: v * k[m] / plain[m] * float(max(over[f"{m} {site}"] for site in STRESSED[m]))
+        for m, v in nominal_stress(beam).items()
+    }

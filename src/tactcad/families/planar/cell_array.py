@@ -14,7 +14,7 @@ from tactcad.parts.bought.standard_parts import dowel, dowel_diameter, dowel_lim
 from tactcad.parts.language.description import Part
 from tactcad.scenes.builder import Builder
 from tactcad.scenes.requirement import LEAST_PRESS, Deviations, DimensionLimits, Requirement, summed, variable
-from tactcad.scenes.rig import ARRAY, Rig, none
+from tactcad.scenes.rig import ARRAY, rig_of
 from tactcad.scenes.scene import Scene
 
 from . import cell_board, parts
@@ -150,9 +150,9 @@ def figures(arrays: Stacked) -> dict[str, np.ndarray]:
 
 
 def limits(
-    layout: PlanarLayout, _scenes: Sequence[Scene]
+    layout: PlanarLayout, scenes: Sequence[Scene]
 ) -> tuple[dict[str, DimensionLimits], list[Requirement]]:
-    """Variables of the layers, magnets and chips, and their requirements."""
+    """Variables of the layers, magnets, chips and rigs, and their requirements."""
     d, tol, n = layout.design, layout.design.tolerance, len(layout.elements)
     name, t = d.name, layout.design.planar.thickness
     foil = d.foil_tolerance
@@ -195,6 +195,9 @@ def limits(
             - np.hypot(a.made["magnet: along x"], a.made["magnet: along y"])
         )
 
+    of_rigs: dict[str, Requirement] = {}
+    for scene in scenes:
+        of_rigs |= {r.name: r for r in rig_of(d, scene.name).requirements(layout, known)}
     lift = d.housing.lift
     return known, [
         *_slips(layout),
@@ -216,6 +219,7 @@ def limits(
             d.hall.gap,
             (("base: thickness", 1.0), ("lower spacer: thickness", 1.0)),
         ),
+        *of_rigs.values(),
     ]
 
 
@@ -286,18 +290,5 @@ def _nominal(part: Part, limit: str) -> float:
 
 
 def nothing_bends(_layout: PlanarLayout) -> Iterator[Deflection]:
-    """No part of the array is taken as rigid but the islands, which foot plates make so."""
+    """No part is taken as rigid but the islands, which foot plates make so."""
     yield from ()
-
-
-RIG = Rig(
-    name=ARRAY,
-    tables=(),
-    make=scene,
-    poses=none,
-    under_sensor=none,
-    rules=(),
-    deflections=nothing_bends,
-    requirements=lambda *_: [],
-    checks=(),
-)

@@ -185,6 +185,13 @@ class PlanarTolerance:
 
 
 @dataclass(frozen=True)
+class Cradle:
+    """[calibration]: the cradle that turns weights into loads along z, x and y."""
+
+    squareness: float = given(Number("mm", 0.002, 0.05, "zone of the cradle's feet and seat"), 0.01)
+
+
+@dataclass(frozen=True)
 class PlanarDesign(CommonTables):
     """A whole design file of cells in a plane."""
 
@@ -197,6 +204,7 @@ class PlanarDesign(CommonTables):
     hall: Hall = Hall()
     rating: PlanarRating = PlanarRating()
     tolerance: PlanarTolerance = PlanarTolerance()
+    calibration: Cradle | None = None
 
     @classmethod
     def completed(cls, tables: dict[str, Any]) -> dict[str, Any]:

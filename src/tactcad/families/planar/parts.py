@@ -42,6 +42,8 @@ from .cell_tables import FoilProcess
 SCREW, DOWEL = "M2", "2"
 LARGEST_STEP = 20.0  # mm between screws along an edge; chosen: what keeps 1 mm of base flat under them
 POST_LENGTH, POST_TOLERANCE = "length over the shoulder", 0.01  # mm, plus and minus; chosen: a small lathe's
+PAD = "pad side diameter"
+PAD_FIELD = 0.02  # mm by which a pad may be smaller than drawn; chosen: a cap slips over it
 SPIGOT = 0.01  # mm by which a post's spigot may be thinner than drawn; chosen, likewise
 SPIGOT_SHORT = 0.02  # mm that a spigot ends inside the foil; chosen
 FOOT_THICKNESS = 0.02  # mm, plus and minus; chosen: precision strip
@@ -262,6 +264,9 @@ def post(layout: PlanarLayout) -> Part:
         characteristics=(
             within(POST_LENGTH, up, POST_TOLERANCE, between=("shoulder", "pad")),
             Characteristic(
+                PAD, d.post.pad, d.post.pad, round(d.post.pad - PAD_FIELD, 6), between=("pad side",)
+            ),
+            Characteristic(
                 "spigot diameter", d.post.spigot, d.post.spigot, d.post.spigot - SPIGOT, between=("spigot",)
             ),
         ),
@@ -330,7 +335,13 @@ def upper_spacer(layout: PlanarLayout) -> Part:
     return _spacer(layout, "upper", layout.upper_spacer, 0.03, False)
 
 
-def _milled(
+def aluminium(layout: PlanarLayout) -> Material:
+    """Of what is milled, and of what may not be drawn by magnets."""
+    alloy = ALLOYS[layout.design.housing.plate_alloy]
+    return Material(alloy.name, alloy.density, standard=alloy.standard, magnetic=alloy.magnetic or "")
+
+
+def milled(
     layout: PlanarLayout,
     number: str,
     name: str,
@@ -342,14 +353,13 @@ def _milled(
     flat: tuple[Geometric, ...] = (),
 ) -> Part:
     d = layout.design
-    alloy = ALLOYS[d.housing.plate_alloy]
     marks = _placed(features, zones)
     marks["geometric"] = (*marks["geometric"], *flat)
     return Part(
         part_no=f"{d.name}-{number}",
         name=name,
         process="milled",
-        material=Material(alloy.name, alloy.density, standard=alloy.standard, magnetic=alloy.magnetic or ""),
+        material=aluminium(layout),
         body=body,
         features=tuple(features),
         colour="#7c8794",
@@ -383,7 +393,7 @@ def base(layout: PlanarLayout) -> Part:
     bore = pressed(float(DOWEL))
     deep = max((kind.table.stop_gap for kind in layout.used), default=0.0) + layout.base_z
     lands = f"counterbores {deep:.3g} ±{LAND_DEPTH:g} deep, milled in one setting with the upper face"
-    return _milled(
+    return milled(
         layout,
         "base",
         "Base",
@@ -405,7 +415,7 @@ def frame(layout: PlanarLayout) -> Part:
     )
     holes = [h for h in _through(layout, t, dowel_bore(layout, None, t)) if h.name == "screw"]
     body = Extrusion(_outline(layout), t, (room,))
-    return _milled(layout, "frame", "Board frame", body, holes, {"screw": PLACE})
+    return milled(layout, "frame", "Board frame", body, holes, {"screw": PLACE})
 
 
 def cover(layout: PlanarLayout) -> Part:
@@ -414,7 +424,7 @@ def cover(layout: PlanarLayout) -> Part:
     t = d.housing.cover_thickness
     opening = round(d.post.pad + 2.0 * d.housing.side_gap, 9)
     bore = dowel_bore(layout, None, t)
-    return _milled(
+    return milled(
         layout,
         "cover",
         "Cover",

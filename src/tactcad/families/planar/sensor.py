@@ -119,11 +119,11 @@ def rated_stress(layout: PlanarLayout, kind: Kind) -> float:
 
 def stress_error() -> float:
     """Stated error of the beams' stress: the largest that a climb found, of any mode."""
-    return max(e["climbed"] for e in beam.fit()["errors"]["stress"].values())
+    return max(e["climbed"] for e in beam.stress_errors().values())
 
 
 def stiffness_error() -> float:
-    return max(e["climbed"] for e in beam.fit()["errors"]["stiffness"].values())
+    return max(e["climbed"] for e in beam.fit()["errors"].values())
 
 
 def rated_force(layout: PlanarLayout, kind: Kind, stress: float) -> tuple[float, float]:

@@ -384,9 +384,11 @@ def setting_words(layout: Layout) -> str:
         if _is_calibrated(layout)
         else ""
     )
+    strip = " and every blank on the strip" if layout.blanks() else ""
     return (
         "Press both end plates down on the fixture's steps. With a bar of rubber on the ledges, between pads "
-        "and dowels, press every pad down on the fixture's floor; pressing behind the dowels lifts the pads. "
+        f"and dowels, press every pad down on the fixture's floor{strip}; pressing behind the dowels lifts "
+        "the pads. "
         f"{tight} crosswise, in three rounds: to a third, two thirds and all of the torque. An element can "
         f"still turn about its dowel ({wedge(layout)}); pressed on its ledge, it lies at one end of this "
         f"play. {gap}No {2 * tolerance * 1e3:g} um feeler may pass under a pad. Then lay the array on its "

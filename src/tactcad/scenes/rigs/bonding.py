@@ -4,7 +4,11 @@ hinge. The guide's words have their figures from design, fixture and elements.""
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import fields
+from functools import lru_cache
 from math import floor
+
+import numpy as np
 
 from tactcad.design.messages import CheckFailure
 from tactcad.design.tree import Design
@@ -184,7 +188,6 @@ def _bears(rigs: Sequence[BondingLayout]) -> str:
 def borne(rig: BondingLayout, backed: bool) -> float:
     """Pressure on the gauge at which a leaf of this kind yields, MPa, in the fixture or without its tongue.
     Raises CheckFailure if elements do not reach it."""
-    from tactcad.fem.bonded_leaf import clamped
     from tactcad.parts.array.hinge_section import hinge_section
 
     place = next(p for p in rig.array.elements if p.hinge == rig.hinge)
@@ -193,8 +196,20 @@ def borne(rig: BondingLayout, backed: bool) -> float:
     if backed:
         s = s.with_(body_length=rig.rear_ends[0] - rig.hinge.l / 2)
     tongue = rig.tongue - 2 * rig.tongue_radius if backed else None
-    one = clamped(s, (-before, behind), rig.pad_width, rig.design.gauge.grid_length, tongue)
-    return rig.design.material.yield_strength / one.stress
+    numbers = tuple(float(getattr(s, each.name)) for each in fields(s))
+    stress = _stress(numbers, (-before, behind), rig.pad_width, rig.design.gauge.grid_length, tongue)
+    return rig.design.material.yield_strength / stress
+
+
+@lru_cache(maxsize=64)
+def _stress(
+    section: tuple[float, ...], rubber: tuple[float, float], width: float, grid: float, tongue: float | None
+) -> float:
+    """Of one clamped leaf, by its section's numbers: two designs that are compared mostly have the same."""
+    from tactcad.fem.bonded_leaf import clamped
+    from tactcad.mechanics.section import HingeSection
+
+    return clamped(HingeSection(*map(np.asarray, section)), rubber, width, grid, tongue).stress
 
 
 def terminals(rig: BondingLayout) -> str:

@@ -1,0 +1,247 @@
+"""The calibration's three scenes: the cradle on its foot z, x or y, and what hangs on one pad."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Literal
+
+from tactcad.design.messages import InputError
+from tactcad.parts.bought.electronic_parts import MECHANICAL, Supply
+from tactcad.parts.bought.standard_parts import dowel
+from tactcad.parts.language.metric import METRIC
+from tactcad.parts.rigs.frame import STANDARD_GRAVITY
+from tactcad.scenes.builder import Builder
+from tactcad.scenes.rig import Rig, none
+from tactcad.scenes.scene import AGAINST_Y, DOWN, REST, STILL, UPRIGHT, Move, Pose, Rotation, Scene
+
+from . import cell_board, parts
+from . import cell_cradle as cradle
+from .cell_array import nothing_bends
+from .cell_cradle import CradleLayout
+from .cell_layout import CellPlace, PlanarLayout
+from .cell_loads import FITS, OFF_AXIS, OFF_LEVEL, OFF_MIDDLE, STEPS, loads, requirements
+from .cell_tables import PlanarDesign
+
+Axis = Literal["z", "x", "y"]
+# From the array's axes to the scene's, whose z points up: the load's axis downwards, pads to the front.
+STANDS: dict[Axis, Rotation] = {
+    "z": UPRIGHT,
+    "x": ((0, 1, 0), (0, 0, -1), (-1, 0, 0)),
+    "y": ((-1, 0, 0), (0, 0, -1), (0, -1, 0)),
+}
+HALF_TURN: Rotation = ((-1, 0, 0), (0, -1, 0), (0, 0, 1))  # the cradle's frame in the array's
+ACROSS: Rotation = ((0, 0, 1), (1, 0, 0), (0, 1, 0))  # the hanger's sheet across x
+AWAY = 60.0  # mm that hangers come from; chosen: a hand's width
+WEIGHTS = Supply(
+    "WEIGHTS-M1",
+    "Set of weights, class M1, 100 mg to 50 g",
+    1,
+    "set",
+    "weights OIML R 111, class M1, 100 mg to 50 g",
+    consumable=False,
+    process=MECHANICAL,
+)
+PAN = Supply(
+    "PAN-foil",
+    "Pan: 40 x 40 mm of household aluminium foil, its corners gathered on a hook of thin copper wire",
+    1,
+    "pcs",
+    "aluminium foil 10 to 20 um, copper wire 0.3 mm",
+    consumable=False,
+    process=MECHANICAL,
+)
+TOOLS = ("spirit level, 0.1 mm/m", "balance, 1 mg", "tweezers of plastic")
+
+
+LEVELLED = "Level the table under it to 0.2 mm/m, both ways."
+
+
+def _mounted(rig: CradleLayout) -> Builder:
+    """The array in its cradle, which lies on foot z, in the array's axes."""
+    b, seat, (hx, hy) = Builder(), rig.seat, rig.half
+    block = b.place("CR", cradle.cradle(rig), (0.0, 0.0, seat - cradle.THICK), HALF_TURN)
+    b.step("Cradle", (0, 0, -30), "Lay the cradle down on its foot z, seat up.")
+    pins = [
+        b.place("DP", dowel(cradle.PIN, rig.pin_length), (x, y, seat - rig.pin_depth)) for x, y in rig.pins
+    ]
+    for pin in pins:
+        b.meet(pin, block, "press")
+    out = rig.height - cradle.PIN_SHORT
+    b.step("Pins", (0, 0, 20), f"Press the three pins in until {out:.3g} mm stand out.")
+    own = [b.place("AR", cradle.array(rig), (0.0, 0.0, rig.layout.pad_z), DOWN)]
+    b.meet(own[0], block)
+    if rig.tongue:
+        own.append(b.place("AR", cradle.tongue(rig), (0.0, 0.0, seat)))
+        at = (0.0, -hy - rig.tongue + cell_board.EDGE, rig.layout.board_z)
+        own.append(b.place("AR", cradle.plug(rig), at))
+        b.meet(own[1], own[0])
+        b.meet(own[1], own[2])
+        b.meet(own[1], block)
+    under = seat - METRIC[parts.SCREW].head_height
+    for x, y in parts.screw_places(rig.layout):
+        own.append(b.place("AH", cradle.head(rig), (x, y, under)))
+        b.meet(own[-1], own[0])
+    b.step(
+        "Array in the cradle",
+        (0, 0, 30),
+        "Wipe seat and board clean. Lay the finished array down, cell 1 at the clamp's end and away from the "
+        "two pins. Push it against these, then along them against the third. Its cable hangs in a loop "
+        "and pulls "
+        "at nothing.",
+        order=[tuple(own)],
+        sets=("AR1 on CR1: along z", "AR1 against DP1 DP2 DP3: along x and y, turn about z"),
+        leaves=("AR1: away from the pins, until it is clamped",),
+    )
+    heel = b.place("CH", cradle.heel(rig), (-hx, 0.0, seat))
+    b.meet(heel, block)
+    bar = b.place("CB", cradle.clamp(rig), (-hx, 0.0, rig.cover_top))
+    b.meet(bar, own[0])
+    for x, y in cradle.clamp_screws(rig):
+        at = (x, y, rig.cover_top + cradle.BAR)
+        b.screw(cradle.CLAMP_SCREW, rig.clamp_screw, at, (0, 0, -1), bar, block)
+    b.step(
+        "Clamp",
+        (0, 0, 45),
+        "Lay heel and clamp down, hold the array against its pins and tighten both screws in turn. The "
+        "heel is "
+        f"{cradle.PRESSED:g} mm lower than the array, so that the clamp presses on the cover's border.",
+    )
+    return b
+
+
+def scene(design: PlanarDesign, along: Axis, pose: Pose) -> Scene:
+    """The load along z, x or y of the array on the pad of pose.element."""
+    layout = PlanarLayout(design)
+    rig, places = CradleLayout(layout), layout.elements
+    if not 1 <= pose.element <= len(places):
+        raise InputError(
+            "element", "the array has none of that number", value=pose.element, legal=f"1 to {len(places)}"
+        )
+    b, edge = _mounted(rig), "with its pins' end over the table's edge, so that the hanger goes round it"
+    if along != "z":
+        ready = b.scene("calibration-z")
+        b = Builder()
+        b.subassembly(ready, STANDS[along], STILL)
+        edge = "with its seat flush with the table's edge, so that what hangs on a pad passes the table"
+    b.step(
+        f"Cradle on its foot {along}",
+        (0, 0, 0),
+        f"Stand the cradle on its foot {along}, {edge}, and hold it down with a clamp. {LEVELLED}",
+        tools=TOOLS,
+    )
+    _hung(b, rig, along, places[pose.element - 1])
+    b.supplies += [WEIGHTS, PAN]
+    b.step("Weights", (0, 0, 0), _weights(rig, along))
+    b.step("Readings", (0, 0, 0), _readings(rig, along))
+    return b.scene(f"calibration-{along}")
+
+
+def _hung(b: Builder, rig: CradleLayout, along: Axis, cell: CellPlace) -> None:
+    """The cap on the cell's pad, and hanger or link on the cap."""
+    at = (cell.x, cell.y, rig.layout.pad_z)
+    x, y, z = (sum(r * p for r, p in zip(row, at)) for row in STANDS[along])
+    cap = b.place("CA", cradle.cap(rig), (x, y, z), UPRIGHT if along == "z" else AGAINST_Y)
+    b.meet(cap, "AR1")
+    b.step(
+        "Cap on a pad",
+        (0, 0, 20) if along == "z" else (0, -20, 0),
+        f"Read the chip first, the pad bare. Then push the cap on the pad of {cell.designator}, down to its "
+        "floor, without tilting it; tweezers of plastic, for the magnets draw steel.",
+    )
+    if along == "z":
+        hung = b.place("HA", cradle.hanger(rig), (x - cradle.SHEET / 2.0, y, rig.tip), ACROSS)
+        high, far = (0.0, 0.0, cradle.LIFTED), rig.box[2] - cell.x + AWAY
+        order = [Move((hung,), (far, 0.0, cradle.LIFTED), (high, STILL))]
+        text = (
+            "Bring the hanger in from the overhanging end, around array and cradle, and set its nib into the "
+            "cap's dimple. It must swing freely."
+        )
+    else:
+        hung = b.place("LI", cradle.link(rig), (x, y + cradle.SHEET / 2.0, z - rig.sunk), AGAINST_Y)
+        high = (0.0, 0.0, rig.sunk)
+        order = [Move((hung,), (0.0, -AWAY, rig.sunk), (high, STILL))]
+        text = (
+            "Bring the link's arc over the cap and let it down into the groove: it hangs there past the "
+            "posts "
+            "below, on both sides of them, and touches nothing else."
+        )
+    b.meet(hung, cap)
+    b.step(
+        "Hanger" if along == "z" else "Link",
+        (40, 0, 0) if along == "z" else (0, -40, 0),
+        text + " Hang the pan into its eye.",
+        order=order,
+        sets=(f"{hung} on {cap}: along {along if along == 'z' else 'z'}",),
+        leaves=(f"{hung} on {cap}: swings until it hangs plumb",),
+    )
+
+
+def _weights(rig: CradleLayout, along: Axis) -> str:
+    """Loads by kind of cells."""
+    hung = "hanger" if along == "z" else "link"
+    kinds = "; ".join(
+        f"on {load.kind} cells {STEPS} steps of {load.step:g} g ({load.tare * 1e3 / STANDARD_GRAVITY:.2g} "
+        "g of cap "
+        f"and {hung} included {load.most:.2g} N, and they bear {load.heaviest:.2g} N)"
+        for load in loads(rig, along)
+    )
+    return (
+        f"Weigh cap, {hung} and pan together to 1 mg: they are the first load. Then lay weights into the "
+        "pan, "
+        f"{kinds}. Cell 1, at the least x and y, is a {rig.layout.design.planar.first} cell, and kinds "
+        "alternate. "
+        "Wait until all hangs still, and read the chip; read again while you take the weights off in steps."
+    )
+
+
+def _readings(rig: CradleLayout, along: Axis) -> str:
+    """The order of cells, the table, and what the rig adds to the error."""
+    height = rig.layout.pad_height
+    if along == "z":
+        share, what = (
+            OFF_MIDDLE / height,
+            f"a load {OFF_MIDDLE:g} mm from the pad's middle tips its cell like",
+        )
+        other = "across"
+    else:
+        share, what = OFF_LEVEL / height, f"a groove {OFF_LEVEL:g} mm from the pad's level is like"
+        other = "more or less"
+    return (
+        "Load every cell so. Then set the cradle down and level anew, and with the cap half a turn on by its "
+        "mark load every cell again: that is another run. Write a row of the table for each reading: "
+        "element; "
+        "run, a "
+        "number of its own for every time that the cradle was set down; "
+        f"fx, fy, fz in N, which is {STANDARD_GRAVITY * 1e-3:.8g} times the grams in f{along} and 0 in "
+        "the others, all 0 on "
+        "the bare pad; bx, by, bz in mT. With a column sink, mm, stiffness comes too. Once all three "
+        "axes are "
+        "in the table, tactcad calibrate takes it. What the rig adds at most: "
+        f"{what} {100 * share:.1f} % of it {other}; feet, pins and level turn a load by {OFF_AXIS:g} mrad, "
+        f"{OFF_AXIS / 10:g} % of it across; weights err by 1 mg, from 1 g on by 0.1 %."
+    )
+
+
+def rig(along: Axis) -> Rig:
+    """The declaration of one of the three scenes."""
+
+    def make(design: PlanarDesign, pose: Pose = REST) -> Scene:
+        return scene(design, along, pose)
+
+    def poses(design: PlanarDesign) -> Iterator[Pose]:
+        """Cells in the other corners of the plane."""
+        p = design.planar
+        last = p.rows * p.columns
+        yield from (Pose(element=n) for n in sorted({p.columns, last - p.columns + 1, last} - {1}))
+
+    return Rig(
+        name=f"calibration-{along}",
+        tables=("calibration",),
+        make=make,
+        poses=poses,
+        under_sensor=none,
+        rules=FITS,
+        deflections=nothing_bends,
+        requirements=requirements,
+        checks=(),
+    )
