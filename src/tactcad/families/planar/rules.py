@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from math import hypot
+from math import ceil, floor, hypot
 
 from tactcad.design.materials import ALLOYS
 from tactcad.parts.language.finding import Finding
@@ -206,7 +206,7 @@ def stop_protects(layout: PlanarLayout) -> Iterator[Finding]:
                 f"{name}.stop_gap",
                 f"the stop closes before the rated force of {rated:.3g} N",
                 gap,
-                f"at least {least:.3g} mm",
+                f"at least {ceil(least * 1e4) / 1e4:g} mm",  # rounded to the side that is legal
             )
         if stop_stress(layout, kind, gap + tolerance) > limit:
             low, high = 0.0, gap
@@ -219,7 +219,7 @@ def stop_protects(layout: PlanarLayout) -> Iterator[Finding]:
                 f"{name}.stop_gap",
                 f"a {name} cell yields before its stop closes",
                 gap,
-                f"at most {low:.3g} mm",
+                f"at most {floor(low * 1e4) / 1e4:g} mm",
             )
 
 
