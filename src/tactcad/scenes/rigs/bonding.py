@@ -8,8 +8,6 @@ from dataclasses import fields
 from functools import lru_cache
 from math import floor
 
-import numpy as np
-
 from tactcad.design.messages import CheckFailure
 from tactcad.design.tree import Design
 from tactcad.parts import rigs
@@ -206,6 +204,8 @@ def _stress(
     section: tuple[float, ...], rubber: tuple[float, float], width: float, grid: float, tongue: float | None
 ) -> float:
     """Of one clamped leaf, by its section's numbers: two designs that are compared mostly have the same."""
+    import numpy as np
+
     from tactcad.fem.bonded_leaf import clamped
     from tactcad.mechanics.section import HingeSection
 
