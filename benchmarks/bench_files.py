@@ -45,8 +45,8 @@ from tactcad.export.step_text import Header
 from tactcad.fem.elements import solve_plane
 from tactcad.fem.shape import reference_shape
 from tactcad.mechanics import ladder
-from tactcad.parts.designs import load
 from tactcad.parts.language.description import DETAILS, Part
+from tactcad.parts.rules import load
 from tactcad.scenes import make_scene, scene_names
 from tactcad.scenes.scene import Scene
 

@@ -111,7 +111,7 @@ def commanded(number: int) -> dict:
     from random_designs import as_toml
     from sound_designs import as_table, sound_table
 
-    from tactcad.parts.designs import load
+    from tactcad.parts.rules import load
     from tactcad.scenes import scene_names
 
     random = Random(SEED + number)

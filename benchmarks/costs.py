@@ -27,9 +27,9 @@ from scipy.optimize import nnls
 
 from tactcad.costs.grades import ANGULAR, DATA, calibration, counts, mesh_sizes, processor
 from tactcad.mechanics.accuracy import CANDIDATES
-from tactcad.parts.designs import load
+from tactcad.parts.rules import load
 from tactcad.scenes import make_scene, scene_names
-from tactcad.solids.meshing import CHORD_MM
+from tactcad.solids import CHORD_MM
 
 DESIGNS = ("macro-array", "soft-tissue", "better-array", "double-sample", "smallest-bearing")
 COMMANDED = (("macro-array", True), ("macro-array", False), ("soft-tissue", True), ("smallest-bearing", True))

@@ -28,7 +28,7 @@ from tactcad.fem.fem_ladder import converged_plane, converged_solid
 from tactcad.fem.mapped_mesh import plane_mesh
 from tactcad.fem.shape import reference_shape
 from tactcad.mechanics import accuracy, ladder, strain, validity
-from tactcad.mechanics.constants import strain_data
+from tactcad.mechanics.register import strain_data
 from tactcad.mechanics.section import HingeSection
 
 SEED = 20261125

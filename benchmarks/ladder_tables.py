@@ -12,8 +12,7 @@ from tables import lines, write_tables
 
 from tactcad.mechanics import ladder, strain
 from tactcad.mechanics.accuracy import CANDIDATES, accuracy_data, zone_name
-from tactcad.mechanics.constants import ladder_data, strain_data
-from tactcad.mechanics.register import rungs
+from tactcad.mechanics.register import ladder_data, rungs, strain_data
 from tactcad.mechanics.section import REFERENCE, HingeSection
 
 # per cent at 2 N, by arm length in mm: the paper's finite-element study

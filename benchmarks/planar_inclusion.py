@@ -26,8 +26,8 @@ from tactcad.families.planar.cell_layout import CellPlace, PlanarLayout
 from tactcad.families.planar.cell_matrices import Matrices
 from tactcad.families.planar.cell_pads import side
 from tactcad.families.planar.sensor import pad_compliance
-from tactcad.mechanics.sample_coupling import shares_between
-from tactcad.parts.designs import load
+from tactcad.mechanics.lumped import shares_between
+from tactcad.parts.rules import load
 
 Array = NDArray[np.float64]
 # A soft tissue with a lump: MPa, Poisson's ratio, mm. Chosen: as soft as the paper's softest sample, a lump

@@ -16,7 +16,7 @@ import mujoco
 
 from tactcad.export.cache import Cache
 from tactcad.export.shapes import Shapes
-from tactcad.parts.designs import load
+from tactcad.parts.rules import load
 from tactcad.robot import mjcf
 from tactcad.robot.cantilevers import cantilevers
 from tactcad.robot.robot_files import solids

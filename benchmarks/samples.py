@@ -25,7 +25,7 @@ from tactcad.fem.fem_ladder import converged_plane, converged_solid
 from tactcad.fem.mapped_mesh import plane_mesh
 from tactcad.fem.shape import reference_shape
 from tactcad.mechanics import validity
-from tactcad.mechanics.constants import ladder_data
+from tactcad.mechanics.register import ladder_data
 from tactcad.mechanics.section import HingeSection
 
 DATA = Path(__file__).parent / "data"

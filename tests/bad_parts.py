@@ -86,7 +86,7 @@ def calibration() -> list[Finding]:
 
 
 def rigidity() -> list[Finding]:
-    from tactcad.checks.described.rigidity import check_rigidity
+    from tactcad.checks.described.goes_together import check_rigidity
 
     return check_rigidity(variant({"holder.lid_thickness": 2.0}), ["grasping"], [])
 
@@ -104,7 +104,7 @@ def signals(**changes) -> list[Finding]:
 
 
 def gauges(**changes) -> list[Finding]:
-    from tactcad.checks.facing_rows.gauge_limits import check_gauges
+    from tactcad.checks.facing_rows.circuit import check_gauges
 
     return list(check_gauges(variant({path.replace("__", "."): v for path, v in changes.items()})))
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import mpmath as mp
 
-from tactcad.mechanics.constants import ladder_data
+from tactcad.mechanics.register import ladder_data
 from tactcad.mechanics.section import HingeSection
 
 ORDER = (  # of the values, as the section names them

@@ -5,11 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import dist
 
-from tactcad.contour.contour import Contour
+from tactcad.contour.contour import ROUNDING_MM, Contour
 from tactcad.contour.inside import self_intersections
 from tactcad.contour.nearest import meeting_points
 from tactcad.contour.necks import direction
-from tactcad.contour.rounded import ROUNDING_MM
 from tactcad.contour.segment import Arc, Line, Point, Segment
 
 

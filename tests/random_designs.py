@@ -141,7 +141,7 @@ def verdict(tree: dict[str, Any]) -> tuple[str, tuple[str, ...], list[str]]:
     """The rule that refuses the design ("" where none does), its scenes, and what the checks have against
     it."""
     from tactcad.checks.run import run_checks
-    from tactcad.parts.designs import load
+    from tactcad.parts.rules import load
     from tactcad.scenes import scene_names
 
     with tempfile.TemporaryDirectory() as folder:

@@ -39,7 +39,7 @@ ROOMS = (
 )
 # Inner rooms, the lowest first: a folder or a module of the room each.
 INNER_ROOMS = {
-    "parts": ("language", "bought", "array", "rigs", "rules", "designs"),
+    "parts": ("language", "bought", "array", "rigs", "rules"),
     "drawing": ("engine", "guide", "circuit_sheets", "parts", "assemblies"),
 }
 KERNEL = {"build123d", "OCP", "cadquery", "bd_warehouse", "trimesh", "manifold3d", "vtkmodules", "vtk"}

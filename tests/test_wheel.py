@@ -136,7 +136,7 @@ def test_a_new_design_is_written_and_estimated(installed, empty):
 
 def test_cut_files_need_no_kernel(installed, empty):
     script = (
-        "from tactcad.parts.designs import load; from tactcad.scenes import make_scene;"
+        "from tactcad.parts.rules import load; from tactcad.scenes import make_scene;"
         "from tactcad.export.dxf import dxf_bytes;"
         "element = make_scene(load('macro-array'), 'array').placements[1].part;"
         "print(dxf_bytes(element).decode().split()[-1])"

@@ -21,7 +21,7 @@ import document
 import screen
 import window
 
-from tactcad.parts.designs import load
+from tactcad.parts.rules import load
 from tactcad.scenes import make_scene
 
 INSIDE = Path(__file__).with_name("in_freecad.py")

@@ -19,13 +19,12 @@ from math import isfinite, nan
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar, get_args
 
-from tactcad.design import extras
 from tactcad.design.design_text import design_text, started
 from tactcad.design.family import family_of
 from tactcad.design.files import read_text, write_whole
 from tactcad.design.load import DEFAULT_DESIGN, MOST_BYTES, find, from_table, names, unknown_field
 from tactcad.design.materials import alloy
-from tactcad.design.messages import CheckFailure, InputError, did_you_mean, in_brackets
+from tactcad.design.messages import CheckFailure, InputError, did_you_mean, in_brackets, refusal
 from tactcad.design.text_values import parse_toml
 
 if TYPE_CHECKING:
@@ -50,7 +49,7 @@ def _in_our_words(ask: Callable[Asked, Given]) -> Callable[Asked, Given]:
         try:
             return ask(*args, **named)
         except ImportError as error:
-            if (why := extras.refusal(error)) is None:
+            if (why := refusal(error)) is None:
                 raise
             raise why from None
 

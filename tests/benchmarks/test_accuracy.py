@@ -22,7 +22,7 @@ from tactcad.fem.shape import reference_shape
 from tactcad.lab.batch import estimate_rows_to
 from tactcad.mechanics import accuracy, ladder, strain, validity
 from tactcad.mechanics.accuracy import CANDIDATES, accuracy_data, choose, choose_each
-from tactcad.mechanics.constants import ladder_data
+from tactcad.mechanics.register import ladder_data
 from tactcad.mechanics.section import REFERENCE
 
 SEED = int(os.environ.get("ACCURACY_SEED", "57721"))

@@ -10,7 +10,7 @@ import samples
 from exact_ladder import section
 from ladder_fit import main
 
-from tactcad.mechanics.constants import ladder_data
+from tactcad.mechanics.register import ladder_data
 from tactcad.mechanics.rungs import plane, solid
 
 

@@ -16,7 +16,7 @@ from samples import section
 
 from tactcad.fem import fem_ladder
 from tactcad.mechanics import strain
-from tactcad.mechanics.constants import strain_data
+from tactcad.mechanics.register import strain_data
 from tactcad.mechanics.section import REFERENCE
 
 SEED = int(os.environ.get("STRAIN_SEED", "161803"))

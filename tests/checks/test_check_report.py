@@ -93,7 +93,7 @@ def test_every_check_runs_on_every_part_and_scene_that_it_is_for(macro, monkeypa
     note of the call; what a search for designs is limited by is those of them that need no solid."""
     from tactcad.checks import check, run
     from tactcad.scenes import make_scene, scene_names
-    from tactcad.scenes.poses import poses
+    from tactcad.scenes.rig import poses
 
     calls = set()
 

@@ -9,8 +9,13 @@ from bad_parts import BAD
 from traced_parts import asked_parts, unnamed
 from variants import FACING_ROWS, variant
 
-from tactcad.checks.facing_rows.circuit import check_bridges, check_circuit, check_inputs, check_signals
-from tactcad.checks.facing_rows.gauge_limits import check_gauges
+from tactcad.checks.facing_rows.circuit import (
+    check_bridges,
+    check_circuit,
+    check_gauges,
+    check_inputs,
+    check_signals,
+)
 from tactcad.circuit.bridges import netlist
 from tactcad.circuit.netlist import Netlist
 from tactcad.design.load import read

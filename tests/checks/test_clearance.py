@@ -11,8 +11,8 @@ from variants import FACING_ROWS, variant
 from tactcad.checks.facing_rows.overload_stop import _Arms, _mirrored, _nearest, check_clearance
 from tactcad.parts.array.layout import Layout
 from tactcad.parts.array.stop_gap import seat, stop_gap
-from tactcad.parts.designs import load
 from tactcad.parts.rigs.stiffness import calibration_loads
+from tactcad.parts.rules import load
 from tactcad.parts.rules.pressed_rules import turns
 
 

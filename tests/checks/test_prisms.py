@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from tactcad.contour import Arc, Contour, Corner, Line, chain, circle, rectangle, rounded_polygon
-from tactcad.contour.inside import self_intersections
-from tactcad.contour.keep_clear import keep_clear
+from tactcad.contour.inside import keep_clear, self_intersections
 from tactcad.parts.language.description import Extrusion, Hole, Material, Part
 
 CLEAR = 1e-6

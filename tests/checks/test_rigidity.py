@@ -17,7 +17,7 @@ from random_designs import raw_table
 from variants import FACING_ROWS, variant
 
 from tactcad.checks.check_report import Report, as_record
-from tactcad.checks.described.rigidity import check_rigidity, deflections
+from tactcad.checks.described.goes_together import check_rigidity, deflections
 from tactcad.design.load import from_table
 from tactcad.design.messages import InputError
 from tactcad.design.tree import Design
@@ -25,10 +25,9 @@ from tactcad.parts.array import seating
 from tactcad.parts.array.layout import Layout
 from tactcad.parts.array.seating import carrier_beam, carrier_opens
 from tactcad.parts.bought.screws import seating_force
-from tactcad.parts.designs import load
 from tactcad.parts.rigs.stiffness import calibration_loads
-from tactcad.parts.rules import broken_rules
-from tactcad.parts.rules.stiffness_remedy import remedy
+from tactcad.parts.rules import broken_rules, load
+from tactcad.parts.rules.rule import remedy
 from tactcad.scenes import make_scene, scene_names
 from tactcad.scenes.rig import all_rigs
 

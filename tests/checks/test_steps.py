@@ -13,9 +13,9 @@ from test_tools import block
 from tactcad.checks.on_solids.steps import Trial, check_steps
 from tactcad.parts.bought.screws import cap_screw
 from tactcad.parts.bought.standard_parts import STAGES, dowel
-from tactcad.parts.designs import load
 from tactcad.parts.language.description import Hole
 from tactcad.parts.rigs import stand
+from tactcad.parts.rules import load
 from tactcad.scenes import make_scene, scene_names
 from tactcad.scenes.moves import guide_json, settles, step_moves
 from tactcad.scenes.scene import DOWN, STILL, Contact, Held, Move, Need, Placement, Scene, Step

@@ -14,8 +14,7 @@ from tactcad.paper import published
 from tactcad.parts.array.hinge_section import hinge_section
 from tactcad.parts.array.layout import Layout
 from tactcad.parts.array.stop_gap import land_room, overloads, seat, stop_gap
-from tactcad.parts.designs import load
-from tactcad.parts.rules import broken_rules
+from tactcad.parts.rules import broken_rules, load
 
 
 @pytest.mark.parametrize("name", FACING_ROWS)

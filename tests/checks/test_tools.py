@@ -12,8 +12,8 @@ from variants import variant
 from tactcad.checks.on_solids.tools import check_tools
 from tactcad.contour import rectangle
 from tactcad.parts.bought.screws import cap_screw, nut, set_screw, threaded_rod
-from tactcad.parts.designs import load
 from tactcad.parts.language.description import Extrusion, Hole, Material, Part
+from tactcad.parts.rules import load
 from tactcad.scenes import make_scene, scene_names
 from tactcad.scenes.scene import DOWN, Move, Placement, Scene, Step
 

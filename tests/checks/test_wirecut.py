@@ -167,7 +167,7 @@ def test_corner_and_slot_rules_are_what_the_wires_path_says(slot, radius):
 
 def test_the_shipped_designs_can_be_cut():
     from tactcad.design.load import names
-    from tactcad.parts.designs import load
+    from tactcad.parts.rules import load
     from tactcad.scenes import make_scene
 
     for name in names():

@@ -14,12 +14,11 @@ from tactcad.circuit.board_layout import lay_out
 from tactcad.circuit.kicad_board import board_bytes
 from tactcad.circuit.read_board import board_netlist
 from tactcad.design.messages import CheckFailure
-from tactcad.export.board_step import board_step, check_bare_board
+from tactcad.export.board_files import board_step, check_bare_board
 from tactcad.export.cache import Cache
 from tactcad.export.shapes import Shapes
 from tactcad.export.step_text import Header
-from tactcad.parts.array.board_outline import board_outline
-from tactcad.parts.array.layout import Layout
+from tactcad.parts.array.board_plate import BOARD_OUTLINE
 
 pytestmark = pytest.mark.cad
 
@@ -30,7 +29,7 @@ NAME = "macro-array-board-5"
 def files(tmp_path_factory) -> tuple[str, Text]:
     """KiCad's file and the STEP file."""
     design = variant()
-    board = lay_out(board_netlist(design, 5, 3), board_outline(Layout(design)))
+    board = lay_out(board_netlist(design, 5, 3), BOARD_OUTLINE)
     kicad = board_bytes(board, "NAME A", "title", "2026-01-01", "A")
     shapes = Shapes(Cache(tmp_path_factory.mktemp("cache")), "here")
     step = board_step(board, kicad, shapes, Header(NAME, "a board", "A", "2026-01-01", "", ""))

@@ -24,7 +24,7 @@ from tactcad.circuit.netlist_files import kicad_bytes
 from tactcad.circuit.read_board import board_netlist
 from tactcad.design.messages import CheckFailure
 from tactcad.export.board_files import check_flashes
-from tactcad.parts.array.board_outline import board_outline
+from tactcad.parts.array.board_plate import BOARD_OUTLINE
 from tactcad.parts.array.layout import Layout
 from tactcad.parts.bought.electronic_parts import COMPLETION
 
@@ -35,7 +35,7 @@ LIBRARY = Path("/usr/share/kicad/footprints")
 
 def laid_out(changes: dict | None = None, used: int = 5, wires: int = 3) -> BoardCopper:
     design = variant(changes or {})
-    return lay_out(board_netlist(design, used, wires), board_outline(Layout(design)))
+    return lay_out(board_netlist(design, used, wires), BOARD_OUTLINE)
 
 
 def needs_kicad() -> None:
@@ -159,7 +159,7 @@ def test_what_is_left_off_is_in_no_table_of_places():
 
 def test_a_board_that_is_too_small_is_refused():
     design = variant()
-    outline = board_outline(Layout(design))
+    outline = BOARD_OUTLINE
     circuit = board_netlist(design, 5, 3)
     with pytest.raises(CheckFailure, match="too narrow by"):
         lay_out(circuit, replace(outline, width=60.0))

@@ -16,7 +16,7 @@ from tactcad.export.board_files import nets_in_board
 from tactcad.families.planar import cell_board
 from tactcad.families.planar.cell_layout import PlanarLayout
 from tactcad.families.planar.checks import check_board
-from tactcad.parts.designs import load
+from tactcad.parts.rules import load
 from tactcad.scenes import make_scene
 
 DESIGNS = Path(__file__).parents[2] / "hardware"

@@ -21,7 +21,7 @@ from tactcad.circuit.netlist_files import wiring
 from tactcad.circuit.read_board import board_netlist
 from tactcad.design.load import read
 from tactcad.design.messages import CheckFailure
-from tactcad.export import circuit_files
+from tactcad.export import board_files
 from tactcad.parts.array.layout import Layout
 from tactcad.parts.array.leads import lead_routes
 from tactcad.scenes import make_scene
@@ -55,7 +55,7 @@ def part(node: list, name: str) -> list:
 def test_kicads_netlist_read_by_another_reader(name):
     design = read(name)
     used, channels = max(map(len, design.array.row_arms)), 8
-    whole = expression(circuit_files.kicad_file(design, board_netlist(design, used, 3)).decode())
+    whole = expression(board_files.kicad_file(design, board_netlist(design, used, 3)).decode())
     assert whole[0] == "export" and part(whole, "version") == ["version", "E"]
     components = part(whole, "components")[1:]
     refs = [part(c, "ref")[1] for c in components]
@@ -87,7 +87,7 @@ def test_kicads_netlist_read_by_another_reader(name):
 def test_every_board_has_the_header_that_is_bought():
     """The first board reads three elements, the second eight: both have one header, all its pins used."""
     design = variant({"array.row_arms": [[4, 7, 6], [8, 5, 4, 5, 7, 8, 5, 4]]})
-    whole = expression(circuit_files.kicad_file(design, board_netlist(design, 3, 3)).decode())
+    whole = expression(board_files.kicad_file(design, board_netlist(design, 3, 3)).decode())
     (header,) = (x for x in part(whole, "libparts")[1:] if part(x, "part")[1] == "HEADER-LEADS")
     numbers = {part(pin, "num")[1] for pin in part(header, "pins")[1:]}
     named = {part(pin, "name")[1] for pin in part(header, "pins")[1:]}
@@ -106,34 +106,34 @@ def test_every_board_has_the_header_that_is_bought():
 def test_table_and_kicads_file_say_the_same():
     design = read("macro-array")
     circuit = netlist(Layout(design))
-    kicad = circuit_files.nets_in_kicad(circuit_files.kicad_file(design, circuit))
-    assert kicad == circuit_files.nets_in_table(circuit_files.table_file(design, circuit))
+    kicad = board_files.nets_in_kicad(board_files.kicad_file(design, circuit))
+    assert kicad == board_files.nets_in_table(board_files.table_file(design, circuit))
 
 
 def test_the_owner_stands_in_kicads_title_block():
     design = read("macro-array")
     owned = replace(design, design=replace(design.design, organisation='Our "lab"'))
-    block = circuit_files.kicad_file(owned, netlist(Layout(owned))).decode()
+    block = board_files.kicad_file(owned, netlist(Layout(owned))).decode()
     assert block.count('(company "Our \\"lab\\"")') == 1
-    assert "(company)" in circuit_files.kicad_file(design, netlist(Layout(design))).decode()
+    assert "(company)" in board_files.kicad_file(design, netlist(Layout(design))).decode()
 
 
 def test_a_damaged_netlist_is_refused(monkeypatch):
-    kept = circuit_files.kicad_bytes
+    kept = board_files.kicad_bytes
     monkeypatch.setattr(
-        circuit_files,
+        board_files,
         "kicad_bytes",
         lambda *args: kept(*args).replace(b'(node (ref "B1") (pin "1")', b'(node (ref "B1") (pin "2")'),
     )
     with pytest.raises(CheckFailure, match="E1_TOP"):
         design = read("macro-array")
-        circuit_files.kicad_file(design, netlist(Layout(design)))
+        board_files.kicad_file(design, netlist(Layout(design)))
 
 
 def test_equal_bytes_under_any_hash_seed():
     script = (
         "import hashlib\nfrom tactcad.design.load import read\n"
-        "from tactcad.export import circuit_files as f\n"
+        "from tactcad.export import board_files as f\n"
         "from tactcad.circuit.bridges import netlist\nfrom tactcad.parts.array.layout import Layout\n"
         "d = read('macro-array')\nfor make in (f.kicad_file, f.table_file, f.deck_file, f.wiring_file):\n"
         "    print(hashlib.sha256(make(d, netlist(Layout(d)))).hexdigest())"
@@ -184,7 +184,7 @@ def test_leads_are_as_long_as_their_way_on_the_scene(name, connection):
         # the bundle leaves the array on its row's side
         assert math.copysign(1, route.points[-1][0]) == math.copysign(1, p.rotation[0][0])
     rows_listed = list(
-        csv.DictReader(io.StringIO(circuit_files.wiring_file(design, netlist(Layout(design))).decode()))
+        csv.DictReader(io.StringIO(board_files.wiring_file(design, netlist(Layout(design))).decode()))
     )
     count = 3 if connection == "three-wire" else 2
     assert len(rows_listed) == count * len(placed)
@@ -285,16 +285,16 @@ def test_a_gain_resistor_of_the_series():
 def test_a_net_or_a_lead_that_is_missing_is_found():
     design = variant()
     circuit = netlist(Layout(design))
-    nets = circuit_files.nets_in_table(circuit_files.table_file(design, circuit))
-    circuit_files.check_nets("table", nets, circuit)
+    nets = board_files.nets_in_table(board_files.table_file(design, circuit))
+    board_files.check_nets("table", nets, circuit)
     for name in ("EXC1", next(iter(sorted(nets)))):
         with pytest.raises(CheckFailure, match=f"other nets: {name}"):
-            circuit_files.check_nets("table", {k: v for k, v in nets.items() if k != name}, circuit)
-    data = circuit_files.wiring_file(design, circuit)
+            board_files.check_nets("table", {k: v for k, v in nets.items() if k != name}, circuit)
+    data = board_files.wiring_file(design, circuit)
     head, first, rest = data.decode().split("\n", 2)
     for text in (f"{head}\n{rest}", f"{head}\n{first}\n{first}\n{rest}"):
         with pytest.raises(CheckFailure, match="every lead"):
-            circuit_files.check_leads(text.encode(), circuit)
+            board_files.check_leads(text.encode(), circuit)
 
 
 def test_what_is_verified_of_a_part_stands_in_the_bill(monkeypatch):

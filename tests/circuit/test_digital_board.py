@@ -25,8 +25,8 @@ from tactcad.circuit.kicad_board import board_bytes
 from tactcad.circuit.netlist_files import DIODE, lines_of, wiring
 from tactcad.export.board_files import BILL, bill_csv, nets_in_board
 from tactcad.lab.pads import springs_of
-from tactcad.parts.array.gauge_checks import gauge_checks, volts
 from tactcad.parts.array.layout import Layout
+from tactcad.parts.array.measurements import gauge_checks, volts
 from tactcad.parts.array.supplies import electronic_supplies
 from tactcad.parts.rigs.bonding_fixture import bonding_rigs
 from tactcad.review.effect import signals

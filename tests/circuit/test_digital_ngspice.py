@@ -16,7 +16,7 @@ from tactcad.circuit.element_signals import element_signals
 from tactcad.circuit.netlist import Netlist
 from tactcad.circuit.netlist_files import deck, inputs_of
 from tactcad.circuit.tracks import with_tracks
-from tactcad.export.circuit_files import deck_file
+from tactcad.export.board_files import deck_file
 from tactcad.mechanics import gauge_signal
 from tactcad.parts.array.bridge_figures import power_of
 from tactcad.parts.array.hinge_section import design_gauge, hinge_section

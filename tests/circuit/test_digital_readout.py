@@ -23,7 +23,7 @@ from tactcad.parts.array.bridge_figures import power_of
 from tactcad.parts.array.hinge_section import design_gauge
 from tactcad.parts.array.layout import Layout
 from tactcad.parts.rules import broken_rules
-from tactcad.parts.rules.converter_rules import OF_CARD
+from tactcad.parts.rules.readout_rules import OF_CARD
 
 CHIP = "AD7124-8"
 DUTY = {"readout.converter": CHIP, "readout.power": "duty"}

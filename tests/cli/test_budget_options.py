@@ -17,7 +17,7 @@ from tactcad.costs.grades import ANGULAR
 from tactcad.fem import fem_ladder
 from tactcad.mechanics.accuracy import CANDIDATES, expected_error
 from tactcad.mechanics.section import REFERENCE
-from tactcad.parts.designs import load
+from tactcad.parts.rules import load
 
 HEADER = (
     "hinge_thickness,hinge_length,fillet_radius,load_arm,arm_height,body_height,body_length,"

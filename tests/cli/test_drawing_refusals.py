@@ -9,7 +9,7 @@ import pytest
 from variants import TINY_TEXT
 
 from tactcad.cli.main import main
-from tactcad.parts.designs import load
+from tactcad.parts.rules import load
 
 pytestmark = pytest.mark.cad
 

@@ -18,7 +18,7 @@ from tactcad.mechanics import ladder
 from tactcad.mechanics.as_built import in_clamp, without_layer
 from tactcad.parts.array.hinge_section import hinge_section
 from tactcad.parts.array.layout import Layout
-from tactcad.parts.designs import load
+from tactcad.parts.rules import load
 
 LAYOUT = Layout(load("macro-array"))
 BLANK = inspection_bytes(LAYOUT).decode()

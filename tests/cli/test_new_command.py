@@ -10,7 +10,7 @@ import pytest
 
 from tactcad.cli.main import main
 from tactcad.design.load import names, parse
-from tactcad.parts.designs import load
+from tactcad.parts.rules import load
 from tactcad.scenes import make_scene
 
 HARDWARE = Path(__file__).parents[2] / "hardware"

@@ -112,7 +112,7 @@ def test_cut_files_and_inspection_load_no_kernel(tmp_path):
 import sys
 from tactcad.profiling import HEAVY
 from tactcad.export.dxf import check_dxf, dxf_bytes
-from tactcad.parts.designs import load
+from tactcad.parts.rules import load
 from tactcad.parts.array.layout import Layout
 from tactcad.scenes import make_scene, scene_names
 from tactcad.lab.inspection_sheet import read_sheet

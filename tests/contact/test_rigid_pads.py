@@ -12,7 +12,7 @@ from tactcad.contact.elastic_body import Body, influence
 from tactcad.contact.press import Pads, PadsOnBody, complementary, pad_stiffness, patches
 from tactcad.contact.rigid_pads import POWERS, ManyPresses, pad_law, press_many
 from tactcad.lab.pads import springs_of
-from tactcad.parts.designs import load
+from tactcad.parts.rules import load
 
 
 def array():

@@ -289,6 +289,6 @@ def test_what_its_magnetism_and_metal_ask_of_the_shop_stands_in_the_notes(alloy,
 
 def test_of_a_sheet_of_unknown_magnetism_the_note_promises_nothing():
     from tactcad.parts.language.description import Material
-    from tactcad.parts.language.part_materials import held_for_grinding
+    from tactcad.parts.language.stock import held_for_grinding
 
     assert held_for_grinding(Material("own", 5000.0)) == "on a magnetic chuck only if a magnet draws it"

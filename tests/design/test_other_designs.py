@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import pytest
 
-from tactcad.design.following import MOVING
 from tactcad.design.load import parse
 from tactcad.design.messages import InputError
-from tactcad.parts.designs import load
+from tactcad.design.tree import MOVING
 from tactcad.parts.language.finding import Finding, grouped
-from tactcad.parts.rules import refuse_broken
+from tactcad.parts.rules import load, refuse_broken
 from tactcad.scenes import make_scene
 
 TEXT = open("hardware/macro-array.toml").read()

@@ -11,7 +11,7 @@ from tactcad.cli.parser import Parser
 from tactcad.design.csv_table import number
 from tactcad.design.messages import InputError
 from tactcad.design.text_values import as_number, as_whole
-from tactcad.scenes.poses import pose_of
+from tactcad.scenes.rig import pose_of
 
 NONE = ["4_0", "\u0664", "", "4 0", "0x10", "1e", "--1", "4,0", "\u00a04", "1e1_0"]
 

@@ -17,7 +17,7 @@ from tactcad.design.messages import CheckFailure
 from tactcad.drawing.assemblies import assembly_sheets as assembly_file
 from tactcad.drawing.assemblies.assembly_sheets import assembly_faults, assembly_sheets
 from tactcad.drawing.assemblies.balloons import laid, laid_columns, list_drawn
-from tactcad.drawing.engine.extent import placed
+from tactcad.drawing.engine.boxes import placed
 from tactcad.drawing.engine.ink import DrawnArc, DrawnSheet, Fill, Stroke, Text, bounds_of_items, preliminary
 from tactcad.drawing.engine.layout_check import layout_faults
 from tactcad.drawing.engine.paper import MOST_DRAWN, fewer

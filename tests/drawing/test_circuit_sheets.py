@@ -16,7 +16,7 @@ from tactcad.drawing.circuit_sheets import sheets
 from tactcad.drawing.circuit_sheets.sheets import CircuitOrder, circuit_written
 from tactcad.drawing.engine.layout_check import layout_faults
 from tactcad.drawing.engine.sheet_files import pdf_runs
-from tactcad.export.circuit_files import table_file, wiring_file
+from tactcad.export.board_files import table_file, wiring_file
 from tactcad.parts.array.bridge_figures import settling_time
 from tactcad.parts.array.layout import Layout
 

@@ -14,10 +14,10 @@ from tactcad.contour import rectangle
 from tactcad.design.load import from_table
 from tactcad.drawing.assemblies.apart import Piece, pieces_of, pulled_apart
 from tactcad.drawing.assemblies.exploded import unit_views
-from tactcad.drawing.engine.extent import projected_box
+from tactcad.drawing.engine.boxes import projected_box
 from tactcad.parts.bought.screws import cap_screw
 from tactcad.parts.language.description import Extrusion, Part
-from tactcad.parts.language.part_materials import STAINLESS
+from tactcad.parts.language.stock import STAINLESS
 from tactcad.scenes import make_scene, scene_names
 from tactcad.scenes.scene import ALONG_Y, DOWN, Contact, Placement, Scene
 

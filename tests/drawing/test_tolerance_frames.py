@@ -22,8 +22,7 @@ from tactcad.drawing.parts.part_sheet import MadeFrom, Order, drawing_faults, pa
 from tactcad.drawing.parts.prism import prism_plan
 from tactcad.families.facing_rows import FAMILY
 from tactcad.parts.language.description import Extrusion, Hole, Material, Part
-from tactcad.parts.language.fits import general
-from tactcad.parts.language.limits import DatumFeature, Geometric
+from tactcad.parts.language.limits import DatumFeature, Geometric, general
 from tactcad.scenes import make_scene
 
 DXF = MadeFrom("dxf/some_B.dxf", "f" * 64)

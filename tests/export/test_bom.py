@@ -10,7 +10,7 @@ from dataclasses import replace
 import pytest
 
 from tactcad.contour import circle, rectangle
-from tactcad.parts.bought.supply import Supply
+from tactcad.parts.bought.electronic_parts import Supply
 from tactcad.parts.language.description import Extrusion, Material, Part, Purchase
 from tactcad.scenes.bom import (
     COLUMNS,

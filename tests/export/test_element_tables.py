@@ -14,7 +14,7 @@ from tactcad.export.inspection import COLUMNS, inspection_bytes
 from tactcad.export.strength_table import strength_bytes
 from tactcad.parts.array.element import element
 from tactcad.parts.array.layout import Layout
-from tactcad.parts.designs import load
+from tactcad.parts.rules import load
 
 
 def table(data: bytes) -> list[dict[str, str]]:

@@ -29,8 +29,8 @@ from tactcad.export.golden_file import (
 )
 from tactcad.parts.array.element import element
 from tactcad.parts.array.layout import Layout
-from tactcad.parts.designs import load
 from tactcad.parts.language.finding import Finding
+from tactcad.parts.rules import load
 
 ROOT = Path(__file__).parents[2]
 # the letter that the shipped file has now, and one that it will not have soon

@@ -7,7 +7,7 @@ import re
 import pytest
 
 from tactcad.export.inspection import PART_COLUMNS, part_inspection_bytes
-from tactcad.parts.designs import load
+from tactcad.parts.rules import load
 from tactcad.scenes import make_scene, scene_names
 from tactcad.stacks.virtual_build import sensor
 

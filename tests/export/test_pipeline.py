@@ -503,14 +503,14 @@ def test_what_is_written_wrong_leaves_the_earlier_export(mine, monkeypatch):
 
 def test_a_measured_part_must_agree_with_its_description(mine, monkeypatch):
     """Centre of mass and box from the kernel are compared with the closed forms."""
-    from tactcad.drawing.engine import extent
+    from tactcad.drawing.engine import boxes
 
     made = variant({"array.row_arms": [[4.7, 6.0]]})
-    centre, box = Part.centre.fget, extent.part_box
+    centre, box = Part.centre.fget, boxes.part_box
     with monkeypatch.context() as patch, pytest.raises(CheckFailure, match="centre of mass"):
         patch.setattr(Part, "centre", property(lambda self: (centre(self)[0] + 1e-5, *centre(self)[1:])))
         exported(made, mine)
-    monkeypatch.setattr(extent, "part_box", lambda part: (box(part)[0], [x + 1e-5 for x in box(part)[1]]))
+    monkeypatch.setattr(boxes, "part_box", lambda part: (box(part)[0], [x + 1e-5 for x in box(part)[1]]))
     with pytest.raises(CheckFailure, match="bounding box is 1e-05 mm from the description's"):
         exported(made, mine)
 

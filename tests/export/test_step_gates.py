@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 
 from tactcad.design.messages import CheckFailure
-from tactcad.drawing.engine.extent import part_box
+from tactcad.drawing.engine.boxes import part_box
 from tactcad.export import step_file as step
 from tactcad.export.products import _compare_box
 from tactcad.export.step_text import Header

@@ -20,9 +20,9 @@ from tactcad.export import step_pmi
 from tactcad.export.formats import has_limits, part_formats
 from tactcad.export.step_text import Header
 from tactcad.export.workers import Task, side_by_side
-from tactcad.parts.designs import load
 from tactcad.parts.language.description import Extrusion, Hole, Material, Part, Pocket, Revolution
 from tactcad.parts.language.limits import FACES, DatumFeature, Geometric, within
+from tactcad.parts.rules import load
 from tactcad.scenes import make_scene, scene_names
 
 pytestmark = pytest.mark.cad

@@ -15,9 +15,9 @@ from tactcad.costs.grades import ANGULAR, promised
 from tactcad.design.messages import CheckFailure
 from tactcad.export.part_formats.stl import check_stl, part_stl
 from tactcad.scenes import make_scene
+from tactcad.solids import Meshing
 from tactcad.solids.build import build
 from tactcad.solids.measure import measure
-from tactcad.solids.meshing import Meshing
 
 pytestmark = pytest.mark.cad
 BOX = trimesh.creation.box((3.0, 2.0, 1.0))

@@ -16,7 +16,7 @@ from test_wheel import BASE, closure
 from tactcad.cli.main import COMMANDS, parser_of
 from tactcad.export.inspection import inspection_bytes
 from tactcad.parts.array.layout import Layout
-from tactcad.parts.designs import load
+from tactcad.parts.rules import load
 
 # Python runs it as it starts, in every process: what other distributions bring is not there.
 HIDE = """

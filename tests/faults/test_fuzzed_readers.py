@@ -38,9 +38,9 @@ from tactcad.lab.inspection_sheet import read_sheet
 from tactcad.lab.load_cell import LoadCell
 from tactcad.paper import published
 from tactcad.parts.array.layout import Layout
-from tactcad.parts.designs import load
+from tactcad.parts.rules import load
 from tactcad.scenes import bom, make_scene, scene_names
-from tactcad.scenes.poses import pose_of
+from tactcad.scenes.rig import pose_of
 
 DATA, EXAMPLES = ROOT / "src" / "tactcad", ROOT / "hardware" / "examples"
 FEW, MANY = 25, 10_000

@@ -15,7 +15,7 @@ from tactcad.mechanics.section import REFERENCE
 from tactcad.parts.array.element import element
 from tactcad.parts.array.hinge_section import hinge_section
 from tactcad.parts.array.layout import Layout
-from tactcad.parts.designs import load
+from tactcad.parts.rules import load
 
 SECTIONS = {
     "two": REFERENCE,

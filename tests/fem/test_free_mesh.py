@@ -17,7 +17,7 @@ from tactcad.fem.space import line_load
 from tactcad.lab.array_estimate import compare_uncut
 from tactcad.mechanics.section import REFERENCE
 from tactcad.parts.array.layout import Layout
-from tactcad.parts.designs import load
+from tactcad.parts.rules import load
 
 
 def test_area_of_a_plate_with_holes_is_exact_but_for_the_arcs_parabolas():

@@ -21,7 +21,7 @@ from tactcad.fem.space import line_load
 from tactcad.parts.array import seating
 from tactcad.parts.array.element import element
 from tactcad.parts.array.layout import ElementPlace, Layout
-from tactcad.parts.designs import load
+from tactcad.parts.rules import load
 
 RIGS = Path(__file__).parents[2] / "docs" / "rigs.md"
 LAYOUT = Layout(load("macro-array"))

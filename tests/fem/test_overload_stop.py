@@ -21,7 +21,7 @@ from tactcad.parts.array.element import element
 from tactcad.parts.array.hinge_section import hinge_section
 from tactcad.parts.array.layout import ElementPlace, Layout
 from tactcad.parts.array.stop_gap import land_room, overloads, seat
-from tactcad.parts.designs import load
+from tactcad.parts.rules import load
 
 # every different element of the shipped designs, under its design's overload force
 KINDS = sorted(

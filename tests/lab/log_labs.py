@@ -14,7 +14,7 @@ from tactcad.lab.simulate import Truth, approach
 from tactcad.paper.examples import truth
 from tactcad.parts.array.bridge_figures import drift
 from tactcad.parts.array.layout import Layout
-from tactcad.parts.designs import load
+from tactcad.parts.rules import load
 
 X = 3.85  # N/mm, the object under each pad
 CELL = 57.04  # N/mm

@@ -19,7 +19,7 @@ from tactcad.lab.load_cell import LoadCell
 from tactcad.lab.simulate import Noise, Truth, calibration_rows
 from tactcad.mechanics.section import REQUIRED
 from tactcad.parts.array.layout import Layout
-from tactcad.parts.designs import load
+from tactcad.parts.rules import load
 
 HEADER = "element,run,displacement,force,signal"
 STEPS = np.arange(1, 7) * 0.025

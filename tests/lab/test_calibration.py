@@ -15,7 +15,7 @@ from tactcad.lab.column_units import against_design
 from tactcad.lab.load_cell import LoadCell
 from tactcad.lab.readings import CalibrationReadings
 from tactcad.lab.simulate import Noise, Truth
-from tactcad.parts.designs import load
+from tactcad.parts.rules import load
 
 CELL = 57.04
 EXACT = LoadCell(CELL)

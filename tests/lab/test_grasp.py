@@ -17,7 +17,7 @@ from tactcad.lab.combine import combine, scatter
 from tactcad.lab.load_cell import LoadCell
 from tactcad.lab.readings import CalibrationReadings, GraspReadings
 from tactcad.mechanics import lumped
-from tactcad.mechanics.sample_coupling import shares_between
+from tactcad.mechanics.lumped import shares_between
 from tactcad.paper import examples
 
 CELL = 57.04

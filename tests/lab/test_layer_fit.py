@@ -17,7 +17,7 @@ from tactcad.lab.layer_fit import fit, layer
 from tactcad.lab.pads import layers, springs_of
 from tactcad.lab.readings import GraspReadings
 from tactcad.parts.array.layout import Layout
-from tactcad.parts.designs import load
+from tactcad.parts.rules import load
 
 DESIGN = load("macro-array")
 PADS, K_V = springs_of(DESIGN)

@@ -204,7 +204,7 @@ def test_drift_has_a_term():
     blind = grasp.evaluate(replace(drifted, time=None), known)
     assert blind.noise > 5 * b.noise
     from tactcad.lab import pads
-    from tactcad.parts.designs import load
+    from tactcad.parts.rules import load
 
     layer = pads.layers(load("macro-array"), "6", 0.49)
     on = [grasp.on_layers(found, g, known, layer, 0.95) for found, g in ((a, steady), (b, drifted))]

@@ -13,10 +13,10 @@ import pytest
 
 from tactcad.cli.main import main
 from tactcad.export.inspection import inspection_bytes
-from tactcad.lab.measured_parts import reissued
+from tactcad.lab.inspection_sheet import reissued
 from tactcad.parts.array.element import LEDGE, spacer
 from tactcad.parts.array.layout import Layout
-from tactcad.parts.designs import load
+from tactcad.parts.rules import load
 
 DESIGN = load("macro-array")
 LAYOUT = Layout(DESIGN)

@@ -27,7 +27,7 @@ from tactcad.paper import budget, published, reference_stiffness, residuals
 from tactcad.paper.array_model import from_design
 from tactcad.paper.budget import AS_BUILT
 from tactcad.paper.prose import effect_text
-from tactcad.parts.designs import load
+from tactcad.parts.rules import load
 
 TOLERANCE = load("macro-array").tolerance
 

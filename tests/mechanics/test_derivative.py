@@ -17,7 +17,7 @@ from tactcad.mechanics.ladder import elasticity
 from tactcad.mechanics.section import REFERENCE
 from tactcad.parts.array.hinge_section import hinge_section, thickness_elasticity
 from tactcad.parts.array.layout import Layout
-from tactcad.parts.designs import load
+from tactcad.parts.rules import load
 from tactcad.release.readme import ReleaseContents, readme_bytes
 from tactcad.scenes import make_scene
 

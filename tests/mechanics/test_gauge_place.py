@@ -13,9 +13,9 @@ from tactcad.fem.face_strain import face_strain
 from tactcad.fem.shape import reference_shape
 from tactcad.mechanics import gauge_signal
 from tactcad.mechanics.section import REFERENCE
-from tactcad.parts.array.gauge_checks import allowed_places
 from tactcad.parts.array.hinge_section import hinge_section
 from tactcad.parts.array.layout import Layout
+from tactcad.parts.array.measurements import allowed_places
 
 GRID = 0.5
 

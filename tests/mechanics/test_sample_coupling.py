@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_bvp
 
-from tactcad.mechanics import sample_coupling as sc
+from tactcad.mechanics import lumped as sc
 
 
 def test_far_pads_on_a_half_space_feel_a_point_load():

@@ -8,7 +8,7 @@ import pytest
 
 from tactcad.design.messages import CheckFailure
 from tactcad.mechanics import strain
-from tactcad.mechanics.constants import ladder_data
+from tactcad.mechanics.register import ladder_data
 from tactcad.mechanics.rungs import plane
 from tactcad.mechanics.section import REFERENCE
 

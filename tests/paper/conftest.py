@@ -6,7 +6,7 @@ import pytest
 
 from tactcad.paper import published, validation
 from tactcad.paper.array_model import from_design
-from tactcad.parts.designs import load
+from tactcad.parts.rules import load
 
 
 @pytest.fixture(scope="session")

@@ -7,10 +7,9 @@ from tactcad.design.messages import CheckFailure
 from tactcad.parts.array.element import element
 from tactcad.parts.array.layout import Layout
 from tactcad.parts.array.measurements import measurements
-from tactcad.parts.designs import load
 from tactcad.parts.language.description import Extrusion, Material, Part
-from tactcad.parts.language.fits import deviations, general
-from tactcad.parts.language.limits import Characteristic, DatumFeature, Geometric, within
+from tactcad.parts.language.limits import Characteristic, DatumFeature, Geometric, deviations, general, within
+from tactcad.parts.rules import load
 
 # Micrometres as printed in ISO 286-2:2010, tables 2 to 32.
 PRINTED = {

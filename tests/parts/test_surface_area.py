@@ -9,9 +9,9 @@ import pytest
 from variants import FACING_ROWS
 
 from tactcad.contour import Arc, Contour, Line, circle, rectangle
-from tactcad.parts.designs import load
 from tactcad.parts.language.description import Extrusion, Hole, Material, Part, Pocket, Revolution
 from tactcad.parts.language.surface import surface_area
+from tactcad.parts.rules import load
 from tactcad.scenes import make_scene, scene_names
 
 UP, DOWN, X = (0, 0, 1), (0, 0, -1), (1, 0, 0)

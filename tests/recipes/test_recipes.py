@@ -79,7 +79,7 @@ PLACED = """
     b.meet(b.place("CO", cover_plate(layout), (0, 0, top), UPRIGHT, "Cover"), "CA1")
 """
 SHOWN = """
-from tactcad.parts.designs import load
+from tactcad.parts.rules import load
 from tactcad.scenes import make_scene
 from tactcad.scenes.bom import bom_rows
 
@@ -311,7 +311,7 @@ def heavy() -> list[Finding]:
     from tactcad.checks.described.weight import check_weight
     from tactcad.contour import rectangle
     from tactcad.parts.language.description import Extrusion, Part
-    from tactcad.parts.language.part_materials import CARBON_STEEL
+    from tactcad.parts.language.stock import CARBON_STEEL
 
     body = Extrusion(rectangle(0.0, 0.0, 40.0, 20.0), 20.0)
     return [*check_weight(Part("b", "Block", "milled", CARBON_STEEL, body))]
@@ -323,7 +323,7 @@ ASKED = "import test_checks_table as t; t.test_every_check_in_the_code_has_its_b
 FOUND = """
 from tactcad.checks.check import Job, described, run_each
 from tactcad.checks.check_report import Report
-from tactcad.parts.designs import load
+from tactcad.parts.rules import load
 from tactcad.scenes import make_scene
 
 design, report = load("tiny.toml"), Report("tiny")

@@ -13,8 +13,8 @@ from shapely import LineString, Point, Polygon
 from shapely.ops import polygonize
 
 from tactcad.checks.shop import load_shop
-from tactcad.parts.designs import load
 from tactcad.parts.language.stock import cut_section
+from tactcad.parts.rules import load
 from tactcad.release.packages import nest_files, order_nests, wire_time
 from tactcad.release.release_contents import ReleaseContents
 from tactcad.scenes import make_scene, scene_names

@@ -264,7 +264,7 @@ def test_one_element_of_every_ten_of_a_kind_is_spare():
 
 @pytest.fixture(scope="module")
 def parts(folder, whole):
-    from tactcad.parts.designs import load
+    from tactcad.parts.rules import load
 
     design = load(folder / "tiny.toml")
     scenes = [make_scene(design, name) for name in scene_names(design)]

@@ -22,7 +22,7 @@ import tactcad
 from tactcad.cli.main import main
 from tactcad.drawing.engine.paper import SAMPLE as STATUS
 from tactcad.drawing.engine.sheet_files import pdf_runs
-from tactcad.parts.designs import load
+from tactcad.parts.rules import load
 from tactcad.release.archive import MODE, archive_bytes
 from tactcad.release.readme import DRAFT, SAMPLE
 from tactcad.release.release_contents import ReleaseContents, owned

@@ -22,7 +22,7 @@ from tactcad.export.sides import Side, compare_sides, design_side
 from tactcad.lab.array_estimate import estimate
 from tactcad.parts.array.hinge_section import thickness_elasticity
 from tactcad.parts.array.layout import Layout
-from tactcad.parts.designs import load
+from tactcad.parts.rules import load
 from tactcad.review.causes import causes
 from tactcad.review.consequences import KINDS, meaning
 from tactcad.review.summary import MOST_LINES, lines, markdown

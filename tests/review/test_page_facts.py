@@ -24,7 +24,7 @@ from tactcad.parts.array.layout import Layout
 from tactcad.parts.language.finding import Finding
 from tactcad.review import review_page
 from tactcad.review.facts import _fact, element_facts, part_facts, scene_facts
-from tactcad.review.strain_field import strain_along, strain_field
+from tactcad.review.review_record import strain_along, strain_field
 from tactcad.scenes import make_scene
 
 WRITTEN = tomllib.loads((HARDWARE / "macro-array.toml").read_text("utf-8"))
@@ -193,7 +193,7 @@ def test_findings_are_told_with_their_parts(macro_scene):
 
 def test_a_design_is_read_back_from_an_exports_values(macro):
     from tactcad.design.load import from_table
-    from tactcad.parts.designs import load
+    from tactcad.parts.rules import load
 
     for name in ("macro-array", "soft-tissue", "smallest-bearing", "double-sample", "better-array"):
         design = load(name)

@@ -17,7 +17,7 @@ import pytest
 from tactcad.cli.main import main
 from tactcad.design.messages import InputError
 from tactcad.export.golden_file import golden_bytes, golden_record
-from tactcad.parts.designs import load
+from tactcad.parts.rules import load
 from tactcad.review.revisions import repository_of
 
 ROOT = Path(__file__).parents[2]

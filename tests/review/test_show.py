@@ -25,7 +25,7 @@ from variants import variant
 from websockets.sync.server import serve
 
 from tactcad.design.messages import CheckFailure, InputError
-from tactcad.parts.designs import load
+from tactcad.parts.rules import load
 from tactcad.review import show as showing
 from tactcad.review.facts import scene_facts
 
@@ -108,7 +108,7 @@ def one(tmp_path_factory) -> Path:
 
 SHOW = """
 from pathlib import Path
-from tactcad.parts.designs import load
+from tactcad.parts.rules import load
 from tactcad.review.show import show
 page = Path("one.html").read_bytes()
 for design in ("one.toml", Path("one.toml"), load("one.toml")):

@@ -12,10 +12,9 @@ from variants import FACING_ROWS
 
 from tactcad.contour import rectangle
 from tactcad.export.dxf import dxf_bytes
-from tactcad.parts.designs import load
 from tactcad.parts.language.description import Extrusion, Hole, Part
-from tactcad.parts.language.part_materials import STAINLESS_PLATE, plate_material
-from tactcad.parts.language.stock import cut_section, stock_of
+from tactcad.parts.language.stock import STAINLESS_PLATE, cut_section, plate_material, stock_of
+from tactcad.parts.rules import load
 from tactcad.scenes import make_scene, scene_names
 from tactcad.solids.build import build
 from tactcad.solids.measure import bounding_box

@@ -12,11 +12,11 @@ from variants import FACING_ROWS
 from tactcad.design.family import family_of
 from tactcad.drawing.parts.part_sheet import part_plan
 from tactcad.parts.bought.standard_parts import GROOVE_DEPTHS, SECTION
-from tactcad.parts.designs import load
 from tactcad.parts.language.description import Hole, Part
-from tactcad.parts.language.fits import general
+from tactcad.parts.language.limits import general
 from tactcad.parts.language.metric import METRIC
 from tactcad.parts.rigs.cart import cart_layout
+from tactcad.parts.rules import load
 from tactcad.scenes import make_scene, scene_names
 
 MADE = ("wire-cut", "milled", "turned", "ground")

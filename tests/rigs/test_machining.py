@@ -10,8 +10,8 @@ from tactcad.checks.described.machining import check_machining
 from tactcad.checks.shop import load_shop
 from tactcad.contour import Corner, chain, circle, rectangle, rounded_polygon
 from tactcad.design.load import names
-from tactcad.parts.designs import load
 from tactcad.parts.language.description import Extrusion, Hole, Material, Part, Pocket, Revolution
+from tactcad.parts.rules import load
 from tactcad.scenes import make_scene, scene_names
 
 USUAL = load_shop().machining

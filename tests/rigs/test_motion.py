@@ -8,9 +8,9 @@ from variants import variant
 from tactcad.checks.on_solids.interference import check_interference
 from tactcad.checks.on_solids.motion import check_motions
 from tactcad.contour import circle, rectangle
-from tactcad.parts.designs import load
 from tactcad.parts.language.description import Extrusion, Hole, Material, Part, envelope
 from tactcad.parts.language.finding import Finding
+from tactcad.parts.rules import load
 from tactcad.scenes import make_scene
 from tactcad.scenes.scene import Contact, Motion, Placement, Scene
 from tactcad.solids.build import build

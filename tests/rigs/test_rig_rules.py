@@ -10,8 +10,7 @@ from tactcad.design.load import names
 from tactcad.design.messages import InputError
 from tactcad.design.tree import Design
 from tactcad.parts.array.layout import Layout
-from tactcad.parts.designs import load
-from tactcad.parts.rules import broken_rules, design_rules
+from tactcad.parts.rules import broken_rules, design_rules, load
 from tactcad.scenes import chosen_scenes, left_out, scene_names
 from tactcad.scenes.rig import all_rigs
 

@@ -22,12 +22,12 @@ from tactcad.export.products import _compare_box
 from tactcad.parts.array.element import deflected_element, deflection_at_pad_edge
 from tactcad.parts.array.layout import Layout
 from tactcad.parts.bought.screws import seating_torque
-from tactcad.parts.designs import load
 from tactcad.parts.rigs.frame import pad_middles
 from tactcad.parts.rigs.stand import StandLayout
 from tactcad.parts.rigs.stiffness import calibration_loads
+from tactcad.parts.rules import load
 from tactcad.scenes import make_scene, scene_names
-from tactcad.scenes.poses import pose_of, poses
+from tactcad.scenes.rig import pose_of, poses
 from tactcad.scenes.rigs.calibration import check_travel
 from tactcad.scenes.scene import Pose, Scene
 from tactcad.solids.build import build

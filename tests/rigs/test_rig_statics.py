@@ -10,8 +10,8 @@ from scipy.optimize import linprog
 from variants import variant
 
 from tactcad.mechanics.statics import holding_force, inside_by, tipping_margin, tipping_pull
-from tactcad.parts.designs import load
 from tactcad.parts.rigs.cart import cart_layout
+from tactcad.parts.rules import load
 from tactcad.scenes import make_scene
 from tactcad.scenes.rigs.grasping import check_moving_weight, moving_weight
 from tactcad.scenes.scene import Pose

@@ -10,12 +10,11 @@ from itertools import product
 import pytest
 from variants import DROP, variant
 
-from tactcad.checks.described.rigidity import check_rigidity
+from tactcad.checks.described.goes_together import check_rigidity
 from tactcad.checks.run import _left_out, run_checks
 from tactcad.cli.main import main
-from tactcad.design.following import LARGEST_SIDE
 from tactcad.design.load import paths
-from tactcad.design.tree import Design
+from tactcad.design.tree import LARGEST_SIDE, Design
 from tactcad.parts.array.layout import Layout
 from tactcad.parts.bought.standard_parts import STAGES
 from tactcad.parts.rigs.cart import cart_layout

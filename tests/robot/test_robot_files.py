@@ -18,7 +18,7 @@ from trimesh import load_mesh
 from tactcad.cli.main import main
 from tactcad.design.messages import InputError
 from tactcad.parts.array.layout import Layout
-from tactcad.parts.designs import load
+from tactcad.parts.rules import load
 from tactcad.robot import read, read_taxels
 from tactcad.robot.cantilevers import cantilevers
 from tactcad.robot.mechanism import Mechanism

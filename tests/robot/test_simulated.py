@@ -19,7 +19,7 @@ from tactcad.parts.array.element import element
 from tactcad.parts.array.hinge_section import hinge_section, not_reached
 from tactcad.parts.array.layout import Layout
 from tactcad.parts.array.stop_gap import stop_gap
-from tactcad.parts.designs import load
+from tactcad.parts.rules import load
 from tactcad.robot import read
 
 pytestmark = pytest.mark.cad

@@ -12,7 +12,7 @@ import pytest
 from variants import variant
 
 from tactcad.contour import Arc
-from tactcad.drawing.engine.extent import part_box, placed
+from tactcad.drawing.engine.boxes import part_box, placed
 from tactcad.parts.array.layout import Layout
 from tactcad.parts.language.description import Hole
 from tactcad.parts.language.metric import METRIC

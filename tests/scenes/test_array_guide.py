@@ -11,7 +11,7 @@ import pytest
 from variants import variant
 
 from tactcad.drawing import guide
-from tactcad.drawing.engine.extent import box_corners, part_box, placed
+from tactcad.drawing.engine.boxes import box_corners, part_box, placed
 from tactcad.drawing.engine.layout_check import layout_faults
 from tactcad.drawing.guide import face_map
 from tactcad.parts.language.metric import METRIC

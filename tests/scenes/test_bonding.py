@@ -13,16 +13,15 @@ from tactcad.checks.described.wirecut import check_wirecut
 from tactcad.checks.on_solids.interference import check_interference
 from tactcad.checks.shop import DEFAULT, load_shop
 from tactcad.circuit.element_signals import element_signals
-from tactcad.drawing.engine.extent import placed
+from tactcad.drawing.engine.boxes import placed
 from tactcad.drawing.parts.part_sheet import part_plan
 from tactcad.families.facing_rows import FAMILY
 from tactcad.mechanics import gauge_signal
-from tactcad.parts.array.gauge_checks import gauge_checks, volts
 from tactcad.parts.array.hinge_section import design_readout, hinge_section
 from tactcad.parts.array.layout import Layout
-from tactcad.parts.designs import load
+from tactcad.parts.array.measurements import gauge_checks, volts
 from tactcad.parts.rigs.bonding_fixture import bonding_rigs
-from tactcad.parts.rules import broken_rules
+from tactcad.parts.rules import broken_rules, load
 from tactcad.scenes import left_out, make_scene, scene_names
 from tactcad.scenes.rig_requirements import PLACE_ON_HINGE
 from tactcad.solids.build import build

@@ -10,7 +10,7 @@ import pytest
 from variants import variant
 
 from tactcad.drawing import guide
-from tactcad.parts.designs import load
+from tactcad.parts.rules import load
 from tactcad.scenes import make_scene
 from tactcad.scenes.moves import box, moments
 from tactcad.scenes.scene import STILL

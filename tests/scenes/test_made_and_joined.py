@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 from variants import FACING_ROWS
 
-from tactcad.drawing.engine.extent import box_corners, part_box, placed
+from tactcad.drawing.engine.boxes import box_corners, part_box, placed
 from tactcad.parts.array.element import WIRE_TOLERANCE, least_passes
-from tactcad.parts.designs import load
 from tactcad.parts.language.description import Hole
+from tactcad.parts.rules import load
 from tactcad.scenes import make_scene, scene_names
 from tactcad.scenes.scene import Placement, Pose
 

@@ -29,7 +29,7 @@ from OCP.XCAFDoc import XCAFDoc_DocumentTool, XCAFDoc_ShapeTool
 
 from tactcad.export.step_file import scene_step
 from tactcad.export.step_text import Header
-from tactcad.parts.designs import load
+from tactcad.parts.rules import load
 from tactcad.scenes import make_scene, scene_names
 from tactcad.scenes.moves import guide_json
 from tactcad.solids.build import build

@@ -19,7 +19,7 @@ from tactcad.circuit.boards import laid_out
 from tactcad.drawing.guide import page
 from tactcad.parts.array.layout import Layout
 from tactcad.parts.array.leads import boards
-from tactcad.parts.designs import load
+from tactcad.parts.rules import load
 from tactcad.scenes import make_scene, scene_names
 from tactcad.scenes.bom import bom_rows
 from tactcad.scenes.moves import box, step_moves

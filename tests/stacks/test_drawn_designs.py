@@ -5,7 +5,7 @@ import pytest
 from random_designs import as_toml, raw_table
 
 from tactcad.design.messages import InputError
-from tactcad.parts.designs import load
+from tactcad.parts.rules import load
 from tactcad.stacks.virtual_build import LEAST_YIELD, sensor
 
 ROWS = (2, 3, 5, 8)

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from tactcad.parts.array.clamp import OVER_EDGE, SQUARE, lean
-from tactcad.parts.designs import load
 from tactcad.parts.rigs.setting_fixture import SettingLayout
+from tactcad.parts.rules import load
 from tactcad.stacks.mechanic import PAD, Assembled
 from tactcad.stacks.variables import STEPS, made, own_holes, pair_holes
 from tactcad.stacks.virtual_build import sensor

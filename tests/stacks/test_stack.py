@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from pose_program import nearest_pose
 
-from tactcad.parts.designs import load
+from tactcad.parts.rules import load
 from tactcad.scenes.requirement import DimensionLimits
 from tactcad.scenes.rig_requirements import AXLE_HEIGHT, BORES, PARALLEL, SHANKS, WHEEL, loose_wheel
 from tactcad.stacks.mechanic import Assembled

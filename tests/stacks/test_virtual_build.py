@@ -14,8 +14,7 @@ from tactcad.mechanics import ladder
 from tactcad.mechanics.strength import yield_force
 from tactcad.parts.array.hinge_section import design_alloy, hinge_section
 from tactcad.parts.array.stop_gap import overloads, seat
-from tactcad.parts.designs import load
-from tactcad.parts.rules import refuse_broken
+from tactcad.parts.rules import load, refuse_broken
 from tactcad.scenes.requirement import variable
 from tactcad.stacks.mechanic import PAD, Assembled
 from tactcad.stacks.variables import STACK_LENGTH, STEPS, made

@@ -16,7 +16,7 @@ from tactcad.mechanics.section import HingeSection
 from tactcad.parts.array.element import element
 from tactcad.parts.array.hinge_section import element_section, hinge_section
 from tactcad.parts.array.layout import Layout
-from tactcad.sweep.field_paths import placed, spec_at, with_value
+from tactcad.sweep.designs_taken import placed, spec_at, with_value
 
 FIELDS = [f.name for f in dataclasses.fields(HingeSection)]
 PATHS = (

@@ -11,7 +11,7 @@ from small_study import SMALL, written
 from tactcad.cli.main import main
 from tactcad.design.design_text import design_text
 from tactcad.design.messages import InputError
-from tactcad.parts.designs import load
+from tactcad.parts.rules import load
 from tactcad.sweep import on_dask
 from tactcad.sweep.measured import measured
 from tactcad.sweep.study import read_study, study_schema
@@ -99,7 +99,7 @@ def test_bad_arguments(tmp_path, capsys, monkeypatch, arguments, said):
 
 @pytest.mark.parametrize("what", ["checks", "export"])
 def test_what_needs_solids_is_refused_where_there_is_no_kernel(what, tmp_path, capsys, monkeypatch):
-    monkeypatch.setattr("tactcad.design.extras.find_spec", lambda name: None if name == "OCP" else ...)
+    monkeypatch.setattr("tactcad.design.messages.find_spec", lambda name: None if name == "OCP" else ...)
     study = written(tmp_path, what=f'["{what}"]', elements="")
     assert main(["sweep", str(study), "--out", str(tmp_path / "o")]) == 2
     said = f"tactcad: measure.what, {what}: needs OCP, not installed here; legal: pip install '.[cad]' in a "

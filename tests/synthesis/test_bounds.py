@@ -16,8 +16,7 @@ from tactcad.cli.main import main
 from tactcad.design.load import from_table, read
 from tactcad.parts.array.clamp import clamping
 from tactcad.parts.array.layout import Layout
-from tactcad.parts.designs import load
-from tactcad.parts.rules import broken_rules
+from tactcad.parts.rules import broken_rules, load
 from tactcad.scenes import overall_size
 from tactcad.synthesis import relax, synthesise
 from tactcad.synthesis.bounds import (

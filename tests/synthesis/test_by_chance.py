@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tactcad.checks.run import run_checks
-from tactcad.parts.designs import load
+from tactcad.parts.rules import load
 from tactcad.scenes import scene_names
 from tactcad.synthesis.synthesise import attempt
 from tactcad.synthesis.target import parse_target

@@ -14,8 +14,7 @@ from small_target import SMALL
 from tactcad.cli.main import main
 from tactcad.design.load import parse, read
 from tactcad.design.messages import CheckFailure
-from tactcad.parts.designs import load
-from tactcad.parts.rules import broken_rules
+from tactcad.parts.rules import broken_rules, load
 from tactcad.synthesis import relax
 from tactcad.synthesis import target_report as write_module
 from tactcad.synthesis.candidates import order
@@ -149,7 +148,7 @@ def test_an_impossible_target_ends_with_1_and_writes_nothing_but_the_best_when_a
     assert main([*command, "--json"]) == 1
     told = json.loads(capsys.readouterr().out)
     assert told["met"] is False and told["bounds"] and not out.exists()
-    monkeypatch.setattr("tactcad.design.extras.find_spec", lambda name: None)  # no CAD kernel
+    monkeypatch.setattr("tactcad.design.messages.find_spec", lambda name: None)  # no CAD kernel
     assert main([*command, "--best"]) == 1
     assert parse((out / "design.toml").read_text(), "d").name == "small"
     said = capsys.readouterr().out

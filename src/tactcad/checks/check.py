@@ -22,7 +22,7 @@ from tactcad.parts.language.finding import Finding
 from tactcad.scenes import make_scene, scene_names
 from tactcad.scenes.rig import rig_of
 from tactcad.scenes.scene import Scene
-from tactcad.solids.meshing import USUAL, Meshing
+from tactcad.solids import USUAL, Meshing
 
 from .check_report import Report
 from .shop import Shop, load_shop

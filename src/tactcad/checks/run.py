@@ -10,9 +10,9 @@ from tactcad.design.tree import CommonTables
 from tactcad.parts.language.description import Part
 from tactcad.parts.language.finding import Finding, Severity
 from tactcad.scenes import left_out, make_scene, overall_size
-from tactcad.scenes.poses import poses
+from tactcad.scenes.rig import poses
+from tactcad.solids import USUAL, Meshing
 from tactcad.solids.build import SolidError, build
-from tactcad.solids.meshing import USUAL, Meshing
 
 from .check import Job, declared, described, of_rigs, ordered, run_each
 from .check_report import Report

@@ -20,8 +20,8 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field, replace
 
 from tactcad.design.messages import CheckFailure
-from tactcad.parts.array.board_outline import CARD_FROM_EDGE, LEADS_FROM_EDGE, BoardOutline
-from tactcad.parts.array.board_outline import PITCH as PIN
+from tactcad.parts.array.board_plate import CARD_FROM_EDGE, LEADS_FROM_EDGE, BoardOutline
+from tactcad.parts.array.board_plate import PITCH as PIN
 
 from .copper import (
     BOTTOM,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tactcad.parts.array.board_outline import board_outline
+from tactcad.parts.array.board_plate import BOARD_OUTLINE
 from tactcad.parts.array.layout import Layout
 from tactcad.parts.array.leads import boards, leads
 from tactcad.parts.bought.electronic_parts import converter_of
@@ -26,5 +26,4 @@ def laid_out(layout: Layout) -> tuple[BoardCopper, ...]:
     """One for each number of elements that a board reads, the largest first. Raises CheckFailure if the
     outline is too small."""
     used = sorted({len(board.places) for board in boards(layout)}, reverse=True)
-    outline = board_outline(layout)
-    return tuple(lay_out(netlist_of_board(layout, n), outline) for n in used)
+    return tuple(lay_out(netlist_of_board(layout, n), BOARD_OUTLINE) for n in used)

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from math import cos, pi, radians, sin
 
-from tactcad.parts.array.board_outline import THICKNESS
+from tactcad.parts.array.board_plate import THICKNESS
 
 from .footprints import Footprint, Pad, footprint
 from .netlist import GROUND, Component, Netlist

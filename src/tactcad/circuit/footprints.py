@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from math import sqrt
 
-from tactcad.parts.array.board_outline import PITCH
+from tactcad.parts.array.board_plate import PITCH
 
 Span = tuple[float, float]
 BOARD_TOLERANCE = PLACING = 0.1  # mm, IPC-7351B

@@ -47,7 +47,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    from tactcad.parts.designs import load
+    from tactcad.parts.rules import load
     from tactcad.stacks.stack import SEED
     from tactcad.stacks.virtual_build import sensor
 

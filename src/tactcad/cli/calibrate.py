@@ -69,7 +69,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     from tactcad.design.family import family_of
     from tactcad.design.files import refuse_overwriting
-    from tactcad.parts.designs import load
+    from tactcad.parts.rules import load
 
     allowance(args)
     if args.out:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from tactcad.checks.check_report import Report
     from tactcad.design.allowance import Allowance, Picked
-    from tactcad.solids.meshing import Meshing
+    from tactcad.solids import Meshing
 
 from .parser import UNLISTED, add_allowance, add_design, add_json, add_shop, add_strict, allowance
 
@@ -48,7 +48,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     from tactcad.checks.check_report import as_record, failure_table, json_bytes, junit_bytes
     from tactcad.checks.shop import DEFAULT, load_shop
-    from tactcad.solids.meshing import USUAL
+    from tactcad.solids import USUAL
 
     from .streams import coloured
 
@@ -93,7 +93,7 @@ def _picked(args: argparse.Namespace, asked: Allowance) -> tuple[Meshing, Picked
     from tactcad.costs.grades import VOLUME, check_grades, meshing_of
     from tactcad.design.allowance import pick
     from tactcad.design.messages import InputError
-    from tactcad.parts.designs import load
+    from tactcad.parts.rules import load
     from tactcad.scenes import chosen_scenes
 
     checked = []
@@ -113,8 +113,8 @@ def _checked(source: str, args: argparse.Namespace, shop: Path, meshing: Meshing
     from tactcad.design.load import find
     from tactcad.design.messages import InputError
     from tactcad.export.golden_file import check_golden, golden_path
-    from tactcad.parts.designs import load
     from tactcad.parts.language.finding import Finding
+    from tactcad.parts.rules import load
     from tactcad.scenes import chosen_scenes
 
     from .streams import progress

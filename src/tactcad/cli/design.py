@@ -112,7 +112,7 @@ def run(args: argparse.Namespace) -> int:
 
 def _next(out: str) -> str:
     """The command that can run here on the design."""
-    from tactcad.design.extras import missing
+    from tactcad.design.messages import missing
 
     if not missing("cad"):
         return f"tactcad check {out}/design.toml"

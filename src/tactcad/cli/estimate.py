@@ -93,7 +93,7 @@ def run(args: argparse.Namespace) -> int:
     if args.out is not None:
         raise InputError("--out", "goes with --batch only", value=args.out)
     from tactcad.design.family import family_of
-    from tactcad.parts.designs import load
+    from tactcad.parts.rules import load
 
     design = load(args.design or "macro-array")
     return family_of(design).estimate.run(args, asked, design)

@@ -112,14 +112,14 @@ def _exported(source: str, args: argparse.Namespace, say: Progress) -> tuple[dic
     from tactcad.export.formats import ExportOptions
     from tactcad.export.pipeline import export
     from tactcad.scenes import chosen_scenes, left_out
-    from tactcad.scenes.poses import pose_of
+    from tactcad.scenes.rig import pose_of
 
     asked = allowance(args)
     design, again = read(source), None
     if args.measured:
         from tactcad.design.family import family_of
         from tactcad.design.tree import Design
-        from tactcad.lab.measured_parts import reissued
+        from tactcad.lab.inspection_sheet import reissued
         from tactcad.parts.rules import refuse_broken
 
         if not isinstance(design, Design):

@@ -37,7 +37,7 @@ def _renew(source: str) -> None:
     from tactcad.design.load import find
     from tactcad.design.messages import InputError
     from tactcad.export.golden_file import accept, changes_against, golden_path
-    from tactcad.parts.designs import load
+    from tactcad.parts.rules import load
     from tactcad.scenes import scene_names
 
     from .streams import progress

@@ -73,7 +73,7 @@ def run(args: argparse.Namespace) -> int:
     from tactcad.design.files import refuse_overwriting, write_whole
     from tactcad.design.load import find
     from tactcad.lab.pressed import press_array
-    from tactcad.parts.designs import load
+    from tactcad.parts.rules import load
 
     within = None if args.within is None else read_within(args.within, "--within")
     body, angle = read_object(args.object), read_angle(args.angle)
@@ -131,7 +131,7 @@ def _number(where: str, text: str) -> float:
 
 def as_json(done: PressedArray, design: str) -> object:
     """The document of --json: mm, N, degrees, and signal_unit."""
-    from tactcad.report.plain import plain
+    from tactcad.report.report import plain
 
     return plain(
         {

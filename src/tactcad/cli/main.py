@@ -17,10 +17,9 @@ from contextlib import suppress
 from time import perf_counter
 
 from tactcad import __version__
-from tactcad.design import extras
 from tactcad.design.allowance import read_seconds
 from tactcad.design.files import NO_ROOM
-from tactcad.design.messages import CheckFailure, InputError, one_of
+from tactcad.design.messages import CheckFailure, InputError, one_of, refusal, refuse_missing
 from tactcad.export.cache import take_libraries_in
 from tactcad.profiling import profiled, text
 from tactcad.shutdown import end_on_signals, ignore_signals
@@ -116,7 +115,7 @@ def main(argv: list[str] | None = None) -> int:
             raise
         return _refused(f"the output cannot be written: {error.strerror}", FAILED)
     except ImportError as error:
-        if (why := extras.refusal(error)) is None:
+        if (why := refusal(error)) is None:
             raise
         return _refused(why, BAD_INPUT)
 
@@ -202,7 +201,7 @@ def _dispatch(argv: list[str]) -> int:
         for what, needed in NEEDS.items():
             command, _, option = what.partition(" --")
             if command == argv[0] and (not option or getattr(args, option)):
-                extras.refuse_missing(what, *needed)
+                refuse_missing(what, *needed)
         run = importlib.import_module(f"tactcad.cli.{argv[0]}").run
         started = perf_counter()
         status = _profiled(run, args) if os.environ.get("TACTCAD_PROFILE") else run(args)

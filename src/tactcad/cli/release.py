@@ -62,7 +62,7 @@ def run(args: argparse.Namespace) -> int:
     from tactcad.checks.shop import DEFAULT, load_shop
     from tactcad.design.load import find
     from tactcad.design.messages import CheckFailure, InputError
-    from tactcad.parts.designs import load
+    from tactcad.parts.rules import load
     from tactcad.release.make import Terms, looked_up, release
     from tactcad.release.release_contents import owned
 

@@ -97,7 +97,7 @@ def run(args: argparse.Namespace) -> int:
     from tactcad.design.family import taken_as
     from tactcad.design.tree import Design
     from tactcad.lab.array_estimate import material_lines, material_record
-    from tactcad.parts.designs import load
+    from tactcad.parts.rules import load
 
     asked = allowance(args)
     refuse_named(asked, "--model", args.model)

@@ -79,7 +79,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     from tactcad.design.family import family_of
     from tactcad.design.load import DEFAULT_DESIGN
-    from tactcad.parts.designs import load
+    from tactcad.parts.rules import load
 
     allowance(args)
     args.design = args.design or DEFAULT_DESIGN

@@ -8,8 +8,7 @@ import json
 import sys
 from typing import TYPE_CHECKING
 
-from tactcad.design.extras import refuse_missing
-from tactcad.design.messages import CheckFailure, InputError
+from tactcad.design.messages import CheckFailure, InputError, refuse_missing
 
 from .parser import add_allowance, add_json, allowance
 

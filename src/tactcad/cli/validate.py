@@ -36,7 +36,7 @@ def run(args: argparse.Namespace) -> int:
     from tactcad.export.publication import replacing
     from tactcad.paper import array_model as array
     from tactcad.paper import published, validation
-    from tactcad.parts.designs import load
+    from tactcad.parts.rules import load
     from tactcad.report import report
 
     if args.out:

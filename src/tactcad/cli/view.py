@@ -30,7 +30,7 @@ def run(args: argparse.Namespace) -> int:
 
     from tactcad.design.load import find
     from tactcad.export.shapes import Shapes
-    from tactcad.parts.designs import load
+    from tactcad.parts.rules import load
     from tactcad.review.live import POLL, Live, LiveServer, load_kernel
     from tactcad.review.review_page import viewer_library
     from tactcad.review.subject import shapes_of

@@ -4,8 +4,7 @@ In: exact points, radii, corners. Out: contours, their area and moments, cuts, d
 closed form.
 """
 
-from .contour import Contour, chain, circle, rectangle
-from .rounded import Corner, rounded_polygon
+from .contour import Contour, Corner, chain, circle, rectangle, rounded_polygon
 from .segment import LEAST_EDGE, Arc, Line, Point, Segment, is_sliver
 
 __all__ = [

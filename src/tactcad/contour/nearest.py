@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from math import atan2, cos, dist, hypot, sin, sqrt, tau
 
-from .rounded import ROUNDING_MM
+from .contour import ROUNDING_MM
 from .segment import Arc, Line, Point, Segment
 
 
@@ -132,7 +132,8 @@ def meeting_points(a: Segment, b: Segment) -> list[Point]:
     """Points in which two segments meet, within rounding; where they overlap, the ends of the common
     stretch.
     """
-    if not _discs_meet(a, b):
+    (ax, ay, ar), (bx, by, br) = _disc(a), _disc(b)
+    if hypot(ax - bx, ay - by) > ar + br + ROUNDING_MM:
         return []
     if isinstance(a, Line):
         candidates = _lines_meet(a, b) if isinstance(b, Line) else _line_and_circle(a, b)
@@ -189,11 +190,6 @@ def _along(line: Line, p: Point) -> float:
     """Parameter of the foot of p on the line, 0 at its start and 1 at its end."""
     ux, uy = line.end[0] - line.start[0], line.end[1] - line.start[1]
     return ((p[0] - line.start[0]) * ux + (p[1] - line.start[1]) * uy) / (ux * ux + uy * uy)
-
-
-def _discs_meet(a: Segment, b: Segment) -> bool:
-    (ax, ay, ar), (bx, by, br) = _disc(a), _disc(b)
-    return hypot(ax - bx, ay - by) <= ar + br + ROUNDING_MM
 
 
 def _disc(s: Segment) -> tuple[float, float, float]:

@@ -13,9 +13,8 @@ from itertools import combinations_with_replacement
 from math import dist, hypot, pi
 from typing import Literal
 
-from .contour import Contour
+from .contour import ROUNDING_MM, Contour
 from .nearest import Box, box_around, common_normals, gap, meeting_points
-from .rounded import ROUNDING_MM
 from .segment import Arc, Line, Point, Segment
 
 # Directions closer than this are taken as equal: sine of the angle, above the rounding of short tangents.

@@ -43,7 +43,7 @@ from tactcad.mechanics.section import Array, HingeSection
 from tactcad.mechanics.validity import reasons
 from tactcad.parts.language.description import Part
 from tactcad.scenes import make_scene
-from tactcad.solids.meshing import USUAL, Meshing
+from tactcad.solids import USUAL, Meshing
 
 ANGULAR = (1.0, 0.5, 0.35, 0.2, 0.1, 0.05, 0.02)  # rad, largest turn between facets; 0.2 is the usual
 COUNTS = tuple(first * 10**power for power in range(2, 6) for first in (1, 2, 5)) + (1_000_000,)  # arrays

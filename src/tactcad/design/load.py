@@ -30,7 +30,7 @@ OF_A_SEARCH = ("synthesised", "chosen: the target's", "chosen: of the target's s
 def read(source: str | Path) -> CommonTables:
     """The design in a file, or the one of that name in hardware/, checked field by field.
 
-    Rules between fields are tried by `tactcad.parts.designs.load`, which is what commands call. Raises
+    Rules between fields are tried by `tactcad.parts.rules.load`, which is what commands call. Raises
     InputError if the file is missing or not a design, or a value is not legal.
     """
     path = find(source)

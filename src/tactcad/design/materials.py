@@ -9,7 +9,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cache
 from math import isclose
-from pathlib import Path
 from typing import Any
 
 from .fields import present
@@ -91,7 +90,7 @@ class Difference:
 
 def _table() -> dict[str, Alloy]:
     """The rows of data/materials.csv."""
-    rows = data_rows(Path(__file__).parent / "data" / "materials.csv")
+    rows = data_rows(__file__, "materials")
     return {row["name"]: _alloy(row) for row in rows}
 
 
@@ -257,5 +256,5 @@ def sheet_tolerance(thickness: float, density: float) -> float:
 
 @cache
 def _rows() -> tuple[tuple[float, float], ...]:
-    rows = data_rows(Path(__file__).parent / "data" / "sheet_thickness.csv")
+    rows = data_rows(__file__, "sheet_thickness")
     return tuple((float(row["to"]), float(row["tolerance"])) for row in rows)

@@ -8,7 +8,6 @@ lengths in mm.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 from .fields import Number, OneOf, Whole, given
@@ -166,7 +165,7 @@ class Wire:
 
 
 def _rows(name: str) -> list[dict[str, str]]:
-    return data_rows(Path(__file__).parent / "data" / f"{name}.csv")
+    return data_rows(__file__, name)
 
 
 def _bought(row: dict[str, str]) -> dict[str, Any]:

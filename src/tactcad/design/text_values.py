@@ -47,9 +47,11 @@ def filling_radius(radius: float, length: float) -> float:
     return full * (length / 2) + (1 - full) * radius
 
 
-def data_rows(path: Path) -> list[dict[str, str]]:
-    """The rows of a table, in its order."""
-    lines = path.read_text("utf-8").splitlines()
+def data_rows(module: str, name: str) -> list[dict[str, str]]:
+    """The rows of data/NAME.csv beside a module (its `__file__`), in its order; lines that start with # name
+    the standards.
+    """
+    lines = Path(module).with_name("data").joinpath(f"{name}.csv").read_text("utf-8").splitlines()
     return list(csv.DictReader(line for line in lines if not line.startswith("#")))
 
 
@@ -92,3 +94,10 @@ def parse_toml(text: str, where: str) -> dict[str, Any]:
         raise InputError(where, "nested too deeply", legal="tables at most 3 deep") from None
     except ValueError as error:  # an impossible date, or an integer of thousands of digits
         raise InputError(where, f"is not TOML: {error}") from None
+
+
+def number(text: str) -> float:
+    """A cell's number, in mm unless its table says otherwise; an integer stays an integer, as in part
+    numbers.
+    """
+    return float(text) if "." in text else int(text)

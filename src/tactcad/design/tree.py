@@ -2,18 +2,217 @@
 
 Lengths in mm, forces in N, stresses in MPa, density in kg/m3. Frame: x from the middle line between the rows
 along the arms, y along the row, z = 0 on the elements' flat (gauge) face, + away from the object. A default
-of None is derived from other fields (parts/array/layout.py).
+of None is derived from other fields: here (each of the rigs' sizes is the published set-up's as long as the
+array is no longer than the published one) and in parts/array/layout.py.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
+from math import ceil
 from typing import Any
 
-from .fields import Day, Number, NumberRows, Numbers, OneOf, TextLine, given
-from .materials import ALLOYS, LOT_SPREAD, MAGNETIC, OTHER_SHEET, PLATE_ALLOYS, Difference, differences
-from .rigs import Bonding, Calibration, Cart, Grasping, Holder, Sample
+from .fields import Day, Number, NumberRows, Numbers, OneOf, TextLine, Whole, given
+from .materials import (
+    ALLOYS,
+    LOT_SPREAD,
+    MAGNETIC,
+    OTHER_SHEET,
+    PLATE_ALLOYS,
+    Difference,
+    differences,
+    sheet_tolerance,
+)
 from .sensing import Readout, StrainGauge, Wiring
+
+FOLLOWS = "follows the array (design/tree.py): the published set-up's up to the published array's length"
+
+
+@dataclass(frozen=True)
+class Calibration:
+    """[calibration]: the set-up that measures each element's stiffness."""
+
+    load_cell_stiffness: float = given(Number("N/mm", 0.01, 1e6, "force sensor's own stiffness"), 57.04)
+    load_cell_accuracy: float = given(Number("", 0, 0.5, "half-width of that stiffness, relative"), 0.02)
+    load_cell_range: float = given(Number("N", 0.001, 1e5, "force sensor's range"), 5.0)
+    load_cell_resolution: float = given(Number("N", 0, 100, "force sensor's resolution"), 0.001)
+    step: float = given(Number("mm", 1e-5, 1, "micrometer step"), 0.025)
+    travel: float = given(Number("mm", 1e-4, 10, "whole displacement"), 0.150)
+    micrometer_resolution: float = given(Number("mm", 0, 0.1, "micrometer's resolution"), 0.0005)
+    friction: float = given(Number("", 0, 1, "friction between tip and pad"), 0.2)
+    load_point: float = given(Number("mm", 0, 1, "uncertainty of the load point along the arm"), 0.02)
+    stage_travel: float = given(
+        Number("mm", 0.5, 100, "horizontal micro-stages reach at least this far each way"), 12.5
+    )
+    axis_travel: float = given(
+        Number("mm", 0.5, 100, "vertical micrometer axis reaches this far each way"), 12.5
+    )
+    retract: float = given(Number("mm", 0.1, 50, "tip is lifted this far before the stages move"), 1.0)
+    roller: str = given(
+        OneOf(("2", "2.5", "3"), "diameter in mm of the roller that touches the pad, ISO 8734"), "2"
+    )
+
+
+@dataclass(frozen=True)
+class Sample:
+    """[sample]: the rubber sample."""
+
+    thickness: float = given(Number("mm", 0.1, 100, "sample thickness"), 6.0)
+    poisson: float = given(Number("", 0, 0.4999, "Poisson's ratio"), 0.49)
+    stiffness: float = given(Number("N/mm", 1e-6, 1e6, "stiffness under one pad"), 3.85)
+    side: float = given(Number("mm", 4, 300, "side of the square sample"), None, FOLLOWS)
+    step: float = given(Number("mm", 1e-4, 5, "step of the force sensor into the sample"), 0.050)
+    travel: float = given(Number("mm", 1e-3, 10, "whole way of the force sensor into the sample"), 0.300)
+
+
+@dataclass(frozen=True)
+class Grasping:
+    """[grasping]: array on a vertical axis over the sample, loaded by weights."""
+
+    moving_weight: float = given(Number("N", 0.001, 1e4, "carrier, bar and array"), None, FOLLOWS)
+    weight: float = given(Number("N", 1e-4, 1e3, "one added weight"), 0.980665)
+    weights: int = given(Whole(0, 1000, "how many weights are added"), 10)
+    lift: float = given(Number("mm", 1, 200, "the array is lifted this far to change the sample"), 20.0)
+    weight_diameter: float = given(Number("mm", 10, 120, "disc weights"), 50.0)
+    rail_length: float = given(Number("mm", 40, 600, "vertical guide rail, a multiple of 20"), 100.0)
+
+
+@dataclass(frozen=True)
+class Cart:
+    """[cart]: plate on four ball bearings that roll along the arms."""
+
+    bearing: str = given(
+        OneOf(("623-2Z", "624-2Z", "683-2Z"), "wheels: deep groove ball bearings, ISO 15"), "623-2Z"
+    )
+    length: float = given(Number("mm", 10, 400, "plate along the arms"), None, FOLLOWS)
+    width: float = given(Number("mm", 10, 400, "plate across the arms"), None, FOLLOWS)
+    thickness: float = given(Number("mm", 2, 40, "plate"), 10.0)
+    wheel_base: float = given(Number("mm", 5, 400, "distance of the axles along the arms"), None, FOLLOWS)
+    clearance: float = given(Number("mm", 0.1, 20, "plate over the base plate"), 2.0)
+    shim: float = given(Number("mm", 0.05, 5, "shim each side of a wheel's inner ring: its side play"), 0.5)
+    roll: float = given(Number("mm", 0.1, 50, "the cart may roll this far each way"), 5.0)
+
+
+@dataclass(frozen=True)
+class Holder:
+    """[holder]: vacuum holder of the sample, on the cart."""
+
+    vacuum_diameter: float = given(
+        Number("mm", 4, 250, "holes and plenum lie inside this circle"), None, FOLLOWS
+    )
+    hole_diameter: float = given(Number("mm", 0.2, 5, "suction holes"), 1.0)
+    rings: int = given(Whole(1, 12, "hexagonal rings of holes around the middle one"), None, FOLLOWS)
+    lid_thickness: float = given(Number("mm", 1, 30, "lid under the sample"), None, FOLLOWS)
+    plenum_depth: float = given(Number("mm", 4, 40, "plenum: room for the port in its wall"), 8.0)
+    floor: float = given(Number("mm", 1, 30, "material under the plenum"), 4.0)
+    margin: float = given(Number("mm", 2, 60, "lid beyond the sample, for its screws"), 8.0)
+    vacuum: float = given(Number("kPa", 1, 100, "below the air's pressure"), 40.0)
+    pull: float = given(Number("N", 0, 1000, "force that may pull the sample off: tack of the pads"), 0.6)
+
+
+@dataclass(frozen=True)
+class Bonding:
+    """[bonding]: the fixture in which gauges are bonded, their adhesive and their terminals."""
+
+    signal_share: float = given(
+        Number("", 1e-4, 0.5, "largest loss of a gauge's signal by its place along the hinge, as a share"),
+        0.03,
+    )
+    sight: float = given(
+        Number("mm", 0.001, 0.5, "the gauge's middle set between the tongue's edges by eye, plus and minus"),
+        0.03,
+    )
+    pressure: float = given(Number("MPa", 0.001, 2, "of the clamp on the gauge while it cures"), 0.1)
+    glue_thickness: float = given(
+        Number("mm", 0.0005, 0.2, "cured adhesive under the gauge, part of gauge.grid_height"), 0.01
+    )
+    glue_modulus: float = given(Number("MPa", 1, 2e4, "Young's modulus of the cured adhesive"), 2000.0)
+    cure: float = given(Number("min", 0.5, 2880, "the clamp stays on"), 10.0)
+    terminal_length: float = given(Number("mm", 0.5, 20, "solder terminals along the element"), 3.0)
+    terminal_width: float | None = given(
+        Number("mm", 0.5, 20, "solder terminals across the element"), None, "the sheet's thickness, at most 2"
+    )
+
+
+# The published set-up, mm and N; the cart is chosen around its sample.
+SIDE, LENGTH, WIDTH, WHEEL_BASE, VACUUM, RINGS = 32.0, 70.0, 50.0, 50.0, 26.0, 3
+BESIDE_THREADS = 54.0  # mm, width of a cart whose wheels clear the stages' threads
+MOVING, STACK = 3.235, 21.0  # paper: what moves with the array, N; its stack of sheets and spacers
+PER_STACK = 0.05  # N for a mm of stack more; chosen: twice what aluminium weighs, trimmed by the ballast
+# mm2 of sheet in both rows' bodies and spacers, as published; kg/m3, 7075; m/s2
+SECTION, ALUMINIUM, GRAVITY = 290.0, 2810.0, 9.80665
+RUBBER = 6.0  # of the sample beyond the pads; chosen: what the published array has beyond the ends of a row
+# Lid, and the widest circle of holes over which it bends by less than 2 um (plate theory, rigs/stiffness.py).
+LID, STIFF = 6.0, 44.0
+LARGEST_SIDE = 80.0  # of a sample whose cart clears the post; chosen: 1 mm less than fits
+# Circle of holes: the largest O-ring of the table lies around 66, a lid ten hole diameters thick bears less.
+LARGEST_VACUUM = 64.0
+
+
+def followed(values: dict[str, Any]) -> dict[str, Any]:
+    """The tables of a design with omitted values filled in."""
+    array, sheet, element = values["array"], values["sheet"], values["element"]
+    sample, grasping = values.get("sample"), values.get("grasping")
+    done = dict(values)
+    done["design"] = _filled(done["design"], title=_title(array))
+    done["tolerance"] = _filled(done["tolerance"], **_as_bought(done["material"], sheet))
+    if sample is not None:
+        sample = done["sample"] = _filled(sample, side=_side(array, sheet, element))
+        more = max(sample.side - SIDE, 0.0)
+        vacuum = min(VACUUM + more, LARGEST_VACUUM)
+        wheels = {
+            "length": LENGTH + more,
+            "width": max(WIDTH + more, BESIDE_THREADS),
+            "wheel_base": WHEEL_BASE + more,
+        }
+        # as stiff under its own pressure as one of LID over a plenum of STIFF: diameter^4 over thickness^3
+        lid = max(LID, float(ceil(LID * (vacuum / STIFF) ** (4 / 3))))
+        holes = {"vacuum_diameter": vacuum, "rings": round(RINGS * vacuum / VACUUM), "lid_thickness": lid}
+        for name, sizes in (("cart", wheels), ("holder", holes)):
+            if values.get(name) is not None:
+                done[name] = _filled(values[name], **sizes)
+    if grasping is not None:
+        done["grasping"] = _filled(grasping, moving_weight=_moving(array, sheet, done["material"].density))
+    return done
+
+
+def _filled(table: Any, **left_out: float | str) -> Any:
+    return replace(table, **{name: v for name, v in left_out.items() if getattr(table, name) is None})
+
+
+def _as_bought(material: SheetMaterial, sheet: Sheet) -> dict[str, float]:
+    """The sheet's tolerances: Young's modulus and thickness."""
+    row = ALLOYS.get(material.alloy)
+    return {
+        "youngs_modulus": row.spread["youngs_modulus"] if row else LOT_SPREAD,
+        "sheet_thickness": sheet_tolerance(sheet.thickness, material.density),
+    }
+
+
+def _title(array: Array) -> str:
+    """Rows by elements a row, such as 2 x 5, or 5 + 4 if they differ."""
+    counts = [len(row) for row in array.row_arms]
+    size = f"{len(counts)} x {counts[0]}" if len({*counts}) == 1 else " + ".join(map(str, counts))
+    return f"Tactile array {size}"
+
+
+def _side(array: Array, sheet: Sheet, element: Element) -> float:
+    """Side of the sample: rubber beyond every pad, in whole 2 mm."""
+    along = (max(map(len, array.row_arms)) - 1) / 2 * array.pitch + sheet.thickness / 2
+    across = (array.row_pitch + element.pad_length) / 2
+    return min(max(SIDE, 2.0 * ceil(max(along, across) + RUBBER)), LARGEST_SIDE)
+
+
+def _moving(array: Array, sheet: Sheet, density: float) -> float:
+    """Weight that moves with the array, N: the published weight, more for a longer stack or a denser sheet
+    (kg/m3), in whole 0.1 N."""
+    spacer = array.spacer if array.spacer is not None else array.pitch - sheet.thickness
+    count = max(map(len, array.row_arms))
+    stack = count * sheet.thickness + (count + 1) * spacer
+    denser = SECTION * stack * max(density - ALUMINIUM, 0.0) * 1e-9 * GRAVITY
+    more = PER_STACK * max(stack - STACK, 0.0) + denser
+    return ceil(10 * (MOVING + more) - 1e-9) / 10 if more > 1e-9 else MOVING
+
 
 # Without control characters, line ends, characters that turn the direction of text, and those that XML (SVG)
 # cannot hold.
@@ -352,7 +551,7 @@ class Design(CommonTables):
 
     @classmethod
     def completed(cls, tables: dict[str, Any]) -> dict[str, Any]:
-        from .following import followed
+        from .tree import followed
 
         return followed(tables)
 

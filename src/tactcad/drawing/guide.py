@@ -23,8 +23,7 @@ from tactcad.parts.language.metric import METRIC
 from tactcad.scenes.moves import moments, settles
 from tactcad.scenes.scene import Placement, Scene, Step
 
-from .engine.boxes import Box, bounds, bounds_of, corners
-from .engine.extent import box_of, moved_by, placed
+from .engine.boxes import Box, bounds, bounds_of, box_of, corners, moved_by, placed
 from .engine.ink import (
     LETTERS,
     THIN,

@@ -1,5 +1,11 @@
-"""A board's files: KiCad's board and netlist, its bill, places, solid, outline, Gerber files and drills; read
-back and compared with the board before they are published."""
+"""A board's files: KiCad's board and netlist, its bill, places, solid, outline, Gerber files and drills; and
+the circuit's: KiCad's netlist, the same as a table, the SPICE deck, the leads to cut. All are read back and
+compared before they are published.
+
+Its solid for the assembly is the bare board with the holes of its screws and ties, and a block for everything
+that is fitted. mm, x and y as in the outline's DXF, z = 0 on the underside. Soldered pins, which protrude 1.4
+mm below it, are left out.
+"""
 
 from __future__ import annotations
 
@@ -7,20 +13,103 @@ import csv
 import io
 import re
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 from tactcad.circuit.copper import BoardCopper
+from tactcad.circuit.footprints import Footprint
 from tactcad.circuit.gerber import FUNCTIONS, gerber_files, places_csv
+from tactcad.circuit.harness import harness_csv
 from tactcad.circuit.kicad_board import board_bytes
-from tactcad.circuit.netlist import Component
+from tactcad.circuit.netlist import Component, Netlist
+from tactcad.circuit.netlist_files import deck_bytes, kicad_bytes, netlist_csv, wiring_csv
+from tactcad.contour import circle, rectangle
+from tactcad.design.family import family_of
 from tactcad.design.messages import CheckFailure
 from tactcad.design.tree import CommonTables
-from tactcad.parts.bought.supply import Supply
+from tactcad.parts.bought.electronic_parts import Supply
+from tactcad.parts.language.description import Extrusion, Material, Part
+from tactcad.scenes.scene import UPRIGHT, Placement, Scene, rotation
 
-from .board_step import board_step
-from .circuit_files import Nets, check_nets, kicad_file
 from .shapes import Shapes
 from .step_text import Header
+
+FR4 = Material("FR-4", 1850)  # kg/m3, usual
+SOLDERED = Material("electronic part", 2000)  # of no meaning: a block around it
+TURNED = {
+    0: UPRIGHT,
+    90: rotation(((0, -1, 0), (1, 0, 0), (0, 0, 1))),
+    180: rotation(((-1, 0, 0), (0, -1, 0), (0, 0, 1))),
+    270: rotation(((0, 1, 0), (-1, 0, 0), (0, 0, 1))),
+}
+LAST = 1e-3  # mm, KiCad's last digit as written
+NUMBER = r"([-\d.]+)"
+EDGE = re.compile(rf'\(gr_line \(start {NUMBER} {NUMBER}\) \(end {NUMBER} {NUMBER}\) \(layer "Edge.Cuts"\)')
+THICK = re.compile(rf"\(general \(thickness {NUMBER}\)\)")
+HOLE = re.compile(rf'\(footprint "tactcad:hole" .*?\(at {NUMBER} {NUMBER}\)\n.*\n\(pad .*?\(drill {NUMBER}\)')
+
+
+def board_scene(board: BoardCopper, name: str) -> Scene:
+    """The board, and blocks on it under their designators."""
+    bare = _bare(board, f"{name}-bare")
+    blocks = {f: _block(f, name) for f in {p.footprint for p in board.placed if p.component.fitted}}
+    placed = (
+        Placement(
+            p.component.designator,
+            blocks[p.footprint],
+            (p.at[0], board.height - p.at[1], board.thickness),
+            TURNED[p.turn],
+        )
+        for p in board.placed
+        if p.component.fitted
+    )
+    return Scene(name, (Placement("BOARD", bare), *placed))
+
+
+def _bare(board: BoardCopper, part_no: str) -> Part:
+    holes = tuple(circle((x, board.height - y), d) for x, y, d in board.holes)
+    body = Extrusion(rectangle(0.0, 0.0, board.width, board.height), board.thickness, holes)
+    return Part(part_no, "bare board", "reference", FR4, body, colour="#1f6b3a")
+
+
+def _block(f: Footprint, name: str) -> Part:
+    x, y = f.body[0] / 2, f.body[1] / 2
+    body = Extrusion(rectangle(-x, -y, x, y), f.height)
+    return Part(f"{name}-{f.name}", f.name, "reference", SOLDERED, body, colour="#3a3a3a")
+
+
+def board_step(board: BoardCopper, kicad: bytes, shapes: Shapes, header: Header) -> bytes:
+    """The STEP file, read back and compared with the edge and the holes of KiCad's file."""
+    from tactcad.solids.measure import bounding_box, holes_through
+
+    from .step_file import read_assembly, scene_step
+
+    scene = board_scene(board, header.name)
+    data = scene_step(scene, {part.part_no: shapes.of(part) for part in scene.parts}, header)
+    bare = scene.parts[0].part_no
+    shape = read_assembly(data).shapes[bare]
+    check_bare_board(bare, bounding_box(shape), holes_through(shape), kicad)
+    return data
+
+
+def check_bare_board(
+    name: str, box: Sequence[Sequence[float]], cylinders: Sequence[tuple[float, float, float]], kicad: bytes
+) -> None:
+    """Raises CheckFailure if a solid's box or its holes (x, y, diameter) are not those of KiCad's file."""
+    text = kicad.decode()
+    (thick,) = (float(found) for found in THICK.findall(text))
+    ends = [tuple(map(float, found)) for found in EDGE.findall(text)]
+    xs, ys = ({v for e in ends for v in (e[k], e[k + 2])} for k in (0, 1))
+    low, high = (min(xs), min(ys), 0.0), (max(xs), max(ys), thick)
+    if max(abs(a - b) for got, meant in zip(box, (low, high)) for a, b in zip(got, meant)) > LAST:
+        raise CheckFailure(f"{name}: the STEP file reads back in a box of {box}, not {low} to {high}")
+    holes = [(float(x), max(ys) - float(y), float(d)) for x, y, d in HOLE.findall(text)]
+    if sorted(_rounded(cylinders)) != sorted(_rounded(holes)):
+        raise CheckFailure(f"{name}: the STEP file reads back with other holes than KiCad's board")
+
+
+def _rounded(holes: Sequence[tuple[float, float, float]]) -> list[tuple[float, ...]]:
+    return [tuple(round(v, 3) + 0.0 for v in hole) for hole in holes]
+
 
 PAD = re.compile(r'\(pad "(\w+)" .*?\(net \d+ "/(\w+)"\)')
 
@@ -115,3 +204,80 @@ def outline_dxf(board: BoardCopper) -> bytes:
         for code, v in zip(("10", "20", "30", "40"), (x, board.height - y, 0.0, d / 2)):
             out += [code, f"{v:.3f}"]
     return ("\n".join([*out, "0", "ENDSEC", "0", "EOF"]) + "\n").encode()
+
+
+Nets = dict[str, frozenset[tuple[str, str]]]  # designators and pins by net
+
+
+def kicad_file(design: CommonTables, circuit: Netlist) -> bytes:
+    """KiCad's netlist. Raises CheckFailure if it does not read back as the circuit."""
+    d = design.design
+    data = kicad_bytes(circuit, d.title, d.organisation, d.date, d.revision)
+    check_nets("KiCad's netlist", nets_in_kicad(data), circuit)
+    return data
+
+
+def table_file(design: CommonTables, circuit: Netlist) -> bytes:
+    """The netlist as CSV. Raises CheckFailure if it does not read back as the circuit."""
+    data = netlist_csv(circuit)
+    check_nets("the netlist's table", nets_in_table(data), circuit)
+    return data
+
+
+def deck_file(design: CommonTables, circuit: Netlist) -> bytes:
+    """The SPICE deck, with the boards' tracks."""
+    family = family_of(design)
+    return deck_bytes(family.must("readout", "export").tracks(family.layout(design), circuit))
+
+
+def wiring_file(design: CommonTables, circuit: Netlist) -> bytes:
+    """The leads to cut. Raises CheckFailure if they are not the circuit's, each once."""
+    family = family_of(design)
+    data = wiring_csv(family.must("readout", "export").wiring(family.layout(design), circuit))
+    check_leads(data, circuit)
+    return data
+
+
+def harness_file(design: CommonTables, circuit: Netlist) -> bytes:
+    """Every wire with both its ends."""
+    family = family_of(design)
+    return harness_csv(circuit, family.must("readout", "export").wiring(family.layout(design), circuit))
+
+
+def nets_in_kicad(data: bytes) -> Nets:
+    """Nets of a KiCad netlist."""
+    _, _, text = data.decode().partition("(nets")
+    nets: dict[str, set[tuple[str, str]]] = {}
+    name = ""
+    for key, word, pin in re.findall(r'\((name|node \(ref) "([^"]*)"\)?(?: \(pin "([^"]*)"\))?', text):
+        if key == "name":
+            name = word.removeprefix("/")
+        else:
+            nets.setdefault(name, set()).add((word, pin))
+    return {name: frozenset(nodes) for name, nodes in nets.items()}
+
+
+def nets_in_table(data: bytes) -> Nets:
+    """Nets of a netlist as CSV."""
+    nets: dict[str, set[tuple[str, str]]] = {}
+    for row in csv.DictReader(io.StringIO(data.decode(), newline=""), strict=True):
+        if row["net"]:
+            nets.setdefault(row["net"], set()).add((row["designator"], row["pin"]))
+    return {name: frozenset(nodes) for name, nodes in nets.items()}
+
+
+def check_nets(what: str, read: Nets, circuit: Netlist) -> None:
+    """Raises CheckFailure if the nets read back are not the circuit's."""
+    meant = {
+        name: frozenset((c.designator, p.number) for c, p in nodes) for name, nodes in circuit.nets.items()
+    }
+    wrong = sorted(name for name in {*read, *meant} if read.get(name) != meant.get(name))
+    if wrong:
+        raise CheckFailure(f"{what} reads back with other nets: {', '.join(wrong[:3])}")
+
+
+def check_leads(data: bytes, circuit: Netlist) -> None:
+    """Raises CheckFailure if the wiring list does not name every lead of the circuit once."""
+    rows = csv.DictReader(io.StringIO(data.decode(), newline=""))
+    if sorted(row["lead"] for row in rows) != sorted(c.designator for c in circuit.of_kind("lead")):
+        raise CheckFailure("the wiring list does not name every lead of the circuit once")

@@ -15,7 +15,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 from tactcad.parts.language.description import NOT_MADE, Part
-from tactcad.solids.meshing import Meshing
+from tactcad.solids import Meshing
 
 if TYPE_CHECKING:
     from tactcad.scenes.scene import Pose

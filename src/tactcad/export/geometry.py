@@ -13,7 +13,7 @@ from typing import Any
 from tactcad.contour import Arc, Contour, Line, Segment
 from tactcad.design.family import family_of
 from tactcad.design.tree import CommonTables
-from tactcad.drawing.engine.extent import part_box
+from tactcad.drawing.engine.boxes import part_box
 from tactcad.parts.language.description import Extrusion, Hole, ModelFile, Part, section
 from tactcad.parts.language.stock import cut_section
 from tactcad.parts.language.surface import surface_area

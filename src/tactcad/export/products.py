@@ -202,7 +202,7 @@ def circuit_files(plan: Plan) -> Iterator[Batch]:
     """The circuit that reads the array: its netlist in three forms, and the leads to cut."""
     from tactcad.circuit.digital_readout import settings_header, settings_json
 
-    from . import circuit_files as files
+    from . import board_files as files
 
     design, family = plan.design, family_of(plan.design)
     circuit = family.must("readout", "export").netlist(family.layout(design))
@@ -412,7 +412,7 @@ def _measured(part: Part, shapes: Shapes) -> dict:
 
 
 def _compare_box(part: Part, box: Sequence[Sequence[float]]) -> None:
-    from tactcad.drawing.engine.extent import part_box
+    from tactcad.drawing.engine.boxes import part_box
 
     off = max(abs(a - b) for got, meant in zip(box, part_box(part)) for a, b in zip(got, meant))
     if off > 1e-6:

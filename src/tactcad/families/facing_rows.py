@@ -28,7 +28,7 @@ FAMILY = Family(
         run=Late("tactcad.cli.estimate:estimate_design"),
         golden=Late("tactcad.export.strength_table:elements"),
         strength=Late("tactcad.export.strength_table:strength_bytes"),
-        strain=Late("tactcad.review.strain_field:strain_field"),
+        strain=Late("tactcad.review.review_record:strain_field"),
     ),
     plans={
         "element": Late("tactcad.drawing.parts.element_plan:element_plan"),

@@ -150,7 +150,11 @@ def clamped(
     A = space.stiffness(*elasticity.lame(E, nu, plane_stress=True)) * b
     f = np.zeros(A.shape[0])
     f[1::2] = width * pressed(space, mesh, rubber)
-    fixed = _clamped_unknowns(space, mesh) if tongue is None else _lain(space, mesh, tongue)
+    if tongue is None:
+        clamped = np.flatnonzero(np.abs(space.nodes[0] - mesh.clamp_x) < 1e-9 * np.ptp(space.nodes[0]))
+        fixed = np.unique(np.concatenate([2 * clamped, 2 * clamped + 1]))
+    else:
+        fixed = _lain(space, mesh, tongue)
     u = elasticity.solve(A, f, fixed)
     on_tongue = 0.0
     if tongue is not None:
@@ -178,11 +182,6 @@ def pressed(space: PlaneSpace, mesh: PlaneMesh, rubber: tuple[float, float]) -> 
     f = np.zeros(len(x))
     np.add.at(f, edges, (inside * step * weights) @ value.T)
     return f
-
-
-def _clamped_unknowns(space: PlaneSpace, mesh: PlaneMesh) -> Array:
-    clamped_nodes = np.flatnonzero(np.abs(space.nodes[0] - mesh.clamp_x) < 1e-9 * np.ptp(space.nodes[0]))
-    return np.unique(np.concatenate([2 * clamped_nodes, 2 * clamped_nodes + 1]))
 
 
 def _lain(space: PlaneSpace, mesh: PlaneMesh, tongue: float) -> Array:

@@ -247,7 +247,8 @@ def _slot_corners(outer: Contour, arc: Arc, index: int) -> list[_SlotCorner]:
         wall = outer.segments[(index + step) % count]
         along = isinstance(wall, Line) and wall.start[0] == wall.end[0]
         face = (wall.start if step < 0 else wall.end)[1] if along else point[1]
-        on_top = face > cz if along else _slot_above(arc)
+        # an arc that bulges down into the material has its slot above it
+        on_top = face > cz if along else arc.at(0.5)[1] < arc.centre[1]
         z = floor if floor is not None else cz + (-r if on_top else r)
         zs = crossings(outer, "x", cx + (1e-7 if at_right else -1e-7) * r)
         other = [q for q in zs if (q < z - ON_LINE_MM if on_top else q > z + ON_LINE_MM)]
@@ -256,11 +257,6 @@ def _slot_corners(outer: Contour, arc: Arc, index: int) -> list[_SlotCorner]:
         low, high = (max(other), z) if on_top else (z, min(other))
         slots.append(_SlotCorner(point[0], r, at_right, on_top, low, high, face))
     return slots
-
-
-def _slot_above(arc: Arc) -> bool:
-    """Whether the arc bulges down into the material, so that its slot opens upwards."""
-    return arc.at(0.5)[1] < arc.centre[1]
 
 
 def _require_same(outer: Contour, shape: ElementShape) -> None:

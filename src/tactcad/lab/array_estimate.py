@@ -10,9 +10,9 @@ import numpy as np
 
 from tactcad.design.messages import CheckFailure
 from tactcad.design.tree import Design
-from tactcad.mechanics import friction, ladder, strain, strength
+from tactcad.mechanics import ladder, strain, strength
 from tactcad.mechanics.accuracy import Choice, choose, expected_error_of
-from tactcad.mechanics.section import Array, HingeSection
+from tactcad.mechanics.section import Array, HingeSection, friction_factor
 from tactcad.mechanics.strain import StrainErrors
 from tactcad.parts.array.element import element
 from tactcad.parts.array.hinge_section import design_alloy, hinge_section, not_reached
@@ -215,7 +215,7 @@ def _by_elements(
     read, flat = [r.readings for r in solutions], [r.flat for r in solutions]
     share = strain.peak_share(section) if rung == "fem-plane" else 1.0
     return np.array([r.stiffness for r in solutions]), _PerNewton(
-        np.array([float(r.gauge) for r in read]) / friction.factor(section),
+        np.array([float(r.gauge) for r in read]) / friction_factor(section),
         np.array([r.fillet_strain for r in read]),
         # at mid-width, but no less than the width's mean; in plane stress there is nothing but the mean
         share * np.array([max(a.fillet_stress, b.fillet_stress) for a, b in zip(read, flat)]),

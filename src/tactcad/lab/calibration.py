@@ -23,7 +23,6 @@ import numpy as np
 from scipy.special import stdtr
 
 from tactcad.design.messages import InputError
-from tactcad.lab.bow import Bow, bow, common, off_the_chord
 from tactcad.lab.load_cell import (
     Estimate,
     LoadCell,
@@ -52,6 +51,8 @@ from tactcad.lab.regression import (
     weights,
 )
 from tactcad.report.figures import Figure, Figures
+
+from .regression import Bow, bow, common, off_the_chord
 
 # Bow of the way up that one element alone is assumed to have, of full scale, since its readings seldom show
 # it. Chosen: what gauges, glue and set screws are usually said to keep.

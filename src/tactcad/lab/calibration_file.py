@@ -17,7 +17,7 @@ from tactcad.lab.calibration import ELEMENT, ElementCalibration
 from tactcad.lab.load_cell import RIGID, LoadCell
 from tactcad.lab.regression import KNOWN
 from tactcad.report.figures import aligned, csv_lines
-from tactcad.report.plain import plain
+from tactcad.report.report import plain
 
 SCHEMA = "tactcad-calibration-1"
 LEAST_SENSITIVITY = 1e-6  # V/mm: a microvolt at a millimetre

@@ -33,7 +33,7 @@ from tactcad.lab.column_units import LOAD, unlikely
 from tactcad.lab.combine import Interval, Slopes, combine, hull, scatter
 from tactcad.lab.readings import GraspReadings
 from tactcad.lab.regression import TOLD_FROM_TIME, require_level, t_quantile
-from tactcad.report.plain import plain
+from tactcad.report.report import plain
 
 from .calibration_file import Sensitivity
 from .layer_fit import WILD, LayeredArray, fit

@@ -19,9 +19,8 @@ from typing import Any
 import numpy as np
 
 from tactcad.design.csv_table import COMMENT, number
-from tactcad.design.extras import refuse_missing
 from tactcad.design.files import read_bytes
-from tactcad.design.messages import InputError, one_of
+from tactcad.design.messages import InputError, one_of, refuse_missing
 
 LARGEST_LOG = 1_000_000_000  # bytes; ten channels at 1 kHz for an hour are 0.4 GB as text
 KIND = "a log (CSV, .lvm or .tdms)"

@@ -20,7 +20,7 @@ from tactcad.design.csv_table import Table, number
 from tactcad.design.messages import InputError
 from tactcad.lab import readings
 from tactcad.lab.column_units import VOLTAGES
-from tactcad.report.plain import plain
+from tactcad.report.report import plain
 
 from .log_files import LabLog
 from .log_map import NEEDED, SECONDS, LogMap, MappedQuantity

@@ -15,12 +15,12 @@ from tactcad.design.tree import CommonTables, Design
 from tactcad.lab.layer_fit import LAYERS, LayeredArray, layer
 from tactcad.lab.readings import GraspReadings
 from tactcad.mechanics import gauge_signal, ladder, readout
-from tactcad.mechanics.sample_coupling import shares_between
+from tactcad.mechanics.lumped import shares_between
 from tactcad.mechanics.strength import tip_compliance
 from tactcad.parts.array.hinge_section import design_gauge, design_readout, hinge_section, not_reached
 from tactcad.parts.array.layout import Layout
 from tactcad.parts.array.stop_gap import stop_gap
-from tactcad.parts.designs import load
+from tactcad.parts.rules import load
 
 SOFT = 0.49  # Poisson's ratio of rubber and tissue as layers: the paper's samples
 INCOMPRESSIBLE = 0.5  # Poisson's ratio of soft tissue and rubber; a half-space's shares do not depend on it

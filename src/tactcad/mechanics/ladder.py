@@ -14,9 +14,9 @@ import numpy as np
 
 from tactcad.design.messages import CheckFailure
 
-from . import friction, validity
+from . import validity
 from .register import rungs
-from .section import Array, HingeSection
+from .section import Array, HingeSection, friction_factor
 
 CLOSED_FORMS = tuple(name for name, rung in rungs().items() if rung.compliance)
 FITTED = tuple(name for name, rung in rungs().items() if rung.fitted)  # they know the fillets and the roots
@@ -111,12 +111,12 @@ def compliance(s: HingeSection, rung: str) -> Array:
 def _stiffness(s: HingeSection, rung: str) -> Array:
     size = int(np.prod(s.shape))
     if size <= BLOCK:
-        return np.broadcast_to(friction.factor(s) / compliance(s, rung), s.shape)
+        return np.broadcast_to(friction_factor(s) / compliance(s, rung), s.shape)
     result = np.empty(size)
     for start in range(0, size, BLOCK):
         block = slice(start, start + BLOCK)
         part = s.rows(block)
-        result[block] = friction.factor(part) / compliance(part, rung)
+        result[block] = friction_factor(part) / compliance(part, rung)
     return result.reshape(s.shape)
 
 
@@ -148,7 +148,7 @@ def elasticity(s: HingeSection, parameter: str, rung: str = DEFAULT_RUNG) -> Arr
     require_range(s, rung)
     value = getattr(s, parameter)
     moved = (s.with_(**{parameter: value * (1.0 + sign * STEP)}) for sign in (1.0, -1.0))
-    up, down = (friction.factor(m) / compliance(m, rung) for m in moved)
+    up, down = (friction_factor(m) / compliance(m, rung) for m in moved)
     return np.log(up / down) / (2.0 * STEP)
 
 

@@ -8,12 +8,17 @@ data/accuracy.json).
 
 from __future__ import annotations
 
+import json
 import pkgutil
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, lru_cache
 from importlib import import_module
+from pathlib import Path
 from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
 
 from tactcad.design.family import Late
 
@@ -74,3 +79,32 @@ def rungs() -> dict[str, Rung]:
         if len({getattr(rung, attribute) for rung in found}) < len(found):
             raise TypeError(f"two rungs have one {attribute}, of {', '.join(rung.name for rung in found)}")
     return {rung.name: rung for rung in found}
+
+
+@lru_cache(maxsize=1)
+def ladder_data() -> dict:
+    """data/ladder.json as written by the fit."""
+    # not importlib.resources, which takes longer to import than all of this room
+    return json.loads((Path(__file__).parent / "data" / "ladder.json").read_text("utf-8"))
+
+
+@lru_cache(maxsize=1)
+def strain_data() -> dict:
+    """data/strain.json as written by the fit."""
+    return json.loads((Path(__file__).parent / "data" / "strain.json").read_text("utf-8"))
+
+
+def by_sides(
+    group: str, two_sided: NDArray[np.bool_] | np.bool_, data: dict | None = None
+) -> dict[str, Array | float]:
+    """Constants of a group ("root", "width", ...) for each design's notch form.
+
+    From `data` (as data/ladder.json), by default the shipped ones. Plain floats if all designs have one form,
+    so that the common case needs no array.
+    """
+    table = (data or ladder_data())[group]
+    if np.all(two_sided):
+        return table["two"]
+    if not np.any(two_sided):
+        return table["one"]
+    return {k: np.where(two_sided, table["two"][k], table["one"][k]) for k in table["two"]}

@@ -55,7 +55,7 @@ class HingeSection:
         Whether the slot is cut from both faces: a bool or an array of bools.
     pad_height, friction
         From the hinge's face towards the object to the contact, mm, and the coefficient of friction there;
-        they matter only together, see `friction.factor`.
+        they matter only together, see `friction_factor`.
     """
 
     hinge_thickness: Array
@@ -142,3 +142,17 @@ REFERENCE = HingeSection.of(
     width=3.0,
     two_sided=True,
 )
+
+
+def friction_lever(s: HingeSection) -> Array:
+    """H = pad_height + t/2, distance from the hinge's mid-plane to the contact, mm."""
+    return s.pad_height + s.hinge_thickness / 2.0
+
+
+def friction_factor(s: HingeSection) -> Array:
+    """L/(L - mu H): the contact slides by H d/L, and friction against it adds moment mu F H.
+
+    Only meaningful where mu H < L; beyond that the arm locks itself (`validity` refuses it).
+    """
+    L = s.load_arm
+    return L / (L - s.friction * friction_lever(s))

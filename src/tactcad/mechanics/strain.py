@@ -17,11 +17,10 @@ import numpy as np
 
 from tactcad.design.messages import CheckFailure
 
-from . import friction, ladder, validity
-from .constants import by_sides, strain_data
-from .register import rungs
+from . import ladder, validity
+from .register import by_sides, rungs, strain_data
 from .rungs import plane
-from .section import Array, HingeSection
+from .section import Array, HingeSection, friction_factor
 
 Constants = plane.Constants
 
@@ -65,7 +64,7 @@ def gauge(
         If a design is out of the rung's range, or a two-sided hinge's flat part is too short for the grid.
     """
     ladder.require_range(s, rung)
-    bent = nominal(s, force) / friction.factor(s)
+    bent = nominal(s, force) / friction_factor(s)
     return bent * grid_factor(s, grid_length, rung) * width_reduction(s, rung, "grid", grid_length, data)
 
 

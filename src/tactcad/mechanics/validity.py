@@ -10,10 +10,8 @@ import numpy as np
 
 from tactcad.design.text_values import NINE_DIGITS
 
-from . import friction
-from .constants import ladder_data
-from .register import rungs
-from .section import OPTIONAL, REQUIRED, Array, HingeSection
+from .register import ladder_data, rungs
+from .section import OPTIONAL, REQUIRED, Array, HingeSection, friction_lever
 
 ROUNDING = 1e-12  # a design on a limit is inside, however its ratios are rounded
 POSITIVE = tuple(name for name in REQUIRED if name not in ("fillet_radius", "poisson"))
@@ -113,7 +111,7 @@ GEOMETRY = (
     ),
     RangeRule(
         "friction locks the arm: mu (pad_height + t/2) >= L",
-        lambda s: s.friction * friction.lever(s) >= s.load_arm,
+        lambda s: s.friction * friction_lever(s) >= s.load_arm,
         ("friction", "pad_height", "hinge_thickness", "load_arm"),
     ),
 )

@@ -66,7 +66,7 @@ class ArrayModel:
 
 
 def from_design(design: Design) -> ArrayModel:
-    """The array of a loaded design (tactcad.parts.designs.load). Raises InputError if it has no rig
+    """The array of a loaded design (tactcad.parts.rules.load). Raises InputError if it has no rig
     tables.
     """
     calibration, sample, grasping = design.calibration, design.sample, design.grasping

@@ -17,7 +17,7 @@ from tactcad.fem.bonded_leaf import stiffness
 from tactcad.lab.simulate import approach
 from tactcad.mechanics import gauge_signal, ladder, lumped, readout
 from tactcad.mechanics.as_built import COMMON, half_widths
-from tactcad.mechanics.sample_coupling import coupling
+from tactcad.mechanics.lumped import coupling
 from tactcad.mechanics.section import HingeSection
 from tactcad.paper.array_model import ArrayModel
 from tactcad.paper.published import Published

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from tactcad.design.messages import InputError
-from tactcad.fem import element_rungs as fem_rungs
+from tactcad.fem import fem_ladder
 from tactcad.paper import (
     budget,
     gain,
@@ -39,7 +39,7 @@ def validate(data: Published, array: ArrayModel) -> ValidationReport:
             f"among them",
         )
     rng = np.random.default_rng(SEED)
-    K = residuals.residuals(data, array, rng, more=fem_rungs.stiffnesses(residuals.matched(data, array)[1]))
+    K = residuals.residuals(data, array, rng, more=fem_ladder.stiffnesses(residuals.matched(data, array)[1]))
     fit = hinge.fit(data, array)
     signal = gain.fit(data, array)
     own = table1_check.check(data)

@@ -8,7 +8,7 @@ released in 2021, and spyrrow's search ends by the clock, so that no two runs ag
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from html import escape
@@ -152,15 +152,11 @@ def _nested(material: str, thickness: float, high: int, wire: bool, some: Sequen
         pieces += [replace(piece, quarter=not wire and y > x)] * count
     pieces.sort(key=lambda p: (-p.size[1], -p.size[0], p.part_no))
     widest = float(ceil(max(p.size[0] for p in pieces) + 2 * BORDER - 1e-9))
-    widths = [widest] + [w for w in _widths() if w > widest]
+    widths = [widest] + [w for i in range(1, round(WIDEST / STEP) + 1) if (w := STEP * i) > widest]
     packed = [(w, *_rows(pieces, w, gap)) for w in widths]
     # of equal areas the squarer sheet
     width, height, placed = min(packed, key=lambda one: (round(one[0] * one[1], 3), abs(one[0] - one[1])))
     return Nest(material, thickness, high, wire, width, height, tuple(placed))
-
-
-def _widths() -> Iterator[float]:
-    yield from (STEP * i for i in range(1, round(WIDEST / STEP) + 1))
 
 
 def _rows(pieces: Sequence[NestedPiece], width: float, gap: float) -> tuple[float, list[NestedPiece]]:

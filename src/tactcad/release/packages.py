@@ -11,12 +11,11 @@ from math import ceil, floor
 
 from tactcad.checks.shop import Feed, Shop
 from tactcad.design.tree import CommonTables
-from tactcad.drawing.engine.extent import part_box
+from tactcad.drawing.engine.boxes import part_box
 from tactcad.export import inspection
 from tactcad.export.contents import sha256_of
 from tactcad.parts.array.element import least_passes
-from tactcad.parts.bought.electronic_parts import BOARD
-from tactcad.parts.bought.supply import BARE_BOARD, ELECTRONIC, MECHANICAL
+from tactcad.parts.bought.electronic_parts import BARE_BOARD, BOARD, ELECTRONIC, MECHANICAL
 from tactcad.parts.language.description import Part
 from tactcad.parts.language.stock import cut_section, own_thickness, stock_of
 from tactcad.scenes.bom import read_in_sheet

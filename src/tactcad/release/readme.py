@@ -14,7 +14,7 @@ from tactcad import __version__
 from tactcad.checks.shop import Shop
 from tactcad.design.family import family_of
 from tactcad.design.materials import ELECTROLYSIS, family
-from tactcad.drawing.engine.extent import part_box
+from tactcad.drawing.engine.boxes import part_box
 from tactcad.drawing.engine.paper import GENERAL_TOLERANCES
 from tactcad.export import inspection
 from tactcad.export import strength_table as strength

@@ -4,18 +4,43 @@ JSON.
 
 from __future__ import annotations
 
+import dataclasses
 import html
 import json
 import re
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from importlib.resources import files
-from math import isinf, isnan
+from math import isfinite, isinf, isnan
 from typing import TypeVar
 
 import numpy as np
 
-from tactcad.report.plain import plain
+# Metadata of a field that only pictures are drawn from: it is left out of the JSON.
+UNREPORTED = {"unreported": True}
+
+
+def plain(value: object) -> object:
+    """Dataclasses, arrays and NumPy numbers as dicts, lists and numbers; 'nan', 'inf', '-inf' as text, which
+    JSON has no numbers for."""
+    if dataclasses.is_dataclass(value) and not isinstance(value, type):
+        return {
+            f.name: plain(getattr(value, f.name))
+            for f in dataclasses.fields(value)
+            if not f.metadata.get("unreported")
+        }
+    if isinstance(value, dict):
+        return {str(k): plain(v) for k, v in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [plain(v) for v in value]
+    if isinstance(value, np.ndarray):
+        return plain(value.tolist())
+    if isinstance(value, np.generic):
+        return plain(value.item())
+    if isinstance(value, float) and not isfinite(value):
+        return str(value)
+    return value
+
 
 SCHEMA = "tactcad-validation-1"
 T = TypeVar("T")

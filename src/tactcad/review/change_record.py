@@ -17,7 +17,7 @@ from tactcad.export.sides import Side, not_compared
 from .changed_scene import LOOKS, ScenePiece, changed_scenes
 from .consequences import Meaning
 from .effect import SensorEffect
-from .mesh_pack import mesh_bytes, pack
+from .review_record import mesh_bytes, pack
 from .summary import cause_lines, effect_lines
 
 if TYPE_CHECKING:

@@ -32,9 +32,8 @@ from tactcad.parts.rules import refuse_broken
 from tactcad.scenes import chosen_scenes, make_scene
 
 from .facts import estimate_facts, part_facts, scene_facts
-from .mesh_pack import mesh_pack
 from .review_page import ViewerLibrary, review_page
-from .review_record import record_head
+from .review_record import mesh_pack, record_head
 
 POLL = 0.1  # s between two looks at the file; chosen: a tenth of the second in which a change is to be seen
 ADDRESS = "127.0.0.1"

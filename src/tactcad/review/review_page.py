@@ -20,8 +20,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
-from tactcad.design.extras import install
-from tactcad.design.messages import CheckFailure, InputError
+from tactcad.design.messages import CheckFailure, InputError, install
 
 # The page's own script, in the order in which it is put together.
 SCRIPTS = (
@@ -103,12 +102,14 @@ def review_page(record: Mapping[str, Any], block: bytes, library: ViewerLibrary)
     names = (*SCRIPTS, LIVE) if live else SCRIPTS
     script = "'use strict';\n" + "".join(folder.joinpath(f"{name}.js").read_text("utf-8") for name in names)
     digest = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
+    licences = folder.joinpath("licences.txt").read_text("utf-8")
+    licences = licences.replace("VERSION", library.version).replace("PACKAGE", library.package)
     places = {
         "POLICY": POLICY.format(digest=digest) + (ASKS if live else ""),
         "TITLE": escape(f"{identity['title']}, revision {identity['revision']}"),
         "STYLE": folder.joinpath("page.css").read_text("utf-8"),
         "VIEWER_STYLE": library.style.replace("</", "<\\/"),
-        "LICENCES": _licences(folder.joinpath("licences.txt").read_text("utf-8"), library),
+        "LICENCES": escape(licences),
         "DATA": packed(_text(record).encode()),
         "BLOCK": packed(block),
         "VIEWER": packed(library.script),
@@ -127,7 +128,3 @@ def _text(record: Mapping[str, Any]) -> str:
 def packed(data: bytes) -> str:
     """Compressed (gzip, without time or name) and as base64."""
     return base64.b64encode(gzip.compress(data, 9, mtime=0)).decode()
-
-
-def _licences(text: str, library: ViewerLibrary) -> str:
-    return escape(text.replace("VERSION", library.version).replace("PACKAGE", library.package))

@@ -18,7 +18,7 @@ from tactcad.export.pipeline import DRAWN_WITH, LIBRARIES, ROOMS, made_files
 from tactcad.export.products import Plan, part_sheets
 from tactcad.export.shapes import Shapes
 from tactcad.export.workers import relayed
-from tactcad.parts.designs import load
+from tactcad.parts.rules import load
 from tactcad.scenes.scene import Scene
 
 

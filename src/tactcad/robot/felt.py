@@ -16,7 +16,7 @@ from tactcad.lab.grasp import coupled, slopes_of
 from tactcad.lab.load_cell import RIGID
 from tactcad.lab.pads import INCOMPRESSIBLE
 from tactcad.lab.regression import KNOWN, require_level
-from tactcad.mechanics.sample_coupling import shares_between
+from tactcad.mechanics.lumped import shares_between
 
 from .taxel_table import Taxels
 

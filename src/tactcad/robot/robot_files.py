@@ -17,7 +17,7 @@ from tactcad.export.products import Batch, Output, Plan
 from tactcad.export.shapes import Shapes
 from tactcad.parts.language.description import NOT_MADE, Part
 from tactcad.scenes.scene import Placement
-from tactcad.solids.meshing import CHORD_MM, USUAL
+from tactcad.solids import CHORD_MM, USUAL
 
 from . import mjcf, taxel_table, urdf
 from .mechanism import Inertia, Mechanism, Solid, mesh_name, seen, together

@@ -81,7 +81,7 @@ def make_scene(design: CommonTables, name: str, pose: Pose | None = None) -> Sce
     Parameters
     ----------
     design
-        Must keep every rule, as `tactcad.parts.designs.load` ensures.
+        Must keep every rule, as `tactcad.parts.rules.load` ensures.
     name
         One of `scene_names(design)`.
     pose

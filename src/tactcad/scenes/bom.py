@@ -15,7 +15,7 @@ from dataclasses import asdict, dataclass, fields
 from typing import Any
 
 from tactcad.design.text_values import as_number, as_whole
-from tactcad.parts.bought.supply import Supply
+from tactcad.parts.bought.electronic_parts import Supply
 from tactcad.parts.language.description import Part, Purchase
 from tactcad.scenes.scene import Scene
 

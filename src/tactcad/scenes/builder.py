@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import Any
 
 from tactcad.parts.bought import screws
-from tactcad.parts.bought.supply import Supply
+from tactcad.parts.bought.electronic_parts import Supply
 from tactcad.parts.language.description import Part, Vector, vector
 
 from .scene import (

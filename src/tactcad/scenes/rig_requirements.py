@@ -13,8 +13,8 @@ from tactcad.parts.array.clamp import pressed
 from tactcad.parts.array.element import SLOT
 from tactcad.parts.array.layout import Layout
 from tactcad.parts.bought.standard_parts import BORE, LEAST_PLAY, OUTSIDE, dowel_limits
-from tactcad.parts.language.fits import deviations, general
-from tactcad.parts.language.plate import PLACE
+from tactcad.parts.language.limits import deviations, general
+from tactcad.parts.language.stock import PLACE
 from tactcad.parts.rigs.bonding_fixture import (
     PLAY,
     TIP,
@@ -167,7 +167,7 @@ def _on_hinge(
     """Each gauge within what bonding.signal_share lets it err along its hinge."""
     import numpy as np
 
-    from tactcad.parts.array.gauge_checks import allowed_places
+    from tactcad.parts.array.measurements import allowed_places
 
     places = layout.elements
     table = rigs[0].table

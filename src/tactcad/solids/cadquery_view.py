@@ -1,6 +1,6 @@
 """The same parts and scenes for people who work in CadQuery, and their models as bought parts here.
 
-from tactcad.solids.cadquery_view import assembly, workplane from tactcad.parts.designs import load from
+from tactcad.solids.cadquery_view import assembly, workplane from tactcad.parts.rules import load from
 tactcad.scenes import make_scene
 
 scene = make_scene(load("macro-array"), "array")

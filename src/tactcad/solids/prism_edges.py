@@ -35,7 +35,7 @@ def prism_edges(shape: TopoDS_Shape) -> list[Segment] | None:
     level: tuple[dict[int, Segment], dict[int, Segment]] = ({}, {})  # of lower and upper face
     for i in range(1, all_edges.Extent() + 1):
         edge = as_edge(all_edges.FindKey(i))
-        at = [k for k, z in enumerate(ends) if _lies_at(edge, z)]
+        at = [k for k, z in enumerate(ends) if all(abs(p[2] - z) <= KERNEL_MM for p in _vertices(edge))]
         trace = _trace(edge) if at else None
         if trace is not None:
             level[at[0]][i] = trace
@@ -59,10 +59,6 @@ def prism_edges(shape: TopoDS_Shape) -> list[Segment] | None:
 
 def _vertices(edge: TopoDS_Edge) -> list[tuple[float, float, float]]:
     return [BRep_Tool.Pnt_s(as_vertex(v)).Coord() for v in subshapes(edge, TopAbs_VERTEX)]
-
-
-def _lies_at(edge: TopoDS_Edge, z: float) -> bool:
-    return all(abs(p[2] - z) <= KERNEL_MM for p in _vertices(edge))
 
 
 def _upright(edge: TopoDS_Edge) -> bool:

@@ -12,9 +12,9 @@ from tactcad.parts.array.clamp import HOLES, carrier, carrier_clearance
 from tactcad.parts.array.layout import SUNK, Layout
 from tactcad.parts.array.stop_gap import stop_limit
 from tactcad.parts.bought.standard_parts import LEAST_PLAY
-from tactcad.parts.language.fits import deviations, general
+from tactcad.parts.language.limits import deviations, general
 from tactcad.parts.language.metric import METRIC
-from tactcad.parts.language.plate import PLACE
+from tactcad.parts.language.stock import PLACE
 from tactcad.scenes.requirement import LEAST_PRESS, DimensionLimits, Requirement, summed, variable
 from tactcad.scenes.rig import rig_of
 from tactcad.scenes.scene import Scene

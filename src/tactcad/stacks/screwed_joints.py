@@ -23,11 +23,10 @@ from tactcad.parts.array.element import DOWEL_HOLE
 from tactcad.parts.array.layout import Layout
 from tactcad.parts.bought.standard_parts import dowel_limits
 from tactcad.parts.language.description import Extrusion, Hole, Part
-from tactcad.parts.language.fits import deviations, general
+from tactcad.parts.language.limits import deviations, general
 from tactcad.parts.language.metric import METRIC
 from tactcad.scenes.requirement import DimensionLimits, Requirement, summed, variable
-from tactcad.scenes.scene import Placement, Scene
-from tactcad.scenes.threads import COAXIAL, engaged, thread_range
+from tactcad.scenes.scene import COAXIAL, Placement, Scene, engaged, thread_range
 
 from .variables import STACK_LENGTH
 

@@ -20,8 +20,7 @@ from tactcad.mechanics.section import HingeSection
 from tactcad.parts.array.hinge_section import element_section
 from tactcad.parts.array.layout import Layout
 
-from .designs_taken import Column, table_of
-from .field_paths import with_value
+from .designs_taken import Column, table_of, with_value
 from .study import STRENGTH, Study
 
 Floats = NDArray[np.float64]

@@ -19,8 +19,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING, Protocol
 
-from tactcad.design.extras import install
-from tactcad.design.messages import CheckFailure, InputError
+from tactcad.design.messages import CheckFailure, InputError, install
 from tactcad.export.inputs import Inputs, reasons
 
 from .measured import made_by, measured

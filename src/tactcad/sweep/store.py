@@ -186,10 +186,8 @@ class FarStore:
         try:
             return ask()
         except Exception as error:  # each kind of place has its own
-            raise self._refusal(error) from error
-
-    def _refusal(self, error: Exception) -> CheckFailure:
-        return CheckFailure(f"--store {self.address}: {_why(error)}; what was finished is kept")
+            what = f"--store {self.address}: {_why(error)}; what was finished is kept"
+            raise CheckFailure(what) from error
 
 
 def files_at(address: str, make: bool = False) -> tuple[Any, str]:

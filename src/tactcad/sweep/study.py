@@ -20,8 +20,7 @@ from tactcad.design.tree import CommonTables, Identity
 from tactcad.export.inputs import digest
 from tactcad.mechanics.ladder import CLOSED_FORMS, DEFAULT_RUNG, RUNGS
 
-from .designs_taken import GRID, HYPERCUBE, LIST, SOBOL, Points, points_at_powers
-from .field_paths import spec_at, value_at
+from .designs_taken import GRID, HYPERCUBE, LIST, SOBOL, Points, points_at_powers, spec_at, value_at
 
 # Chosen: ten times the largest study that was timed.
 MOST_DESIGNS = 100_000_000

@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from tactcad.lab.pads import INCOMPRESSIBLE, places
-from tactcad.mechanics.sample_coupling import shares_between
+from tactcad.mechanics.lumped import shares_between
 from tactcad.mechanics.section import Array
 from tactcad.stacks.mechanic import Assembled
 from tactcad.stacks.variables import IN_PLAY, MODULUS, SHEET, SIGMAS, made

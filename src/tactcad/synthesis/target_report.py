@@ -373,7 +373,9 @@ def table(heads: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
 
 def _interval_part(got: Synthesis, r: dict[str, Any]) -> str:
     picture = interval_picture(r, "all elements")
-    return f"<h2>How surely it feels</h2>{picture}<p>{_pressed_how(r)} {_read_from(r)}</p>"
+    touching = "" if r["inclined"] else ", where all pads touch"
+    read_from = f"Read from {r['read_from']:.3g} N on{touching}."
+    return f"<h2>How surely it feels</h2>{picture}<p>{_pressed_how(r)} {read_from}</p>"
 
 
 def interval_picture(r: dict[str, Any], of: str) -> str:
@@ -410,11 +412,6 @@ def _pressed_how(r: dict[str, Any]) -> str:
         f"large, at a share of a half-space's coupling of {lines}; <code>tactcad stiffness</code> widens "
         "its interval for that unless <code>--coupling</code> gives the share."
     )
-
-
-def _read_from(r: dict[str, Any]) -> str:
-    touching = "" if r["inclined"] else ", where all pads touch"
-    return f"Read from {r['read_from']:.3g} N on{touching}."
 
 
 def _ticks(low: float, high: float) -> list[float]:
@@ -590,7 +587,8 @@ def answer(r: dict[str, Any]) -> str:
 
 def _why_not(r: dict[str, Any]) -> str:
     why = [
-        f"misses {name} by {_excess(v)}" + (f" ({r['room'][name]})" if name in r["room"] else "")
+        f"misses {name} by {percent(v) if v < 10 else 'more than ten times'}"
+        + (f" ({r['room'][name]})" if name in r["room"] else "")
         for name, v in r["beyond"].items()
     ]
     if r["out_of_range"]:
@@ -601,10 +599,6 @@ def _why_not(r: dict[str, Any]) -> str:
         return f"keeps all limits, but is refused: {'; '.join(f'{k}: {v}' for k, v in r['refused'].items())}"
     kept, wanted = percent(r["yield"]), percent(r["yield_wanted"])
     return f"keeps it as drawn, but of the arrays made only {kept} do, not {wanted}"
-
-
-def _excess(v: float) -> str:
-    return percent(v) if v < 10 else "more than ten times"
 
 
 def no_other_change(got: Synthesis) -> str:

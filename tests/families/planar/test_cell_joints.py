@@ -23,7 +23,7 @@ from simulated import (
 from tactcad.cli.main import main
 from tactcad.design.messages import InputError
 from tactcad.families.planar.sensor import rows
-from tactcad.parts.designs import load
+from tactcad.parts.rules import load
 from tactcad.robot import read, read_taxels
 from tactcad.scenes import make_scene
 

@@ -19,7 +19,7 @@ from tactcad.contact.press import PadsOnBody, pad_stiffness
 from tactcad.families.planar import cell_calibration, cell_grasp, cell_matrices, cell_pads, cell_response
 from tactcad.families.planar.cell_layout import PlanarLayout
 from tactcad.families.planar.sensor import chip_matrix
-from tactcad.parts.designs import load
+from tactcad.parts.rules import load
 
 PLANAR = Path(__file__).parents[3] / "hardware" / "planar-array.toml"
 LOADS = np.linspace(0.1, 0.5, 5)

@@ -25,7 +25,7 @@ from tactcad.families.planar.cell_targets import (
     of_kind,
     read_target,
 )
-from tactcad.parts.designs import load
+from tactcad.parts.rules import load
 
 TARGET = Path(__file__).parents[3] / "hardware" / "targets" / "jaw-array.toml"
 TEXT = TARGET.read_text("utf-8").replace("foils = [0.04, 0.05]", "foils = [0.04]")

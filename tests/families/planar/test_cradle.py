@@ -24,7 +24,7 @@ from tactcad.families.planar.cell_calibration import calibrate
 from tactcad.families.planar.cell_cradle import CradleLayout
 from tactcad.families.planar.cell_layout import PlanarLayout
 from tactcad.families.planar.cell_loads import OFF_AXIS, STEPS, loads, requirements
-from tactcad.parts.designs import load
+from tactcad.parts.rules import load
 from tactcad.scenes import left_out, make_scene, scene_names
 from tactcad.scenes.moves import guide_json
 from tactcad.scenes.scene import Pose

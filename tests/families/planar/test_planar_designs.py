@@ -18,7 +18,7 @@ from tactcad.families.planar import cell_array, parts
 from tactcad.families.planar.cell_layout import PlanarLayout
 from tactcad.families.planar.rules import design_rules
 from tactcad.families.planar.sensor import chip_matrix, closing_force, rows, strength
-from tactcad.parts.designs import load
+from tactcad.parts.rules import load
 from tactcad.review.effect import Reviewed, same_elements
 
 DESIGNS = Path(__file__).parents[3] / "hardware"

@@ -19,7 +19,7 @@ from tactcad.drawing.parts.part_sheet import MadeFrom, Order, part_sheet, writte
 from tactcad.families.planar import cell_array, parts
 from tactcad.families.planar.cell_layout import PlanarLayout
 from tactcad.families.planar.cell_plan import cell_plan
-from tactcad.parts.designs import load
+from tactcad.parts.rules import load
 from tactcad.solids.step import to_bytes
 
 pytestmark = pytest.mark.cad

@@ -13,6 +13,7 @@ from math import dist
 
 from tactcad.checks.shop import Shop
 from tactcad.contour import Arc, Contour, Point
+from tactcad.contour.contour import ROUNDING_MM
 from tactcad.contour.inside import (
     crossings,
     encloses,
@@ -21,7 +22,6 @@ from tactcad.contour.inside import (
     smallest_distance,
 )
 from tactcad.contour.necks import SAME_DIRECTION, Neck, direction, necks
-from tactcad.contour.rounded import ROUNDING_MM
 from tactcad.design.materials import family
 from tactcad.parts.language.description import Part, section
 from tactcad.parts.language.finding import Finding

@@ -27,8 +27,7 @@ from tactcad.parts.language.description import (
     vector,
 )
 from tactcad.parts.language.finding import Finding
-from tactcad.scenes.scene import Contact, Placement, Scene
-from tactcad.scenes.threads import thread_overlap
+from tactcad.scenes.scene import Contact, Placement, Scene, thread_overlap
 from tactcad.solids.measure import (
     Faces,
     bounding_box,

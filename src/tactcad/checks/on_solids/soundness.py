@@ -21,12 +21,12 @@ from OCP.TopAbs import TopAbs_EDGE, TopAbs_FACE, TopAbs_ShapeEnum, TopAbs_SHELL,
 from OCP.TopoDS import TopoDS_Shape
 
 from tactcad.contour import LEAST_EDGE, is_sliver
-from tactcad.contour.keep_clear import keep_clear
+from tactcad.contour.inside import keep_clear
 from tactcad.parts.language.description import Part
 from tactcad.parts.language.finding import Finding
 from tactcad.profiling import making
+from tactcad.solids import CHORD_MM, USUAL, Meshing
 from tactcad.solids.measure import measure
-from tactcad.solids.meshing import CHORD_MM, USUAL, Meshing
 from tactcad.solids.occt import as_edge, subshapes
 from tactcad.solids.prism_edges import prism_edges
 from tactcad.solids.step import read_step, write_step

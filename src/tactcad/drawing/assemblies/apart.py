@@ -21,7 +21,7 @@ import numpy as np
 from tactcad.parts.language.description import Revolution
 from tactcad.scenes.scene import Contact, Placement, Scene
 
-from ..engine.extent import Extent, box_of, moved_by
+from ..engine.boxes import Extent, box_of, moved_by
 
 ROUNDS = 40  # rounds of finding overlaps and solving again
 # cost of a millimetre: excess in a joint, sideways separation, deficit in a joint

@@ -16,8 +16,7 @@ from tactcad.parts.language.description import Kind
 from tactcad.scenes.rig import ARRAY
 from tactcad.scenes.scene import Scene
 
-from ..engine.boxes import Box, Point, grown
-from ..engine.extent import projected_box
+from ..engine.boxes import Box, Point, grown, projected_box
 from ..engine.ink import LETTERS, Item, Text, moved
 from ..engine.paper import (
     A0,

@@ -15,8 +15,7 @@ from tactcad.design.messages import CheckFailure
 from tactcad.scenes.bom import BomRow
 from tactcad.scenes.scene import Placement, Scene
 
-from ..engine.boxes import Box, Point, Polyline, bounds_of, grown
-from ..engine.extent import box_of
+from ..engine.boxes import Box, Point, Polyline, bounds_of, box_of, grown
 from ..engine.ink import Item, Stroke, Text
 from ..engine.paper import (
     A3,

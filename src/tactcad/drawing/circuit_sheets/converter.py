@@ -15,8 +15,7 @@ from tactcad.parts.array.leads import boards
 
 from ..engine.ink import Item, Text
 from ..engine.paper import A3, Page, notes
-from .around import local
-from .channel import BLACK, MINUS, WHITE, array_side, bridge, card_connector
+from .channel import BLACK, MINUS, WHITE, array_side, bridge, card_connector, local
 from .symbols import SMALL, box, dashed, dot, ground, line, printed, stub
 
 CHANNELS = (

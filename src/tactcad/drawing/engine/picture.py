@@ -37,8 +37,7 @@ from tactcad.profiling import making, under_way
 from tactcad.scenes.scene import Placement
 from tactcad.solids.occt import as_edge
 
-from .boxes import Box, Chord, Point, Polyline, bounds, bounds_of
-from .extent import box_corners, projected_box
+from .boxes import Box, Chord, Point, Polyline, bounds, bounds_of, box_corners, projected_box
 
 # Curves are drawn as chords that stay this close (mm); at 1:1 a hundredth of a line's width.
 CHORD = 0.01

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from tactcad.design.messages import CheckFailure
 from tactcad.parts.language.description import Part
-from tactcad.solids.meshing import CHORD_MM, Meshing
+from tactcad.solids import CHORD_MM, Meshing
 
 from ..formats import PartFormat
 from ..shapes import Shapes

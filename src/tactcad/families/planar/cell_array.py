@@ -9,8 +9,8 @@ from math import inf
 import numpy as np
 
 from tactcad.parts.array.stiffness_table import Deflection
+from tactcad.parts.bought.electronic_parts import MECHANICAL, Supply
 from tactcad.parts.bought.standard_parts import dowel, dowel_diameter, dowel_limits
-from tactcad.parts.bought.supply import MECHANICAL, Supply
 from tactcad.parts.language.description import Part
 from tactcad.scenes.builder import Builder
 from tactcad.scenes.requirement import LEAST_PRESS, Deviations, DimensionLimits, Requirement, summed, variable

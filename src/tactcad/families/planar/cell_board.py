@@ -26,8 +26,7 @@ from tactcad.circuit.letters import width as printed_width
 from tactcad.circuit.netlist import GROUND, Component, Netlist, Pin
 from tactcad.circuit.printed import HIGH
 from tactcad.contour import rectangle
-from tactcad.parts.bought.electronic_parts import BOARD
-from tactcad.parts.bought.supply import BARE_BOARD, ELECTRONIC, Supply, board_spares
+from tactcad.parts.bought.electronic_parts import BARE_BOARD, BOARD, ELECTRONIC, Supply, board_spares
 from tactcad.parts.language.description import Extrusion, Hole, Material, Part, Process, Purchase
 from tactcad.parts.language.metric import METRIC
 

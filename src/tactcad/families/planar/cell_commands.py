@@ -15,7 +15,7 @@ from tactcad.design.messages import InputError
 from tactcad.lab import grasp, pads
 from tactcad.lab.combine import Interval
 from tactcad.lab.regression import require_level
-from tactcad.report.plain import plain
+from tactcad.report.report import plain
 
 from .cell_calibration import calibrate as calibrate_cells
 from .cell_grasp import CellFields, CellForces, as_rows, by_neighbours, fields, forces, places

@@ -27,8 +27,7 @@ from tactcad.parts.bought.standard_parts import dowel_diameter, dowel_lengths
 from tactcad.parts.language.description import Extrusion, Hole, Part, Pocket, Revolution
 from tactcad.parts.language.limits import FACES, Characteristic, Geometric, within
 from tactcad.parts.language.metric import METRIC, tapped_blind
-from tactcad.parts.language.part_materials import STAINLESS
-from tactcad.parts.language.plate import PLACE
+from tactcad.parts.language.stock import PLACE, STAINLESS
 
 from . import cell_board
 from .cell_layout import PlanarLayout

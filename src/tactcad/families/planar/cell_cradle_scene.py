@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from typing import Literal
 
 from tactcad.design.messages import InputError
+from tactcad.parts.bought.electronic_parts import MECHANICAL, Supply
 from tactcad.parts.bought.standard_parts import dowel
-from tactcad.parts.bought.supply import MECHANICAL, Supply
 from tactcad.parts.language.metric import METRIC
 from tactcad.parts.rigs.frame import STANDARD_GRAVITY
 from tactcad.scenes.builder import Builder

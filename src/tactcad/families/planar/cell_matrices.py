@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from tactcad.design.csv_table import Field, read
 from tactcad.design.messages import InputError
 from tactcad.lab.readings import ELEMENT
-from tactcad.report.plain import plain
+from tactcad.report.report import plain
 
 Array = NDArray[np.float64]
 AXES = "xyz"

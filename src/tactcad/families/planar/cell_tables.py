@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from pathlib import Path
 from typing import Any
 
 from tactcad.design.fields import Number, OneOf, Whole, given
@@ -78,7 +77,7 @@ def _table(kind: type, name: str) -> dict[str, Any]:
                 for key, value in row.items()
             }
         )
-        for row in data_rows(Path(__file__).with_name("data") / f"{name}.csv")
+        for row in data_rows(__file__, name)
     }
 
 

@@ -34,7 +34,7 @@ from tactcad.parts.language.description import (
 )
 from tactcad.parts.language.limits import FACES, Characteristic, Geometric, within
 from tactcad.parts.language.metric import METRIC, tapped_through
-from tactcad.parts.language.plate import BREAK_EDGES, FRAME, FRAME_DATUMS, PLACE
+from tactcad.parts.language.stock import BREAK_EDGES, FRAME, FRAME_DATUMS, PLACE
 
 from .cell_layout import Kind, PlanarLayout
 from .cell_tables import FoilProcess

@@ -33,8 +33,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..constants import by_sides
-from ..register import Rung
+from ..register import Rung, by_sides
 from ..section import Array, HingeSection
 from .beams import SHEAR_FACTOR
 

@@ -13,8 +13,7 @@ for any values of the constants.
 
 from __future__ import annotations
 
-from ..constants import by_sides
-from ..register import Rung
+from ..register import Rung, by_sides
 from ..section import Array, HingeSection
 from . import plane
 

@@ -1,5 +1,14 @@
-"""The carrier of a read-out board: a plate with stand-offs, and a clamp that relieves the leads before the
-board's connector.
+"""A read-out board as its neighbours see it (outline, holes, lead connector, heights), and its carrier: a
+plate with stand-offs, and a clamp that relieves the leads before the board's connector.
+
+      W = width
+    +-------------------------------+  y = height
+    | o     ::::::::::::::::      o |     leads come in over this edge
+    |       lead connector          |
+    |                               |
+    | o     ::::::: to the card   o |
+    +-------------------------------+  y = 0
+    x = 0
 
     :::::::  socket on the board's header
   ===========  board             leads
@@ -9,18 +18,80 @@ board's connector.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from math import ceil, sqrt
 
 from tactcad.contour import Corner, chain, rectangle, rounded_polygon
-from tactcad.design.sensing import WIRES
+from tactcad.design.sensing import MULTIPLEXERS, WIRES
 from tactcad.design.tree import Design
 
+from ..bought.electronic_parts import CARD_SIGNALS, CONTROLLER_SIGNALS, converter_of
 from ..language.description import Extrusion, Hole, Material, Part, Purchase, Revolution
 from ..language.limits import FACES, DatumFeature, Geometric
 from ..language.metric import METRIC, tapped_through
-from ..language.part_materials import BRASS
-from ..language.plate import BREAK_EDGES, PLACE, plate
-from .board_outline import HEIGHT, LEADS_FROM_EDGE, PITCH, THICKNESS, WIDTH, BoardOutline
+from ..language.stock import BRASS, BREAK_EDGES, PLACE, plate
+from .layout import Layout
+
+Place = tuple[float, float]
+
+THICKNESS = 1.6  # mm; chosen: what every board house has in stock
+PITCH = 2.54  # of the headers' pins, mm
+HOLE, AT_CORNER = 3.4, 4.0  # mm: a hole for M3 (ISO 273, medium), from both edges of its corner
+LEADS_FROM_EDGE = 10.0  # mm, the lead connector's pins from the upper edge: before them are the ties' holes
+CARD_FROM_EDGE = 5.0  # mm, the other connector's pins from the lower edge: their names are printed below
+HIGHEST = 8.5  # mm, pin headers: insulator 2.54 and pins of 6; the foil resistors are 8.3
+PIN_LENGTH = 1.4  # mm that soldered pins reach below the board; chosen: pins of 3 mm through 1.6 mm
+WIDTH, HEIGHT = 90.0, 102.0  # mm; chosen: what the routed board takes
+
+
+@dataclass(frozen=True)
+class BoardOutline:
+    """mm, from the lower left corner of the component side; `thickness` of the bare board.
+
+    holes: x, y, diameter. connector: the middle of the lead connector's row of pins; leads leave along y.
+    highest: of the parts above the board, without plugs; lowest: of the parts below it.
+    """
+
+    width: float
+    height: float
+    thickness: float
+    holes: tuple[tuple[float, float, float], ...]
+    connector: Place
+    highest: float
+    lowest: float
+
+
+# Of each board that reads the array; all are equal.
+BOARD_OUTLINE = BoardOutline(
+    WIDTH,
+    HEIGHT,
+    THICKNESS,
+    tuple((x, y, HOLE) for y in (AT_CORNER, HEIGHT - AT_CORNER) for x in (AT_CORNER, WIDTH - AT_CORNER)),
+    (WIDTH / 2, HEIGHT - LEADS_FROM_EDGE),
+    HIGHEST,
+    PIN_LENGTH,
+)
+
+
+def channels_of(layout: Layout) -> int:
+    """Channels of a board: of its multiplexer, or of the converter that takes the bridges directly."""
+    converter = converter_of(layout.design)
+    return converter.inputs if converter else MULTIPLEXERS[layout.design.readout.multiplexer].channels
+
+
+def lead_pins(layout: Layout) -> int:
+    """Pins of a board's lead connector: three a channel, and one each for the leads' shield and the array's
+    metal."""
+    return 3 * channels_of(layout) + 2
+
+
+def card_pins(layout: Layout) -> int:
+    """Pins of a board's connector to the converter's card, or to the controller of a converter on the
+    board."""
+    if converter_of(layout.design):
+        return CONTROLLER_SIGNALS
+    return CARD_SIGNALS + len(MULTIPLEXERS[layout.design.readout.multiplexer].address)
+
 
 THREAD = "M3"  # of every screw here, to fit the board's holes
 PLATE = 8.0  # mm; chosen: a thickness sold, with 1.5 d of thread and the stand-offs' studs inside it

@@ -14,8 +14,7 @@ from tactcad.design.tree import Design
 from ..bought.screws import CAP_SCREW_LENGTHS
 from ..bought.standard_parts import dowel_diameter, dowel_lengths, dowel_limits
 from ..language.description import Extrusion, Feature, Hole, Part, Vector
-from ..language.fits import deviations, general
-from ..language.limits import FACES, Characteristic, DatumFeature, Geometric, within
+from ..language.limits import FACES, Characteristic, DatumFeature, Geometric, deviations, general, within
 from ..language.metric import (
     METRIC,
     SUNK,
@@ -25,8 +24,7 @@ from ..language.metric import (
     tapped_blind,
     tapped_through,
 )
-from ..language.part_materials import MAGNETIC_STAINLESS, held_for_grinding
-from ..language.plate import ANODISED, BREAK_EDGES, FRAME, PLACE, plate
+from ..language.stock import ANODISED, BREAK_EDGES, FRAME, MAGNETIC_STAINLESS, PLACE, held_for_grinding, plate
 from .layout import Layout
 
 # Least plate under a screw's head, and least grip of a dowel in each end plate, in mm: chosen, one

@@ -14,11 +14,10 @@ from tactcad.design.materials import ALLOYS, family
 from tactcad.design.messages import InputError
 from tactcad.design.tree import CommonTables, Design
 
-from ..bought.supply import spare_elements
+from ..bought.electronic_parts import spare_elements
 from ..language.description import Extrusion, Material, Part
 from ..language.limits import FACES, Characteristic, DatumFeature, Geometric, within
-from ..language.part_materials import held_for_grinding
-from ..language.plate import PLACE
+from ..language.stock import PLACE, held_for_grinding
 from .clamp import SPACER_TOLERANCE, STACK
 from .layout import ElementPlace, HingeShape, Layout
 

@@ -16,8 +16,7 @@ from math import ceil, dist, hypot, sqrt
 from tactcad.design.sensing import WIRES
 
 from ..language.description import Vector
-from .board_outline import WIDTH, channels_of
-from .board_plate import CLAMP_AHEAD, EDGE, PLATE, PLATE_AHEAD, socket_top
+from .board_plate import CLAMP_AHEAD, EDGE, PLATE, PLATE_AHEAD, WIDTH, channels_of, socket_top
 from .layout import ElementPlace, Layout
 
 # Codes of IEC 60757. Red and white are both soldered to the gauge's first tab, black to its second, as in

@@ -10,9 +10,13 @@ from math import ceil
 
 from tactcad.design.materials import family
 from tactcad.design.sensing import AMPLIFIERS, COMPLETIONS, MULTIPLEXERS, SWITCHES, WIRES
+from tactcad.design.text_values import data_rows
 
 from ..bought.electronic_parts import (
     ON_SUPPLIES,
+    Supply,
+    board_spares,
+    bonded_spares,
     completion_drift,
     completion_resistance,
     completion_tolerance,
@@ -23,16 +27,13 @@ from ..bought.electronic_parts import (
     supply_resistance,
     value_code,
 )
-from ..bought.supply import Supply, board_spares, bonded_spares
-from ..language.tables import rows
-from .board_outline import board_outline, card_pins, channels_of, lead_pins
-from .board_plate import BRAID, bundle
+from .board_plate import BOARD_OUTLINE, BRAID, bundle, card_pins, channels_of, lead_pins
 from .converter_figures import ANALOGUE_OHM, bridge_supply, supply_ohm
 from .layout import Layout
 from .leads import boards, colours, lead_routes, leads
 
 COLOUR_NAMES = {"RD": "red", "WH": "white", "BK": "black"}
-ROWS = rows(__file__, "supplies")
+ROWS = data_rows(__file__, "supplies")
 # Spares of so many.
 SPARES: dict[str, Callable[[float], int]] = {"": lambda _: 0, "bonded": bonded_spares, "board": board_spares}
 
@@ -91,7 +92,7 @@ def electronic_supplies(layout: Layout) -> tuple[Supply, ...]:
         ppm=1e6 * drift,
         end=f" ({mpn}); or equal" if own and not scheme else "; any maker's",
     )
-    part, outline, converter = MULTIPLEXERS[r.multiplexer], board_outline(layout), converter_of(d)
+    part, outline, converter = MULTIPLEXERS[r.multiplexer], BOARD_OUTLINE, converter_of(d)
     free, small = channels_of(layout) * count - n, kind.package == "0805"
     links = 3 * free if small else free
     if leads(layout) == 2:

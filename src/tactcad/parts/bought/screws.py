@@ -11,10 +11,10 @@ from dataclasses import replace
 from math import cos, pi, sin
 
 from tactcad.contour import Contour, chain, circle
+from tactcad.design.text_values import number
 
 from ..language.description import Extrusion, Hole, Material, ModelFile, Part, Pocket, Purchase, Revolution
 from ..language.metric import METRIC, ROWS
-from ..language.tables import number
 
 STAINLESS = Material("stainless steel A2-70", 7900)
 STAINLESS_SET = Material("stainless steel A2-21H", 7900)

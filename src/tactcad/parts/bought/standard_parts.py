@@ -8,17 +8,17 @@ from dataclasses import dataclass
 from math import pi, sqrt
 
 from tactcad.contour import chain, circle
+from tactcad.design.text_values import data_rows, number
 
 from ..language.description import Extrusion, Material, Part, Purchase, Revolution
-from ..language.fits import deviations
-from ..language.tables import number, rows
+from ..language.limits import deviations
 
 # Least diametral play of a sliding pin, mm; chosen: the least that a plug gauge shows.
 LEAST_PLAY = 0.002
 HARDENED = Material("hardened steel", 7850)
 
 _SERIES = (4, 5, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30, 32, 35, 40, 45, 50)
-_ROWS = {row["size"]: row for row in rows(__file__, "dowels")}
+_ROWS = {row["size"]: row for row in data_rows(__file__, "dowels")}
 
 
 def dowel_lengths(size: str) -> tuple[float, ...]:
@@ -80,7 +80,7 @@ BEARINGS = {
         **{name: number(row[name]) for name in ("d", "D", "B", "inner")},
         mass=number(row["mass"]) if row["mass"] else None,
     )
-    for row in rows(__file__, "bearings")
+    for row in data_rows(__file__, "bearings")
 }
 
 
@@ -109,7 +109,7 @@ def bearing(size: str) -> Part:
 NITRILE = Material("NBR 70", 1200)
 SECTION = 1.78
 # Inside diameter by size code, mm.
-INSIDE = {row["code"]: number(row["inside"]) for row in rows(__file__, "orings")}
+INSIDE = {row["code"]: number(row["inside"]) for row in data_rows(__file__, "orings")}
 # Groove of a static face seal for 1.78: depth 1.27 to 1.40 (here to 1.37, about what is drawn), width 2.41
 # (makers' tables, as in bd_warehouse 0.4.0).
 GROOVE_DEPTHS = (1.27, 1.37)
@@ -174,5 +174,5 @@ STAGES = tuple(
         part_no=row["part_no"],
         verified=row["verified"] == "true",
     )
-    for row in rows(__file__, "stages")
+    for row in data_rows(__file__, "stages")
 )

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass, fields
 
+from tactcad.design.text_values import data_rows, number
+
 from .description import Hole, Vector, drill_point_height
-from .tables import number, rows
 
 
 @dataclass(frozen=True)
@@ -30,7 +31,7 @@ class Metric:
     tap_reach: float  # length of the tap before its shank
 
 
-ROWS = rows(__file__, "screws")
+ROWS = data_rows(__file__, "screws")
 METRIC = {row["thread"]: Metric(**{f.name: number(row[f.name]) for f in fields(Metric)}) for row in ROWS}
 # Threads in aluminium: engaged 1.5 d (common practice for aluminium against steel's 1 d).
 ENGAGED = 1.5

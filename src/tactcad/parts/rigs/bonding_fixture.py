@@ -33,10 +33,16 @@ from ..array.element import shortest
 from ..array.layout import LEAST_GAP, HingeShape, Layout
 from ..bought.standard_parts import LEAST_PLAY, dowel_diameter, dowel_lengths, dowel_limits
 from ..language.description import Extrusion, Hole, Material, Part, Purchase
-from ..language.fits import general
-from ..language.limits import FACES, DatumFeature, Geometric, within
-from ..language.part_materials import RUBBER, STAINLESS_PLATE, plate_material
-from ..language.plate import BREAK_EDGES, PLACE, RIG_COLOUR, THICKNESS
+from ..language.limits import FACES, DatumFeature, Geometric, general, within
+from ..language.stock import (
+    BREAK_EDGES,
+    PLACE,
+    RIG_COLOUR,
+    RUBBER,
+    STAINLESS_PLATE,
+    THICKNESS,
+    plate_material,
+)
 from .frame import STANDARD_GRAVITY
 
 # The tongue's width and the height of its tip over the rest, plus and minus mm; chosen: three passes of the

@@ -12,8 +12,7 @@ from math import ceil, cos, floor, hypot, pi, sin, sqrt
 
 from tactcad.contour import Contour, Corner, chain, circle, rectangle, rounded_polygon
 from tactcad.design.fields import present
-from tactcad.design.rigs import Cart, Holder, Sample
-from tactcad.design.tree import Design
+from tactcad.design.tree import Cart, Design, Holder, Sample
 
 from ..bought import standard_parts
 from ..bought.screws import CAP_SCREW_LENGTHS
@@ -21,8 +20,7 @@ from ..bought.standard_parts import BEARINGS, Bearing
 from ..language.description import Extrusion, Feature, Hole, Part, Pocket, Purchase, Revolution
 from ..language.limits import FACES, Characteristic, DatumFeature, Geometric, within
 from ..language.metric import METRIC, SUNK, TAP_REACH, corners, engagement, sunk, tapped
-from ..language.part_materials import BRASS, RUBBER, STAINLESS
-from ..language.plate import plate
+from ..language.stock import BRASS, RUBBER, STAINLESS, plate
 
 # mm, largest gap of a wheel to the plane of the other three; chosen: the thinnest practical feeler.
 LOOSE_WHEEL = 0.02

@@ -13,8 +13,7 @@ from ..bought.standard_parts import dowel_diameter, dowel_lengths, dowel_limits
 from ..language.description import Extrusion, Feature, Hole, Part, Pocket, Purchase
 from ..language.limits import within
 from ..language.metric import METRIC, corners, sunk, tapped
-from ..language.part_materials import ALUMINIUM, STAINLESS, STAINLESS_PLATE
-from ..language.plate import plate
+from ..language.stock import ALUMINIUM, STAINLESS, STAINLESS_PLATE, plate
 from .frame import GAUGE_SHAFT, GAUGE_SIZE, PLATE, PLATE_SCREW, STAGE_HOLE, TIP, TIP_LAND
 from .stand import StandLayout
 

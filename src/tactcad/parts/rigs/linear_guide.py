@@ -8,18 +8,15 @@ from dataclasses import dataclass, replace
 from math import ceil, floor
 
 from tactcad.contour import chain, rectangle
-from tactcad.design.rigs import Grasping
-from tactcad.design.tree import Design
+from tactcad.design.tree import Design, Grasping
 
 from ..array.clamp import PRESS_FIT
 from ..array.layout import Layout
 from ..bought.standard_parts import dowel_diameter
 from ..language.description import Extrusion, Feature, Hole, Part, Purchase
-from ..language.fits import deviations
-from ..language.limits import FACES, Geometric
+from ..language.limits import FACES, Geometric, deviations
 from ..language.metric import corners, sunk, tapped_blind
-from ..language.part_materials import CARBON_STEEL
-from ..language.plate import FRAME, PLACE, plate
+from ..language.stock import CARBON_STEEL, FRAME, PLACE, plate
 from .cart import CartLayout, cart_layout
 from .frame import (
     BAR,

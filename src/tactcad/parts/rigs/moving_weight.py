@@ -11,8 +11,7 @@ from tactcad.contour import Contour, circle, rectangle
 from ..language.description import Extrusion, Feature, Hole, Part, Purchase
 from ..language.limits import FACES, DatumFeature, Geometric
 from ..language.metric import METRIC, corners, sunk, tapped_blind, tapped_depth
-from ..language.part_materials import CARBON_STEEL, PLAIN_STEEL, bar_material
-from ..language.plate import FRAME, FRAME_DATUMS, PLACE, plate
+from ..language.stock import CARBON_STEEL, FRAME, FRAME_DATUMS, PLACE, PLAIN_STEEL, bar_material, plate
 from .frame import BAR_FRONT, BAR_WIDTH, BEHIND_BAR, FOOT, PIN, PLATFORM, carrier_pattern, under_carrier_screw
 from .linear_guide import LATCH, LATCH_AIR, STOP_PIN, GuideLayout, latch_on_bar
 

@@ -18,8 +18,7 @@ from ..array.layout import LEVER, Layout
 from ..bought.standard_parts import dowel_diameter, dowel_lengths, dowel_limits
 from ..language.description import Extrusion, Hole, Part
 from ..language.limits import Characteristic, DatumFeature, Geometric, within
-from ..language.part_materials import MAGNETIC_STAINLESS
-from ..language.plate import BREAK_EDGES, RIG_COLOUR
+from ..language.stock import BREAK_EDGES, MAGNETIC_STAINLESS, RIG_COLOUR
 
 # mm: under the floor; chosen: stiff under a hand, and deeper than the pins are pressed in
 BASE = 12.0

@@ -18,8 +18,7 @@ from ..bought.standard_parts import STAGES, Stage
 from ..language.description import Extrusion, Feature, Part, Purchase, Revolution
 from ..language.limits import FACES, Geometric
 from ..language.metric import METRIC, SUNK, corners, counterbore_diameter, sunk, tapped, tapped_blind
-from ..language.part_materials import ALUMINIUM, CARBON_STEEL
-from ..language.plate import BREAK_EDGES, plate
+from ..language.stock import ALUMINIUM, BREAK_EDGES, CARBON_STEEL, plate
 from .cart import LOOSE_WHEEL, CartLayout, cart_layout
 from .frame import (
     BASE,

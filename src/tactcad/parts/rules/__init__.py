@@ -10,8 +10,10 @@ from __future__ import annotations
 
 import pkgutil
 from importlib import import_module
+from pathlib import Path
 
 from tactcad.design.family import family_of
+from tactcad.design.load import read
 from tactcad.design.messages import InputError
 from tactcad.design.tree import CommonTables
 
@@ -26,8 +28,6 @@ FIRST = (
     "clamp_rules",
     "pressed_rules",
     "readout_rules",
-    "converter_rules",
-    "supply_rules",
     "cart_rules",
     "calibration_rules",
 )
@@ -70,3 +70,21 @@ def refusal(broken: Finding, others: str = "") -> InputError:
     )  # not 3.5999999999999996
     what = f"rule {broken.check}{others}: {broken.message}"
     return InputError(broken.part, what, value=value, legal=str(broken.limit))
+
+
+def load(source: str | Path) -> CommonTables:
+    """A design, checked against every rule between its fields.
+
+    Parameters
+    ----------
+    source
+        A path (it has a '/' or ends in .toml), or the name of a design in hardware/.
+
+    Raises
+    ------
+    InputError
+        If the file is missing or not a design, a value is not legal, or a rule is broken.
+    """
+    design = read(source)
+    refuse_broken(design)
+    return design

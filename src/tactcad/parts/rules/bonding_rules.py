@@ -10,8 +10,7 @@ from ..bought.standard_parts import LEAST_PLAY
 from ..language.finding import SAME, Finding
 from ..rigs.bonding_fixture import EDGE, GUIDED, LEAST_TONGUE, ROOT, SILL, TONGUE, bonding_rigs
 from ..rigs.stiffness import bonding_lines
-from .rule import at_least, at_most, fits, wrong
-from .stiffness_remedy import too_much
+from .rule import at_least, at_most, fits, too_much, wrong
 
 TALLEST = 60.0  # clamp bar, mm; chosen: a taller one topples at its pins' ends
 # The clamp alone bends an unbacked leaf to this share of its yield strength at most; chosen: a tenth, so that

@@ -26,8 +26,7 @@ from ..rigs.stand import (
 )
 from ..rigs.stiffness import calibration_lines, calibration_loads
 from .board_rules import leads_reach_from_stages
-from .rule import at_least, at_most, fits, misfit, rule, wrong
-from .stiffness_remedy import too_much
+from .rule import at_least, at_most, fits, misfit, rule, too_much, wrong
 
 ROLLER_OUT = 0.1  # mm between the roller's holder and the pads next to the pressed one; chosen
 

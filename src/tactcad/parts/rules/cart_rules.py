@@ -7,7 +7,7 @@ from functools import wraps
 from math import floor, pi, tan
 
 from tactcad.design.fields import present
-from tactcad.design.following import LARGEST_SIDE
+from tactcad.design.tree import LARGEST_SIDE
 from tactcad.mechanics.statics import holding_force, tipping_margin
 
 from ..array.layout import HOLE_WEB, Layout

@@ -14,8 +14,7 @@ from ..rigs.stiffness import grasping_lines, sample_lines
 from .board_rules import leads_reach_from_guide
 from .calibration_rules import carrier_screws_fit, carrier_threads_clear
 from .cart_rules import LEAST_AIR, pads_on_sample
-from .rule import at_most, fits, rule, wrong
-from .stiffness_remedy import too_much
+from .rule import at_most, fits, rule, too_much, wrong
 
 
 @rule(after="stop_land_above_arm")

@@ -8,8 +8,6 @@ from dataclasses import fields
 from functools import lru_cache
 from math import floor
 
-import numpy as np
-
 from tactcad.design.messages import CheckFailure
 from tactcad.design.tree import Design
 from tactcad.parts import rigs
@@ -141,7 +139,7 @@ def element_in(rig: BondingLayout) -> str:
 
 def gauge(rigs: Sequence[BondingLayout]) -> str:
     """Instructions for setting the gauge on the hinge, with the tolerance."""
-    from tactcad.parts.array.gauge_checks import allowed_places
+    from tactcad.parts.array.measurements import allowed_places
 
     rig = rigs[0]
     d, table = rig.design, rig.table
@@ -206,6 +204,8 @@ def _stress(
     section: tuple[float, ...], rubber: tuple[float, float], width: float, grid: float, tongue: float | None
 ) -> float:
     """Of one clamped leaf, by its section's numbers: two designs that are compared mostly have the same."""
+    import numpy as np
+
     from tactcad.fem.bonded_leaf import clamped
     from tactcad.mechanics.section import HingeSection
 
@@ -238,7 +238,7 @@ def solder(rig: BondingLayout) -> str:
 
 
 def resistance(rig: BondingLayout) -> str:
-    from tactcad.parts.array.gauge_checks import gauge_checks
+    from tactcad.parts.array.measurements import gauge_checks
 
     c = gauge_checks(rig.array)
     low, high = c.resistance
@@ -267,7 +267,7 @@ def _millivolts(volts: float) -> str:
 
 
 def zero(rig: BondingLayout) -> str:
-    from tactcad.parts.array.gauge_checks import gauge_checks, volts
+    from tactcad.parts.array.measurements import gauge_checks, volts
 
     c = gauge_checks(rig.array)
     arms = ", ".join(
@@ -284,7 +284,7 @@ def zero(rig: BondingLayout) -> str:
 
 
 def creep(rig: BondingLayout) -> str:
-    from tactcad.parts.array.gauge_checks import CREEP_FROM, CREEP_TO, gauge_checks
+    from tactcad.parts.array.measurements import CREEP_FROM, CREEP_TO, gauge_checks
 
     c, d = gauge_checks(rig.array), rig.design
     return (

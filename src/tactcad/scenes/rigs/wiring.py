@@ -4,8 +4,8 @@ the leads is plugged last and pulled off the same way."""
 from __future__ import annotations
 
 from tactcad.design.tree import Design
-from tactcad.parts.array.board_outline import board_outline, channels_of, lead_pins
 from tactcad.parts.array.board_plate import (
+    BOARD_OUTLINE,
     BOARD_SCREW,
     CLAMP,
     CLAMP_AHEAD,
@@ -18,8 +18,10 @@ from tactcad.parts.array.board_plate import (
     THREAD,
     UNPLUGGED,
     board_plate,
+    channels_of,
     fitted_board,
     lead_clamp,
+    lead_pins,
     lead_socket,
     stand_off,
 )
@@ -54,7 +56,7 @@ SOLDERING = "soldering iron with a 0.4 mm tip, temperature controlled"
 def wiring(design: Design, pose: Pose = REST) -> Scene:
     """Scene `wiring`, on the bench at z = 0; it has no pose but rest."""
     layout, whole = Layout(design), array(design)
-    outline, pins = board_outline(layout), lead_pins(layout)
+    outline, pins = BOARD_OUTLINE, lead_pins(layout)
     stood = stands(layout)
     b = Builder()
     b.supplies += wiring_supplies(layout)
