@@ -186,7 +186,7 @@ def test_full_standard_output(work, arguments):
 def test_places_that_not_even_root_can_write_to(work, place):
     (work / "loop").symlink_to("loop")
     before = contents(work / "cache"), sorted(p.name for p in work.iterdir())
-    assert place[:100] in refused(
+    assert place[-50:] in refused(  # a long path is shown by its two ends
         tactcad_forked("export", "A.toml", "--out", place, cwd=work, env=environment(work))
     )
     assert (contents(work / "cache"), sorted({p.name for p in work.iterdir()} - {"home", "tmp"})) == before
