@@ -157,7 +157,7 @@ def test_a_short_time_is_kept_or_its_overrun_said(file, tmp_path, capsys):
     assert main(["design", str(file), "--out", str(tmp_path / "out"), "--in", "0.01"]) == 0
     said = capsys.readouterr()
     assert "left out for time: a longer search, bounds and limits" in said.out
-    assert "not 0.01 s: one search, the yield" in said.err and (tmp_path / "out" / "report.html").exists()
+    assert "more than --in 0.01" in said.err and (tmp_path / "out" / "report.html").exists()
 
 
 def test_without_a_half_width_asked_the_best_counts_as_met(file, tmp_path, capsys, monkeypatch):
