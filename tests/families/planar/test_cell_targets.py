@@ -96,6 +96,7 @@ def test_the_answer_is_a_design_that_loads_and_reads_as_said(file, tmp_path, cap
     assert 2 * x <= 28.0 + 1e-9 and 2 * y <= 10.0 + 1e-9 and len(layout.elements) == 12
 
 
+@pytest.mark.slow  # as the searches by chance of facing rows
 def test_no_design_drawn_by_chance_near_it_is_better(file):
     """By noise alone, which every dimension changes."""
     t = read_target(file)
