@@ -182,8 +182,8 @@ def test_leads_are_cut_and_bonded_before_they_are_pulled_at():
 
 
 @pytest.mark.parametrize("columns", [5, 12])
-def test_only_an_array_that_is_calibrated_is_still_to_be(columns):
-    """The calibration's rig does not take 2 x 12 elements: its scene is left out, and no guide speaks of it."""
+def test_only_an_array_with_that_scene_is_still_to_be_calibrated(columns):
+    """The calibration's rig does not take 2 x 12: its scene is left out, and no guide speaks of it."""
     design = variant({"array.row_arms": [[6.0] * columns, [5.0] * columns]})
     names = scene_names(design)
     said = " ".join(s.text for n in ("array", "setting", "wiring") for s in make_scene(design, n).steps)
