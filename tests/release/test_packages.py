@@ -66,6 +66,16 @@ def rows(data: bytes) -> list[dict[str, str]]:
     return list(csv.DictReader(io.StringIO(data.decode(), newline="")))
 
 
+def test_the_sheets_of_the_readme_have_room_for_their_blanks(zips):
+    """As many sheets as are named, of their size, hold the blanks' net area."""
+    said = " ".join(zips["sheet"]["README.txt"].decode().split())
+    pack = r"(?:a pack of (\d+) sheets, each )?"
+    rooms = re.findall(rf"\((\d+) cm2 net, nested on {pack}([\d.]+) x ([\d.]+) mm\)", said)
+    assert len(rooms) == said.count("cm2 net, nested") and any(high for _, high, _, _ in rooms)
+    for net, high, width, height in rooms:
+        assert float(net) - 0.5 <= int(high or 1) * float(width) * float(height) / 100
+
+
 def stems(files: dict[str, bytes], folder: str) -> set[str]:
     return {
         name.split("/")[1].rsplit(f"_{REVISION}", 1)[0] for name in files if name.startswith(f"{folder}/")

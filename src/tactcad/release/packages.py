@@ -99,6 +99,7 @@ def _packed(
         if package in (WIRE, SHEET) and (stem := next(on, None)):
             taken |= {"nest": f"{stem}.dxf", "nest_picture": f"{stem}.svg"}
             row["nest_sheet_mm"] = f"{found[stem].width:g} x {found[stem].height:g}"
+            row["nest_sheets"] = str(found[stem].high)
         own |= {path: files[path] for path in taken.values()}
         rows.append(row | _digests(taken, files))
     if package is WIRE:

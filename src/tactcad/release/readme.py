@@ -368,7 +368,8 @@ def _sheet_table(one: Packed) -> list[str]:
         material = f"{row['material']}, {row['standard']}" if row["standard"] else row["material"]
         title = f"{row['thickness_mm']} mm {material}"
         if size := row.get("nest_sheet_mm"):
-            sheets[title] = f", nested on {size} mm"
+            pack = "" if row["nest_sheets"] == "1" else f"a pack of {row['nest_sheets']} sheets, each "
+            sheets[title] = f", nested on {pack}{size} mm"
         blank = float(row["length_mm"]) * float(row["width_mm"])
         area[title] = area.get(title, 0.0) + blank * float(row["order"])
         cells = (row["part_no"], row["order"], f"{row['length_mm']} x {row['width_mm']}", _blank_for(row))
