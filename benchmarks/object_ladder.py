@@ -15,6 +15,7 @@ from math import inf
 from pathlib import Path
 
 import numpy as np
+import tilted_strip
 from tables import filled, lines
 
 from tactcad.contact import large_strain, springs
@@ -215,6 +216,7 @@ def main(data: Path, page: Path) -> None:
         "strain": [[0.0, *(MARGIN * e for e in zone)] for zone in of_strain],
         "deep": (0.0, *DEEP),
         "neighbours": [[0.0, *(MARGIN * e for e in zone)] for zone in of_neighbours],
+        "tilt": [MARGIN * e for e in tilted_strip.coefficients()],  # its thicknesses are those of the zones
     }
     write_whole(data, (json.dumps(errors, indent=1) + "\n").encode())
     held = [

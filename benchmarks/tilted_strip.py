@@ -107,12 +107,16 @@ def errors(body: Body, tilt: float) -> tuple[np.ndarray, np.ndarray]:
     return (alone[: len(right)] / least)[known], (large[: len(right)] / right - 1)[known]
 
 
-def main() -> None:
+def coefficients() -> list[float]:
+    """The largest error over depth and the square of the tilt, by thickness."""
+    largest: dict[float, float] = {}
     for nu, h in BODIES:
         for tilt in TILTS:
-            found = ", ".join(f"{d:.2f} {off:+.1%}" for d, off in zip(*errors(Body(1.0, nu, h), tilt)))
-            print(f"nu {nu:g}, h {h:g}, tilt {tilt:g}: {found}", flush=True)
+            depth, off = errors(Body(1.0, nu, h), tilt)
+            print(f"nu {nu:g}, h {h:g}, tilt {tilt:g}:", *(f"{d:.2f} {e:+.1%}" for d, e in zip(depth, off)))
+            largest[h] = max(largest.get(h, 0.0), float(np.abs(off / depth).max()) / tilt**2)
+    return [*largest.values()]
 
 
 if __name__ == "__main__":
-    main()
+    print(coefficients())

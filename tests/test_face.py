@@ -67,6 +67,8 @@ def test_what_follows_from_a_value_follows_it():
         (lambda d: d.with_(thickness=2.0), "sheet.thickness or cart.thickness or sample.thickness"),
         (lambda d: d.with_(hinge_thicknes=0.3), "did you mean hinge_thickness"),
         (lambda d: d.with_({"array.ptch": 4}), "did you mean array.pitch"),
+        (lambda d: d.with_(rows=3), "did you mean row_arms"),  # not of another family
+        (lambda d: d.with_({"array": {"pitch": 4}}), "a table, not a field"),
         (lambda d: d.with_({"array.pitch.x": 4}), "is no table"),
         (lambda d: d.with_(pitch=2.0), "pitch_is_sheet_and_spacer"),
         (lambda d: d.with_(row_arms=[[4, "x"]]), "array.row_arms"),

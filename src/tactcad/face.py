@@ -227,6 +227,8 @@ class LoadedDesign:
         if "." in name:
             return name
         tables = family_of(self._read).tables
+        if name in tables:
+            raise InputError(name, "a table, not a field", legal=f'a path, as "{name}.FIELD"')
         here = [t for t in tables if getattr(self._read, t) is not None and name in _fields(tables[t])]
         here = [t for t in here if t != "tolerance"] or here
         if not here:

@@ -125,7 +125,7 @@ def test_the_bill_counts_what_is_fitted(board):
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
-        ({"name": "jaw"}, "stand 4 mm apart"),
+        ({"name": "jaw"}, "the chips are 4 mm apart"),
         ({"hall": {"chip": "TMAG5273A2"}}, "pins of TMAG5273A2 are unknown"),
         ({"hall": {"buses": 4}}, "at most 3 buses pass"),
         ({"rows": 1, "hall": {"buses": 3}, "housing": {"joint": "bonded"}}, "on 3 buses, at most 2"),

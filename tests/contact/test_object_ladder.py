@@ -13,9 +13,9 @@ from test_layer import hayes
 
 from tactcad.contact import large_strain
 from tactcad.contact.elastic_body import Body, influence
-from tactcad.contact.press import PadsOnBody, pad_stiffness, patches
+from tactcad.contact.press import Pads, PadsOnBody, pad_stiffness, patches
 from tactcad.contact.solid_face import SolidFace, stiffness
-from tactcad.contact.stated_errors import errors
+from tactcad.contact.stated_errors import errors, tilt_error
 from tactcad.fem.elasticity import lame
 
 ONE = patches(2.0, 3.0, False)
@@ -119,6 +119,17 @@ def test_a_strip_is_squeezed_by_the_closed_form_and_large_forgets_its_tilt():
     assert tilted_strip.errors(body, 0.0)[1] == pytest.approx(0, abs=1e-9)
     depth, off = tilted_strip.errors(body, 0.5)
     assert (off < 0).all() and 0.004 < -np.interp(0.1, depth, off) < 0.01
+    assert (-off < errors()["tilt"][1] * 0.5**2 * depth).all()
+
+
+def test_a_pad_on_a_ball_joint_lies_on_the_face_and_has_no_error_of_tilt():
+    body, angle = Body(0.5, 0.45, 4.0), (2.0, -1.0)
+    found = []
+    for turn in (0.0, 1e3):  # rad/(N mm)
+        compliance = np.diag([0.1, turn, turn])[None]
+        pads = Pads(np.zeros(1), np.zeros(1), 2.0, 3.0, compliance, np.zeros(1), np.full(1, np.inf))
+        found.append(tilt_error(pads, body, PadsOnBody(pads, body).press(load=0.2, angle=angle), angle))
+    assert found[0] > 0.002 and found[1] < 1e-4 * found[0]
 
 
 def test_large_strain_tends_to_the_layer_and_bears_the_load():

@@ -65,6 +65,12 @@ def test_levelling_is_measured():
     assert [float(v) for v in said[:3]] == pytest.approx(1e3 * sides * np.tan(np.radians(0.025)), rel=0.03)
 
 
+def test_one_row_is_levelled_by_its_own_ends():
+    design = variant({"array.row_arms": [[4.0, 7.0, 6.0, 8.0]]})
+    text = sections(guide.page(design, make_scene(design, "grasping")).decode())["Pads level with the lid"][0]
+    assert "both ends of the row within" in text and "rows" not in text
+
+
 def test_the_moving_weight_is_in_grams_too():
     """3.235 N at standard gravity."""
     text = sections(guide.page(variant(), make_scene(variant(), "grasping")).decode())["Ballast"][0]

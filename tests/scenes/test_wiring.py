@@ -179,3 +179,14 @@ def test_leads_are_cut_and_bonded_before_they_are_pulled_at():
     for name, changes in (("bonding", {}), ("array", {"bonding": DROP})):
         said = " ".join(s.text for s in make_scene(variant({**changes, "wiring.bonded": 3.7}), name).steps)
         assert "wiring list" in said and "over its last 3.7 mm" in said
+
+
+@pytest.mark.parametrize("columns", [5, 12])
+def test_only_an_array_with_that_scene_is_still_to_be_calibrated(columns):
+    """The calibration's rig does not take 2 x 12: its scene is left out, and no guide speaks of it."""
+    design = variant({"array.row_arms": [[6.0] * columns, [5.0] * columns]})
+    names = scene_names(design)
+    said = " ".join(s.text for n in ("array", "setting", "wiring") for s in make_scene(design, n).steps)
+    assert ("calibrat" in said) == ("calibration" in names) == (columns == 5)
+    (on_its_back,) = (s.text for s in make_scene(design, "wiring").steps if s.title == "Array on its back")
+    assert ("still to be calibrated" in on_its_back) == (columns == 5)

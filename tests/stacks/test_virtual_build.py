@@ -139,6 +139,15 @@ def perfect(macro):
     return {**zero, STEPS: np.full((1, 2), 0.006)}
 
 
+def test_one_row_has_no_gap_but_its_tips_have_a_place():
+    """A tip's edge is drawn half the two rows' gap from the middle line, and may be off by its load arm's."""
+    built = sensor(variant({"array.row_arms": [[4.0, 7.0, 6.0]]}))
+    (tips,) = (r for r in built.requirements if "rows" in r.name or "middle line" in r.name)
+    assert tips.name == "tips from the middle line"
+    assert (tips.lower, tips.upper) == pytest.approx((1.0 - 0.05, 1.0 + 0.05))
+    assert Assembled(built.layout, perfect(built)).row_gaps == pytest.approx(1.0)
+
+
 def test_perfect_parts_make_the_array_as_drawn(macro):
     """Pads in one plane, plate on the ledges, gaps and stiffness as drawn."""
     a = Assembled(macro.layout, perfect(macro))

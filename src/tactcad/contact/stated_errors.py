@@ -14,13 +14,14 @@ from pathlib import Path
 import numpy as np
 
 from .elastic_body import Body
-from .press import Pads, pad_stiffness
+from .press import Pads, Pressed, pad_stiffness
 
 CHOSEN_FROM = ("springs", "layer", "large")  # in the order of their work
 RUNGS = ("springs", "layer", "fem-object", "large")
 DEFAULT_RUNG = "layer"
 # Of the lesser of a pad's radius and the thickness: past it, a linear rung's error is not measured.
 LINEAR_REACH = 0.3
+MOST_TILT = 1.5  # fall from a pad's middle to its edge over its depth, that was measured
 REACH = 0.5  # of rung large: deeper, elements fold at the punch's edge
 
 
@@ -62,6 +63,19 @@ def stated_error(rung: str, pads: Pads, body: Body, force: np.ndarray) -> float:
         zone = int(np.searchsorted(data["hardness"], hardness))
         return data["springs"][min(zone, len(data["springs"]) - 1)] + deep
     return data[rung] + deep
+
+
+def tilt_error(pads: Pads, body: Body, pressed: Pressed, angle: tuple[float, float]) -> float:
+    """What a pad's tilt adds to the error of any rung whose body is exact for level pads or linear: at most
+    a coefficient times depth times the square of the fall from middle to edge over the depth, as found under
+    a long strip (benchmarks/tilted_strip.py). `angle` of the object's face, degrees."""
+    alone = pad_stiffness(body, pads.length, pads.width, pads.disc)
+    touch = pressed.force > 0
+    depth = pressed.force[touch] / alone
+    fall = np.abs(np.tan(np.radians(angle)) + pressed.slope[touch]) @ (pads.length, pads.width) / 2
+    tilt = np.minimum(fall / depth, MOST_TILT)
+    least = min(pad_radius(pads), body.thickness)
+    return float((errors()["tilt"][_zone(pads, body)] * tilt**2 * depth / least).max())
 
 
 def _zone(pads: Pads, body: Body) -> int:

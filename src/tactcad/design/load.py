@@ -236,13 +236,15 @@ def unknown_field(path: str, known: list[str], schema: str = SCHEMA) -> InputErr
     own = {k.removeprefix(f"{table}."): k for k in known}  # compare names without the common table's
     begins = next((k for word, k in own.items() if word.startswith(f"{name}_")), "")
     if schema == SCHEMA and not begins and ".override." not in path:
-        begins = _elsewhere(name)
+        begins = _elsewhere(name, known)
     likely = begins or own.get(nearest(name, own), "")
     return InputError(path, "unknown field", legal=f"did you mean {likely}?" if likely else f"see `{schema}`")
 
 
-def _elsewhere(name: str) -> str:
-    """The first field of another table with this name or beginning; "" if there is none."""
-    kinds = {table: kind for family in all_families().values() for table, kind in family.tables.items()}
-    every = ((table, f.name) for table, kind in kinds.items() for f in dataclasses.fields(kind))
+def _elsewhere(name: str, known: list[str]) -> str:
+    """The first field of another table with this name or beginning, in families with all known fields'
+    tables; "" if there is none."""
+    heads = {path.partition(".")[0] for path in known} - {"origin"}
+    kinds = [f.tables for f in all_families().values() if heads <= {*f.tables}]
+    every = ((t, f.name) for tables in kinds for t, kind in tables.items() for f in dataclasses.fields(kind))
     return next((f"{t}.{n}" for t, n in every if f"{n}_".startswith(f"{name}_")), "")

@@ -18,6 +18,7 @@ from tactcad.contact.stated_errors import (
     REACH,
     depth_share,
     stated_error,
+    tilt_error,
 )
 from tactcad.design.family import family_of
 from tactcad.design.messages import CheckFailure, InputError
@@ -201,6 +202,8 @@ def _chosen(
                 legal=f"at most {LINEAR_REACH:g}; rung large reaches {REACH:g}",
             )
         error = stated_error(rung, pads, body, pressed.force)
+        if rung != "springs":  # whose climbs were of tilted pads
+            error += tilt_error(pads, body, pressed, angle)
         if rung == "layer" and len(pads.x) * PATCHES**2 > MOST_PATCHES:
             error += MANY_PADS
         if within is None or error <= within:

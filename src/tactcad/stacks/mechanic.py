@@ -270,7 +270,7 @@ class Assembled:
         gap = self.layout.pad_inner + self.tips
         one, two = gap[:, self.side > 0], gap[:, self.side < 0]
         both = min(one.shape[1], two.shape[1])
-        return one[:, :both] + two[:, :both] if both else 2 * gap
+        return one[:, :both] + two[:, :both] if both else gap
 
     # --- the stop ---
 

@@ -79,7 +79,8 @@ def _rig_requirements(
 
 def _array_requirements(layout: Layout, known: dict[str, DimensionLimits]) -> list[Requirement]:
     t = layout.design.tolerance
-    gap = 2 * layout.pad_inner
+    rows = len(layout.design.array.row_arms)
+    gap, apart = rows * layout.pad_inner, rows * t.load_arm
     limit = np.array([stop_limit(layout, p).gap for p in layout.elements])
     return [
         Requirement("pins hold in the tapped end plate", "mm", LEAST_PRESS, inf, lambda a: a.press),
@@ -88,7 +89,11 @@ def _array_requirements(layout: Layout, known: dict[str, DimensionLimits]) -> li
         Requirement("pads coplanar", "mm", -inf, 2 * t.pad_height, lambda a: a.pads_apart),
         Requirement("pads square to the carrier", "degree", -t.tilt, t.tilt, lambda a: a.tilt),
         Requirement(
-            "gap between rows", "mm", gap - 2 * t.load_arm, gap + 2 * t.load_arm, lambda a: a.row_gaps
+            "gap between rows" if rows > 1 else "tips from the middle line",
+            "mm",
+            gap - apart,
+            gap + apart,
+            lambda a: a.row_gaps,
         ),
         summed("neighbours free", LEAST_BETWEEN, inf, layout.spacer, ((SPACER, 1.0), (SHEET, -1.0))),
         Requirement("stop closes within the rated deflection", "mm", 0.0, inf, lambda a: limit - a.gaps),

@@ -96,6 +96,7 @@ def test_the_answer_is_a_design_that_loads_and_reads_as_said(file, tmp_path, cap
     assert 2 * x <= 28.0 + 1e-9 and 2 * y <= 10.0 + 1e-9 and len(layout.elements) == 12
 
 
+@pytest.mark.slow  # as the searches by chance of facing rows
 def test_no_design_drawn_by_chance_near_it_is_better(file):
     """By noise alone, which every dimension changes."""
     t = read_target(file)
@@ -157,7 +158,7 @@ def test_a_short_time_is_kept_or_its_overrun_said(file, tmp_path, capsys):
     assert main(["design", str(file), "--out", str(tmp_path / "out"), "--in", "0.01"]) == 0
     said = capsys.readouterr()
     assert "left out for time: a longer search, bounds and limits" in said.out
-    assert "not 0.01 s: one search, the yield" in said.err and (tmp_path / "out" / "report.html").exists()
+    assert "more than --in 0.01" in said.err and (tmp_path / "out" / "report.html").exists()
 
 
 def test_without_a_half_width_asked_the_best_counts_as_met(file, tmp_path, capsys, monkeypatch):

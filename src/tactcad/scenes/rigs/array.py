@@ -381,7 +381,7 @@ def setting_words(layout: Layout) -> str:
     same = (
         "; in the calibration set-up the heights at which the force gauge first reads 0.01 N show the same "
         "to a micrometre"
-        if _is_calibrated(layout)
+        if is_calibrated(layout)
         else ""
     )
     strip = " and every blank on the strip" if layout.blanks() else ""
@@ -412,7 +412,7 @@ def carrier_tools(design: Design) -> tuple[str, ...]:
     return (f"hex key {METRIC[design.clamp.screw].key:g} mm: the carrier's screws",)
 
 
-def _is_calibrated(layout: Layout) -> bool:
+def is_calibrated(layout: Layout) -> bool:
     """Whether the calibration's rig takes the array."""
     return layout.design.calibration is not None and misfit(layout, CALIBRATION_FITS) is None
 
@@ -425,7 +425,7 @@ def _laying_stop_plate(layout: Layout) -> str:
         "before; if a pad has moved, make the pads coplanar and calibrate again. "
     )
     return (
-        (calibrated if _is_calibrated(layout) else "")
+        (calibrated if is_calibrated(layout) else "")
         + "Wipe ledges and plate. Lay the stop plate on the ledges; both faces are ground, so either may "
         "face down."
     )

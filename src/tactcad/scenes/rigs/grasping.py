@@ -176,9 +176,10 @@ def grasping(design: Design, pose: Pose = REST) -> Scene:
 def _levelled(layout: Layout) -> str:
     """What the sinks on a flat plate must agree within."""
     spans = [max(along) - min(along) for along in zip(*pad_middles(layout))]
+    ends = "rows" if spans[0] else "row"
     said = [
         f"{where} within {1e3 * tan(radians(LEVELLED * layout.design.tolerance.tilt)) * span:.1f} um"
-        for where, span in (("at both ends of the rows", spans[1]), ("in both rows", spans[0]))
+        for where, span in ((f"at both ends of the {ends}", spans[1]), ("in both rows", spans[0]))
         if span
     ]
     return f"their means must agree {' and '.join(said)}"

@@ -35,7 +35,7 @@ from tactcad.parts.rules.rule import misfit
 from ..builder import Builder
 from ..rig import Rig, none
 from ..scene import DOWN, REST, STILL, Move, Need, Pose, Rotation, Scene
-from .array import array
+from .array import array, is_calibrated
 
 # A board's frame, and its clamp's: the edge with the leads towards the array.
 BOARD: dict[float, Rotation] = {
@@ -105,13 +105,17 @@ def wiring(design: Design, pose: Pose = REST) -> Scene:
         f"array's place, and screw it down crosswise.{_fitted(layout)} Plug the cable to card or controller "
         "on its J1, the other end still free.",
     )
+    uncalibrated = (
+        "An array still to be calibrated has no stop plate and set screws yet. "
+        if is_calibrated(layout)
+        else ""
+    )
     b.subassembly(whole, DOWN, (0, 0, carrier_top(layout)))
     b.step(
         "Array on its back",
         (0, 0, 60),
         "Lay the array on the bench on its carrier, pads up, row 1 to the right (+x), so that each row's "
-        "leads come out towards its board. An array still to be calibrated has no stop plate and set screws "
-        "yet. Nothing may lie on the pads.",
+        f"leads come out towards its board. {uncalibrated}Nothing may lie on the pads.",
         order=[Move(tuple(p.designator for p in whole.placements), (0.0, 0.0, LIFTED), (STILL,))],
         sets=("array on the bench: along z, turn about x and y",),
         leaves=("array: along x and y, turn about z, by the leads' slack",),
