@@ -288,12 +288,11 @@ def answer(r: dict[str, Any]) -> str:
     limit = f"of {r['yield_arrays']} arrays made keep {page.percent(r['wanted_half_width'])}"
     size = " x ".join(f"{v:g}" for v in r["size_mm"])
     return (
-        f"{first}a pair feels {low:.3g} to {high:.3g} N/mm within {100 * r['half_width']:.2g} % "
-        f"(half the 95 % interval, as drawn); {100 * r['yield']:.3g} % {limit} "
-        f"({100 * r['yield_interval'][0]:.3g} to {100 * r['yield_interval'][1]:.3g} %). "
-        f"{r['elements']} cells on {size} mm: foil {c['foil']:g}, pitch {c['pitch']:g}, "
-        f"beams {c['soft']:g} and {c['stiff']:g} wide, reference island {c['island']:g}, "
-        f"chips' gap {c['gap']:g} mm; buses: {r['buses']}. {base['name']} as it is: {than}."
+        f"{first}a pair feels {low:.3g} to {high:.3g} N/mm within {100 * r['half_width']:.2g} % (half the "
+        f"95 % interval, as drawn); {100 * r['yield']:.3g} % {limit} ({100 * r['yield_interval'][0]:.3g} to "
+        f"{100 * r['yield_interval'][1]:.3g} %). {r['elements']} cells on {size} mm: foil {c['foil']:g}, "
+        f"pitch {c['pitch']:g}, beams {c['soft']:g} and {c['stiff']:g} wide, reference island "
+        f"{c['island']:g}, chips' gap {c['gap']:g} mm; buses: {r['buses']}. {base['name']} as it is: {than}."
     )
 
 

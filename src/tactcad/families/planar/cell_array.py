@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import inf
 
 import numpy as np
@@ -64,7 +64,7 @@ def scene(design: PlanarDesign, _pose: object = None) -> Scene:
         b.meet(pin, frame)
     first = "Press the two dowels into the base, flush with its lower face."
     if not layout.screwed:
-        first = "Lay the base into the bonding jig. Bond every layer on the one below, flush at its edges."
+        first = "Bond every layer on the one below, flush at its edges, between two straight edges."
     b.step("Base", (0, 0, -15), first)
     lower = b.place("SP", parts.lower_spacer(layout), (0, 0, layout.base_z))
     b.meet(lower, base)
@@ -85,10 +85,7 @@ def scene(design: PlanarDesign, _pose: object = None) -> Scene:
     b.step(
         "Foil with posts and magnets",
         (0, 0, 8),
-        "On the bonding jig: lay the foil down, bond a foot plate and a post on every island (one drop of "
-        "adhesive each, cured under the jig's weight), turn it over, and bond the magnets, north poles "
-        "marked "
-        "before and up.",
+        "Take the foil with its foot plates, posts and magnets from the bonding jig (scene bonding).",
         bench=True,
     )
     upper = b.place("SP", parts.upper_spacer(layout), (0, 0, t))
@@ -120,6 +117,7 @@ def scene(design: PlanarDesign, _pose: object = None) -> Scene:
 
 
 SPIGOT, PLACES = "spigot diameter", "places of dowel holes"
+MAGNET_PLACE, MAGNET_BOND = "magnet's place along ", "magnet: adhesive over it"
 POST_LENGTH = f"post: {parts.POST_LENGTH}"
 
 
@@ -177,8 +175,6 @@ def limits(
                 n,
                 stated=((f"{name}-post", parts.POST_LENGTH),),
             ),
-            variable("magnet: along x", -tol.magnet_place, tol.magnet_place, n),
-            variable("magnet: along y", -tol.magnet_place, tol.magnet_place, n),
         )
     }
 
@@ -188,16 +184,19 @@ def limits(
     def stiffness(a: Stacked) -> np.ndarray:
         return (1.0 + a.made["foil: thickness"] / t) ** 3 - 1.0
 
-    def well(a: Stacked) -> np.ndarray:
-        return (
-            d.housing.well
-            - d.housing.side_gap
-            - np.hypot(a.made["magnet: along x"], a.made["magnet: along y"])
-        )
-
     of_rigs: dict[str, Requirement] = {}
     for scene in scenes:
         of_rigs |= {r.name: r for r in rig_of(d, scene.name).requirements(layout, known)}
+    asked = variable("", -tol.magnet_place, tol.magnet_place, n)  # of whoever bonds them without the jig
+    places = [
+        [v for v in known if v.startswith(MAGNET_PLACE + axis)] or [MAGNET_PLACE + axis] for axis in "xy"
+    ]
+    known |= {v: replace(asked, name=v) for (v, *_) in places if v not in known}
+
+    def well(a: Stacked) -> np.ndarray:
+        x, y = (sum((a.made[v] for v in terms), np.zeros(n)) for terms in places)
+        return d.housing.well - d.housing.side_gap - np.hypot(x, y)
+
     lift = d.housing.lift
     return known, [
         *_slips(layout),
@@ -217,7 +216,11 @@ def limits(
             0.9 * d.hall.gap,
             1.1 * d.hall.gap,
             d.hall.gap,
-            (("base: thickness", 1.0), ("lower spacer: thickness", 1.0)),
+            (
+                ("base: thickness", 1.0),
+                ("lower spacer: thickness", 1.0),
+                *((v, -1.0) for v in known if v == MAGNET_BOND),
+            ),
         ),
         *of_rigs.values(),
     ]

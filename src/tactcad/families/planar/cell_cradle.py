@@ -365,42 +365,18 @@ def link(rig: CradleLayout) -> Part:
     """Hangs in the cap's groove and passes the posts below on both sides; the pan's hook goes into its eye.
     Origin: its arc's middle; y upwards."""
     r, low = rig.arc, -rig.length
-    o, end, tab = round(r + LEG, 9), round(low - LEG, 9), round(EYE / 2.0 + 1.0, 9)
-    outer = rounded_polygon(
-        [
-            Corner((o, o), o),
-            Corner((-o, o), o),
-            Corner((-o, end)),
-            Corner((-tab, end), INSIDE),
-            Corner((-tab, end - TAIL)),
-            Corner((tab, end - TAIL)),
-            Corner((tab, end), INSIDE),
-            Corner((o, end)),
-        ]
-    )
+    o = round(r + LEG, 9)
     window = rounded_polygon(
         [Corner((r, r), r), Corner((-r, r), r), Corner((-r, low), INSIDE), Corner((r, low), INSIDE)]
     )
-    return _sheet(rig, "link", "Calibration link", outer, window, end - TAIL)
+    return _sheet(rig, "link", "Calibration link", (o, o, round(low - LEG, 9)), o, window)
 
 
 def hanger(rig: CradleLayout) -> Part:
     """Stands with its nib in the cap's dimple, around array and cradle; the pan's hook goes into its eye.
     Origin: the nib's end; y upwards."""
-    a, up, low, tab = rig.wide, rig.nib, -rig.below, round(EYE / 2.0 + 1.0, 9)
-    top, end = round(up + RAIL, 9), round(low - RAIL, 9)
-    outer = rounded_polygon(
-        [
-            Corner((a + RAIL, top)),
-            Corner((-a - RAIL, top)),
-            Corner((-a - RAIL, end)),
-            Corner((-tab, end), INSIDE),
-            Corner((-tab, end - TAIL)),
-            Corner((tab, end - TAIL)),
-            Corner((tab, end), INSIDE),
-            Corner((a + RAIL, end)),
-        ]
-    )
+    a, up, low = rig.wide, rig.nib, -rig.below
+    ends = (a + RAIL, round(up + RAIL, 9), round(low - RAIL, 9))
     blunt = NIB * (sqrt(5.0) - 1.0)  # the arc takes that off a wedge half as wide as high
     half = (up + blunt) / 2.0
     window = rounded_polygon(
@@ -414,12 +390,29 @@ def hanger(rig: CradleLayout) -> Part:
             Corner((a, low), INSIDE),
         ]
     )
-    return _sheet(rig, "hanger", "Calibration hanger", outer, window, end - TAIL)
+    return _sheet(rig, "hanger", "Calibration hanger", ends, 0.0, window)
 
 
-def _sheet(rig: CradleLayout, number: str, name: str, outer: Contour, window: Contour, end: float) -> Part:
-    """A sheet with a window, and an eye near its lower end."""
-    eye = Hole("eye", (0.0, round(end + 1.0 + EYE / 2.0, 9), 0.0), (0, 0, 1), EYE, SHEET, True)
+def _sheet(
+    rig: CradleLayout,
+    number: str,
+    name: str,
+    ends: tuple[float, float, float],
+    radius: float,
+    window: Contour,
+) -> Part:
+    """A sheet with a window, and an eye in the tail at its lower end; its half width, top and end, mm."""
+    wide, top, end = ends
+    tab, low = round(EYE / 2.0 + 1.0, 9), end - TAIL
+    corners = [Corner((wide, top), radius), Corner((-wide, top), radius), Corner((-wide, end))]
+    corners += [
+        Corner((-tab, end), INSIDE),
+        Corner((-tab, low)),
+        Corner((tab, low)),
+        Corner((tab, end), INSIDE),
+    ]
+    outer = rounded_polygon([*corners, Corner((wide, end))])
+    eye = Hole("eye", (0.0, round(low + 1.0 + EYE / 2.0, 9), 0.0), (0, 0, 1), EYE, SHEET, True)
     return Part(
         part_no=f"{rig.layout.design.name}-{number}",
         name=name,

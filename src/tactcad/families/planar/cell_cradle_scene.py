@@ -84,10 +84,9 @@ def _mounted(rig: CradleLayout) -> Builder:
     b.step(
         "Array in the cradle",
         (0, 0, 30),
-        "Wipe seat and board clean. Lay the finished array down, cell 1 at the clamp's end and away from the "
-        "two pins. Push it against these, then along them against the third. Its cable hangs in a loop "
-        "and pulls "
-        "at nothing.",
+        "Wipe seat and board clean. Lay the finished array down, cell 1 at the clamp's end and away from "
+        "the two pins. Push it against these, then along them against the third. Its cable hangs in a loop "
+        "and pulls at nothing.",
         order=[tuple(own)],
         sets=("AR1 on CR1: along z", "AR1 against DP1 DP2 DP3: along x and y, turn about z"),
         leaves=("AR1: away from the pins, until it is clamped",),
@@ -162,8 +161,7 @@ def _hung(b: Builder, rig: CradleLayout, along: Axis, cell: CellPlace) -> None:
         order = [Move((hung,), (0.0, -AWAY, rig.sunk), (high, STILL))]
         text = (
             "Bring the link's arc over the cap and let it down into the groove: it hangs there past the "
-            "posts "
-            "below, on both sides of them, and touches nothing else."
+            "posts below, on both sides of them, and touches nothing else."
         )
     b.meet(hung, cap)
     b.step(
@@ -180,17 +178,15 @@ def _weights(rig: CradleLayout, along: Axis) -> str:
     """Loads by kind of cells."""
     hung = "hanger" if along == "z" else "link"
     kinds = "; ".join(
-        f"on {load.kind} cells {STEPS} steps of {load.step:g} g ({load.tare * 1e3 / STANDARD_GRAVITY:.2g} "
-        "g of cap "
-        f"and {hung} included {load.most:.2g} N, and they bear {load.heaviest:.2g} N)"
+        f"on {load.kind} cells {STEPS} steps of {load.step:g} g ({load.tare * 1e3 / STANDARD_GRAVITY:.2g} g "
+        f"of cap and {hung} included {load.most:.2g} N, and they bear {load.heaviest:.2g} N)"
         for load in loads(rig, along)
     )
     return (
         f"Weigh cap, {hung} and pan together to 1 mg: they are the first load. Then lay weights into the "
-        "pan, "
-        f"{kinds}. Cell 1, at the least x and y, is a {rig.layout.design.planar.first} cell, and kinds "
-        "alternate. "
-        "Wait until all hangs still, and read the chip; read again while you take the weights off in steps."
+        f"pan, {kinds}. Cell 1, at the least x and y, is a {rig.layout.design.planar.first} cell, and kinds "
+        "alternate. Wait until all hangs still, and read the chip; read again while you take the weights "
+        "off in steps."
     )
 
 
@@ -207,18 +203,14 @@ def _readings(rig: CradleLayout, along: Axis) -> str:
         share, what = OFF_LEVEL / height, f"a groove {OFF_LEVEL:g} mm from the pad's level is like"
         other = "more or less"
     return (
-        "Load every cell so. Then set the cradle down and level anew, and with the cap half a turn on by its "
-        "mark load every cell again: that is another run. Write a row of the table for each reading: "
-        "element; "
-        "run, a "
-        "number of its own for every time that the cradle was set down; "
-        f"fx, fy, fz in N, which is {STANDARD_GRAVITY * 1e-3:.8g} times the grams in f{along} and 0 in "
-        "the others, all 0 on "
-        "the bare pad; bx, by, bz in mT. With a column sink, mm, stiffness comes too. Once all three "
-        "axes are "
-        "in the table, tactcad calibrate takes it. What the rig adds at most: "
-        f"{what} {100 * share:.1f} % of it {other}; feet, pins and level turn a load by {OFF_AXIS:g} mrad, "
-        f"{OFF_AXIS / 10:g} % of it across; weights err by 1 mg, from 1 g on by 0.1 %."
+        "Load every cell so. Then set the cradle down and level anew, and with the cap half a turn on by "
+        "its mark load every cell again: that is another run. Write a row of the table for each reading: "
+        "element; run, a number of its own for every time that the cradle was set down; fx, fy, fz in N, "
+        f"which is {STANDARD_GRAVITY * 1e-3:.8g} times the grams in f{along} and 0 in the others, all 0 on "
+        "the bare pad; bx, by, bz in mT. With a column sink, mm, stiffness comes too. Once all three axes "
+        f"are in the table, tactcad calibrate takes it. What the rig adds at most: {what} {100 * share:.1f} "
+        f"% of it {other}; feet, pins and level turn a load by {OFF_AXIS:g} mrad, {OFF_AXIS / 10:g} % of it "
+        "across; weights err by 1 mg, from 1 g on by 0.1 %."
     )
 
 

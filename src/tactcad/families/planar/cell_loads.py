@@ -4,7 +4,7 @@ whether cap and cradle take the array."""
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import floor, inf, log10
 
 import numpy as np
@@ -153,15 +153,7 @@ def requirements(layout: PlanarLayout, known: dict[str, DimensionLimits]) -> lis
         """Deviations over their lengths and the table's level, mrad."""
         own = ((TABLE, 1.0), *((v, 1e3 / length) for v, length in terms))
         asked = summed(f"calibration: {who}", -OFF_AXIS, OFF_AXIS, 0.0, own)
-        return Requirement(
-            asked.name,
-            "mrad",
-            asked.lower,
-            asked.upper,
-            asked.value,
-            asked.linear,
-            ("calibration.squareness",),
-        )
+        return replace(asked, unit="mrad", fields=("calibration.squareness",))
 
     return [
         summed("calibration: cap slips over the pads", LEAST_PLAY, inf, play, ((BORE, 1.0), (OF_PAD, -1.0))),

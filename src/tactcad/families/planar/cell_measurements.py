@@ -13,20 +13,10 @@ def measured(layout: PlanarLayout) -> list[tuple[CellPlace, str, tuple[Measureme
 
     def of(e: CellPlace) -> tuple[Measurement, ...]:
         w, s = e.kind.table.beam_width, e.kind.beam_length
+        edges, middle = "island's to frame's edge (mean of four)", "middle of each beam (mean of four)"
         return (
-            Measurement(
-                "beam width", w, w - cut, w + cut, True, "", "middle of each beam (mean of four)", MICROSCOPE
-            ),
-            Measurement(
-                "beam length",
-                s,
-                s - cut,
-                s + cut,
-                False,
-                "",
-                "island's to frame's edge (mean of four)",
-                MICROSCOPE,
-            ),
+            Measurement("beam width", w, w - cut, w + cut, True, "", middle, MICROSCOPE),
+            Measurement("beam length", s, s - cut, s + cut, False, "", edges, MICROSCOPE),
             Measurement(
                 "thickness",
                 t,

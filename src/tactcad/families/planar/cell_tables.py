@@ -178,7 +178,7 @@ class PlanarTolerance:
     )
     stop_gap: float = given(Number("mm", 0.001, 0.2, "travel of an island down to the base"), 0.01)
     magnet_place: float = given(
-        Number("mm", 0.005, 1, "magnet's offset from its island's middle, each way"), 0.05
+        Number("mm", 0.005, 1, "magnet's offset from its island's middle, each way"), 0.08
     )
     magnet_tilt: float = given(Number("degree", 0, 10, "magnet's axis"), 2.0)
     chip_place: float = given(Number("mm", 0.005, 1, "chip's offset from its place, each way"), 0.1)

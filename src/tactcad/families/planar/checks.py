@@ -25,10 +25,8 @@ def check_strength(design: PlanarDesign) -> Iterator[Finding]:
         if rated < design.rating.force * (1.0 - 1e-9):
             message = (
                 f"{kind.name} cells are rated at {rated:.3g} N with a shear of {design.rating.shear:g} of "
-                f"it, not at the "
-                f"{design.rating.force:g} N asked for: there a beam's root would have less than its "
-                f"safety of "
-                f"{design.rating.yield_factor:g} against yield"
+                f"it, not at the {design.rating.force:g} N asked for: there a beam's root would have less "
+                f"than its safety of {design.rating.yield_factor:g} against yield"
             )
             yield Finding("planar-rated-force", "flag", first, (), rated, design.rating.force, message)
         if row.linear_force < rated:

@@ -45,6 +45,9 @@ POST_LENGTH, POST_TOLERANCE = "length over the shoulder", 0.01  # mm, plus and m
 PAD = "pad side diameter"
 PAD_FIELD = 0.02  # mm by which a pad may be smaller than drawn; chosen: a cap slips over it
 SPIGOT = 0.01  # mm by which a post's spigot may be thinner than drawn; chosen, likewise
+MAGNET_LIMIT = (
+    0.02  # mm, plus and minus, of a magnet's diameter and height; chosen: ground, or picked by micrometer
+)
 SPIGOT_SHORT = 0.02  # mm that a spigot ends inside the foil; chosen
 FOOT_THICKNESS = 0.02  # mm, plus and minus; chosen: precision strip
 DOWEL_HOLE = "dowel hole diameter"
@@ -52,9 +55,7 @@ DOWEL_HOLE = "dowel hole diameter"
 # one clamping; field of a reamed hole: ISO 286, H8 of 1 to 3 mm; depth of the sunk lands, plus and minus:
 # chosen.
 PLATE_ZONE, STOP_FLAT, REAMED, LAND_DEPTH = 0.02, 0.01, 0.014, 0.01
-FOOT_INSET = (
-    0.03  # mm that a foot plate stays inside the island's edge all round; chosen: the etching's tolerance
-)
+FOOT_INSET = 0.03  # mm of island around its foot plate; chosen: the etching's tolerance
 WEB = 0.8  # mm of base left over the chips' pocket, at least: checks/data/shop.toml's floor of a pocket
 FRAME_CORNER = 0.5  # mm; chosen: a cutter of 1 mm, and room for the outer chips
 CHIP_ROOM = 0.2  # mm above and around a chip; chosen: soldered boards' usual tolerance
@@ -289,7 +290,8 @@ def magnet(layout: PlanarLayout) -> Part:
         body=Extrusion(circle((0, 0), m.diameter), m.height),
         colour="#9aa0a8",
         purchase=Purchase(
-            f"disc magnet {m.diameter:g} x {m.height:g} mm, axial, remanence {m.remanence:g} T"
+            f"disc magnet {m.diameter:g} x {m.height:g} mm, "
+            f"each ±{MAGNET_LIMIT:g}, axial, remanence {m.remanence:g} T"
         ),
         spares=max(1, len(layout.elements) // 10),
     )

@@ -182,8 +182,7 @@ def screws_fit(layout: PlanarLayout) -> Iterator[Finding]:
         yield wrong(
             "housing.cover_thickness",
             f"no {SCREW} screw engages one diameter and ends in the cover, {stack_height(layout):.3g} mm "
-            f"from "
-            "under its head",
+            "from under its head",
             h.cover_thickness,
             "another cover, board, gap of the chips, foot plate or lift",
         )

@@ -1,1 +1,1 @@
-"""Rigs of planar designs: the array, and its calibration along z, x and y."""
+"""Rigs of planar designs: the array, its bonding, and its calibration along z, x and y."""

@@ -1,0 +1,288 @@
+"""The bonding jig: a bed that holds every magnet under its island, and a guide that keeps the posts upright.
+
+    | |    | |       posts, in the guide's bores
+ ===| |====| |===    guide, on the array's own upper spacer
+!__[===]__[===]____  foot plates on the foil, which lies on the bed against three pins
+!|_|(m)|__|(m)|___|  bed with a bore for every magnet, on a sheet of steel
+   push    push      holes, by which the magnets are pushed out
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from tactcad.contour import rectangle
+from tactcad.parts.array.clamp import PRESS_FIT, pressed
+from tactcad.parts.bought.electronic_parts import MECHANICAL, Supply
+from tactcad.parts.bought.standard_parts import LEAST_PLAY, dowel, dowel_diameter, dowel_lengths
+from tactcad.parts.language.description import Extrusion, Hole, Part
+from tactcad.parts.language.finding import Finding
+from tactcad.parts.language.limits import Characteristic
+from tactcad.parts.rules.rule import at_least, at_most, fits
+from tactcad.scenes.builder import Builder
+from tactcad.scenes.requirement import Built, DimensionLimits, Requirement, variable
+from tactcad.scenes.rig import Rig, none
+from tactcad.scenes.scene import Move, Scene
+
+from . import parts
+from .cell_array import ADHESIVE, MAGNET_BOND, MAGNET_PLACE, nothing_bends
+from .cell_layout import PlanarLayout
+from .cell_tables import PlanarDesign
+from .parts import DOWEL, MAGNET_LIMIT, PAD_FIELD, PLATE_ZONE, REAMED, foil_zone, milled
+
+NAME = "bonding"
+BESIDE = 4.0  # mm of bed beyond the foil, all round; chosen: room for the pins
+UNDER = 2.0  # mm of bed below the magnets: stiff, and near enough for a steel sheet to hold them
+PUSH = 0.7  # of a magnet's diameter: the hole to push it out; chosen: leaves a ledge
+DRILL, WALL = 0.5, 0.8  # mm: least hole, and least wall between bores: checks/data/shop.toml
+FILM, DEPTH = (
+    0.03,
+    0.01,
+)  # mm of adhesive over a magnet, and limit of its bore's depth; chosen: none stands out
+PIN_PLAY = 0.01  # mm between a pin's middle size and the foil's edge: its largest radius is less
+INSET, SHORT = 0.5, 0.3  # mm: guide inside the foil's edge, clear of the pins; posts over the guide
+SLID = 0.3  # mm that the foil is laid beside its pins, and pushed; chosen
+WEIGHT = 10.0  # g on every post; chosen: presses its shoulder flat, bends nothing on the bed
+RELEASE = Supply(
+    "RELEASE-wax",
+    "Release agent: mould wax, free of silicone",
+    1,
+    "pack",
+    "mould release wax for epoxy, free of silicone",
+    process=MECHANICAL,
+)
+TOOLS = ("sheet of steel, 1 mm or more, larger than the bed", "tweezers of plastic", "felt pen")
+
+
+def bore(layout: PlanarLayout) -> float:
+    """Least diameter of a magnet's bore, mm; the largest is REAMED more."""
+    return round(layout.design.magnet.diameter + MAGNET_LIMIT + LEAST_PLAY, 6)
+
+
+def height(layout: PlanarLayout) -> float:
+    """Of the bed."""
+    return round(layout.design.magnet.height + FILM + UNDER, 9)
+
+
+def pin_length(layout: PlanarLayout) -> float | None:
+    """From the bed's lower face to the spacer's upper one at least."""
+    return next((n for n in dowel_lengths(DOWEL) if n >= height(layout) + layout.cover_z), None)
+
+
+def pins(layout: PlanarLayout) -> tuple[tuple[float, float], ...]:
+    """Middles of the pins: two at the foil's lower edge, one at its left one, by which it is dimensioned."""
+    (hx, hy), r = layout.half, dowel_diameter(DOWEL) / 2.0 + PIN_PLAY
+    x = round(0.8 * hx, 2)
+    return (-x, -hy - r), (x, -hy - r), (-hx - r, 0.0)
+
+
+def bed(layout: PlanarLayout) -> Part:
+    """z = 0 its lower face."""
+    t, (hx, hy), m = height(layout), layout.half, layout.design.magnet
+    wide, deep = round(bore(layout) + REAMED / 2.0, 6), round(m.height + FILM, 9)
+    push = round(PUSH * m.diameter, 2)
+    holes = [
+        Hole("magnet", (e.x, e.y, t), (0, 0, -1), push, t, True, counterbore=(wide, deep))
+        for e in layout.elements
+    ]
+    fit, size = f"{PRESS_FIT}, the pin pressed in", dowel_diameter(DOWEL)
+    holes += [Hole("pin_hole", (x, y, 0.0), (0, 0, 1), size, t, True, tolerance=fit) for x, y in pins(layout)]
+    return milled(
+        layout,
+        "bonding-bed",
+        "Bonding jig, bed",
+        Extrusion(rectangle(-hx - BESIDE, -hy - BESIDE, hx + BESIDE, hy + BESIDE), t),
+        holes,
+        {"magnet": PLATE_ZONE, "pin_hole": PLATE_ZONE},
+        (
+            f"counterbores {bore(layout):g} to {bore(layout) + REAMED:g} wide, {deep:g} ±{DEPTH:g} deep, "
+            "floor flat",
+            "pin holes masked when anodising",
+        ),
+        (replace(pressed(float(DOWEL)), name="pin hole diameter", between=("pin_hole",)),),
+    )
+
+
+def guide_bore(layout: PlanarLayout) -> Characteristic:
+    """Limits of the guide's bores: it floats, and slips over all posts wherever foil and guide have them."""
+    low = layout.design.post.pad + LEAST_PLAY + foil_zone(layout, layout.process) + PLATE_ZONE
+    low = round(low, 6)
+    return Characteristic("bore diameter", low, round(low + REAMED, 6), low, between=("bore",))
+
+
+def guide(layout: PlanarLayout) -> Part:
+    """As thick as the posts are long over the spacer, less SHORT; z = 0 its lower face."""
+    (hx, hy), own = layout.half, guide_bore(layout)
+    t = round(layout.pad_z - layout.cover_z - SHORT, 9)
+    outline = rectangle(INSET - hx, INSET - hy, hx - INSET, hy - INSET)
+    holes = [Hole("bore", (e.x, e.y, 0.0), (0, 0, 1), own.nominal, t, True) for e in layout.elements]
+    number, name = "bonding-guide", "Bonding jig, guide"
+    return milled(layout, number, name, Extrusion(outline, t), holes, {"bore": PLATE_ZONE}, bores=(own,))
+
+
+def leans(layout: PlanarLayout) -> float:
+    """Most that the thinnest post leans in the widest bore, mrad."""
+    play = guide_bore(layout).upper - layout.design.post.pad + PAD_FIELD
+    return 1e3 * play / guide(layout).extrusion.thickness
+
+
+def scene(design: PlanarDesign, _pose: object = None) -> Scene:
+    """All in one cure; z = 0 is the bed's face, on which the foil lies."""
+    b, layout = Builder(), PlanarLayout(design)
+    t, n, low = design.planar.thickness, len(layout.elements), -height(layout)
+    under = b.place("BJ", bed(layout), (0, 0, low))
+    for x, y in pins(layout):
+        b.meet(b.place("DP", dowel(DOWEL, pin_length(layout) or 0.0), (x, y, low)), under, "press")
+    b.step(
+        "Bed",
+        (0, 0, -20),
+        "Press the three pins in, flush with the bed's lower face. Wax bed, pins, guide and bores thinly, "
+        "and polish: what squeezes out must not stick. Lay the bed on the sheet of steel, which holds the "
+        "magnets down. Degrease foil, foot plates, posts and magnets, and touch them with tweezers only.",
+        tools=TOOLS,
+    )
+    below = -design.magnet.height - FILM
+    magnets = [b.place("M", parts.magnet(layout), (e.x, e.y, below)) for e in layout.elements]
+    for magnet in magnets:
+        b.meet(magnet, under)
+    b.step(
+        "Magnets",
+        (0, 0, 12),
+        "Let all magnets cling to a rod of one another: their north poles then point the same way. Find that "
+        "end by a compass, whose south-seeking end it draws, and mark the upper face of each magnet before "
+        "it leaves the rod. Slide one into every bore, mark up, to the floor. Check: a spare magnet held "
+        f"with its mark down is pushed away over every one of the {n}; where it is drawn, turn that magnet.",
+    )
+    foil = b.place("F", parts.foil(layout), (0, 0, 0))
+    b.meet(foil, under)
+    aside = (SLID, SLID, 0.0)
+    b.step(
+        "Foil",
+        (0, 0, 20),
+        "Put a thin drop of adhesive on every magnet, less than its face holds: it is to fill "
+        f"{FILM:g} mm. Lower the foil flat beside the pins, cell 1 at the corner between them, and push it "
+        "against the two, then along them against the third.",
+        order=[Move((foil,), (SLID, SLID, 20.0), (aside, (0.0, 0.0, 0.0)))],
+        sets=(f"{foil} on {under}: along z", f"{foil} against DP1 DP2 DP3: along x and y, turn about z"),
+        leaves=(f"{foil}: away from the pins, until the spacer lies on it",),
+    )
+    post = parts.post(layout)
+    feet = {kind.name: parts.foot(layout, kind) for kind in layout.used}
+    upper = b.place("SP", parts.upper_spacer(layout), (0, 0, t))
+    b.meet(upper, foil)
+    b.step(
+        "Upper spacer",
+        (0, 0, 26),
+        "Lay the array's upper spacer on the foil, dry, against the same pins: it holds the foil down, and "
+        "carries the guide.",
+    )
+    plates = [b.place("FP", feet[e.kind.name], (e.x, e.y, t)) for e in layout.elements]
+    for plate in plates:
+        b.meet(plate, foil)
+    b.step(
+        "Foot plates",
+        (0, 0, 32),
+        "Wet every island thinly around its hole, keep the beams dry, and lay the foot plate of its kind on "
+        "it, hole over hole, edges along the island's.",
+    )
+    above = round(t + design.post.foot, 9)
+    posts = [b.place("P", post, (e.x, e.y, above)) for e in layout.elements]
+    for one, plate in zip(posts, plates, strict=True):
+        b.meet(one, plate)
+    b.step(
+        "Posts",
+        (0, 0, 42),
+        "Wet spigot and shoulder of every post, and set it through foot plate and foil down on its shoulder.",
+    )
+    b.meet(b.place("BG", guide(layout), (0, 0, layout.cover_z)), upper)
+    b.step(
+        "Guide and weight",
+        (0, 0, 60),
+        "Lower the guide over the posts on the spacer; it floats, and must go down by its own weight. No "
+        f"post leans by more than {leans(layout):.0f} mrad in it; its shoulder, pressed on the foot plate, "
+        f"sets it square. Lay 5 mm of soft foam and {WEIGHT * n:g} g of brass, no larger than "
+        f"the foil, on the posts, which stand {SHORT:g} mm over the guide.",
+        tools=("soft foam, 5 mm", f"flat weight of brass, {WEIGHT * n:g} g"),
+    )
+    b.supplies += [ADHESIVE, RELEASE]
+    b.step(
+        "Cure",
+        (0, 0, 0),
+        "Leave it until the adhesive has cured by its own sheet, cold: heat takes magnets' field.",
+    )
+    b.step(
+        "Out of the jig",
+        (0, 0, 0),
+        "Lift weight and guide straight up, then the spacer. Slide the bed off the steel, over two blocks. "
+        f"With a rod of plastic, {PUSH * design.magnet.diameter - 0.1:.1g} mm thick, push every magnet up "
+        "by a hair through its hole, from the middle outwards, and go round until all are free; never peel "
+        "the foil by its edge. Check the poles again with the spare magnet. Push at each post with a "
+        "fingernail, sideways: a bond that gives is to be done anew.",
+    )
+    return b.scene(NAME)
+
+
+@fits
+def jig_takes_magnets(layout: PlanarLayout) -> Iterator[Finding]:
+    """Bores that can be made side by side, and pins long enough."""
+    d, wide = layout.design, bore(layout) + REAMED
+    what = "a magnet's hole in the bonding jig cannot be drilled"
+    yield from at_least("magnet.diameter", what, d.magnet.diameter, round(DRILL / PUSH, 3))
+    if len(layout.elements) > 1:
+        what = "no wall is left between the bonding jig's bores"
+        yield from at_least("planar.pitch", what, d.planar.pitch, round(wide + WALL, 3))
+        what = "no wall is left between the bores of the bonding jig's guide"
+        most = d.planar.pitch - WALL - guide_bore(layout).upper + d.post.pad
+        yield from at_most("post.pad", what, d.post.pad, round(most, 3))
+    if pin_length(layout) is None:
+        longest = dowel_lengths(DOWEL)[-1]
+        most = round(longest - layout.cover_z - FILM - UNDER, 3)
+        yield from at_most("magnet.height", "no pin of the bonding jig is long enough", d.magnet.height, most)
+    least = d.housing.border + float(DOWEL) - layout.half[0]
+    yield from at_least(
+        "housing.border", "the bonding jig's two pins meet", d.housing.border, round(least, 3)
+    )
+
+
+def requirements(layout: PlanarLayout, known: dict[str, DimensionLimits]) -> list[Requirement]:
+    """Magnets in their places, by the jig's limits and the foil's; adds the variables to `known`."""
+    d, n = layout.design, len(layout.elements)
+    jig, foil, cut = f"{d.name}-bonding-bed", f"{d.name}-foil", layout.process.tolerance(d.planar.thickness)
+    play = (bore(layout) + REAMED - d.magnet.diameter + MAGNET_LIMIT) / 2.0
+    causes: tuple[tuple[str, float, int, tuple[tuple[str, str], ...]], ...] = (
+        ("magnet in its bore", play, n, ()),
+        ("places of the bed's bores", PLATE_ZONE / 2.0, n, ((jig, "magnet holes"),)),
+        ("places of the bed's pins", PLATE_ZONE / 2.0, 1, ((jig, "pin hole holes"),)),
+        ("places of islands", foil_zone(layout, layout.process) / 2.0, n, ((foil, "spigot holes"),)),
+        ("foil's edges", cut, 1, ()),
+    )
+    known[MAGNET_BOND] = variable(MAGNET_BOND, 0.0, FILM + DEPTH + MAGNET_LIMIT)
+
+    def placed(axis: str) -> Requirement:
+        own = [f"{MAGNET_PLACE}{axis}: {what}" for what, *_ in causes]
+        for name, (_, limit, pieces, stated) in zip(own, causes, strict=True):
+            known[name] = variable(name, -limit, limit, pieces, stated)
+
+        def value(a: Built) -> np.ndarray:
+            return sum((a.made[name] for name in own), np.zeros(n))
+
+        asked, fields = d.tolerance.magnet_place, ("tolerance.magnet_place",)
+        return Requirement(f"bonding: magnets along {axis}", "mm", -asked, asked, value, fields=fields)
+
+    return [placed("x"), placed("y")]
+
+
+RIG = Rig(
+    name=NAME,
+    tables=(),
+    make=scene,
+    poses=none,
+    under_sensor=none,
+    rules=(jig_takes_magnets,),
+    deflections=nothing_bends,
+    requirements=requirements,
+    checks=(),
+)
