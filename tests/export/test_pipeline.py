@@ -412,7 +412,7 @@ def test_a_comment_in_the_source_rebuilds_in_a_fresh_process(mine, tmp_path):
     _, log = run("export", "two.toml", "--scene", "array", "--out", str(mine), **arguments)
     assert "nothing was rebuilt" in log, "the same code elsewhere is the same code"
     before = contents(mine)
-    with (source / "tactcad" / "contour" / "rounded.py").open("a") as file:
+    with (source / "tactcad" / "contour" / "contour.py").open("a") as file:
         file.write("# touched\n")
     said, log = run("export", "two.toml", "--scene", "array", "--out", str(mine), **arguments)
     assert "source of tactcad.contour changed" in log

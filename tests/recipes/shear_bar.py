@@ -12,8 +12,7 @@ from ..array.layout import Layout
 from ..array.stiffness_table import TENTH, Deflection
 from ..language.description import Extrusion, Part
 from ..language.finding import Finding
-from ..language.part_materials import plate_material
-from ..language.plate import plate
+from ..language.stock import plate, plate_material
 from ..rules.rule import at_least, fits
 
 THICK = 2.0  # mm; chosen: under the gap between facing pads
