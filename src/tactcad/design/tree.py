@@ -551,8 +551,6 @@ class Design(CommonTables):
 
     @classmethod
     def completed(cls, tables: dict[str, Any]) -> dict[str, Any]:
-        from .tree import followed
-
         return followed(tables)
 
     @property

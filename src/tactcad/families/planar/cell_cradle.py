@@ -21,17 +21,18 @@ import numpy as np
 
 from tactcad.contour import Contour, Corner, circle, rectangle, rounded_polygon
 from tactcad.design.fields import present
+from tactcad.design.materials import ALLOYS
 from tactcad.parts.array.clamp import PRESS_FIT, pressed
 from tactcad.parts.bought.screws import CAP_SCREW_LENGTHS
 from tactcad.parts.bought.standard_parts import dowel_diameter, dowel_lengths
 from tactcad.parts.language.description import Extrusion, Hole, Part, Pocket, Revolution
 from tactcad.parts.language.limits import FACES, Characteristic, Geometric, within
 from tactcad.parts.language.metric import METRIC, tapped_blind
-from tactcad.parts.language.stock import PLACE, STAINLESS
+from tactcad.parts.language.stock import PLACE, STAINLESS, bar_material, plate_material
 
 from . import cell_board
 from .cell_layout import PlanarLayout
-from .parts import SCREW, aluminium, milled, screw_places
+from .parts import SCREW, milled, screw_places
 
 PIN, CLAMP_SCREW = "3", "M3"
 THICK = 25.0  # mm, cradle: it stands on its sides
@@ -218,7 +219,7 @@ def array(rig: CradleLayout) -> Part:
         part_no=f"{d.name}-finished",
         name="Array, finished",
         process="reference",
-        material=aluminium(layout),
+        material=plate_material(d),
         body=Extrusion(outline, round(layout.pad_z - rig.seat, 9)),
         features=(Pocket("pads", (0, 0, 0), (0, 0, 1), (1, 0, 0), outline, d.post.stand_out, pads),),
         colour="#7c8794",
@@ -348,7 +349,7 @@ def cap(rig: CradleLayout) -> Part:
         part_no=f"{rig.layout.design.name}-cap",
         name="Calibration cap",
         process="turned",
-        material=aluminium(rig.layout),
+        material=bar_material(rig.layout.design),
         body=Revolution(rounded_polygon([Corner(p, 0.0, n) for p, n in points])),
         colour="#d8b45a",
         notes=(
@@ -413,11 +414,12 @@ def _sheet(
     ]
     outer = rounded_polygon([*corners, Corner((wide, end))])
     eye = Hole("eye", (0.0, round(low + 1.0 + EYE / 2.0, 9), 0.0), (0, 0, 1), EYE, SHEET, True)
+    d = rig.layout.design
     return Part(
-        part_no=f"{rig.layout.design.name}-{number}",
+        part_no=f"{d.name}-{number}",
         name=name,
         process="wire-cut",
-        material=aluminium(rig.layout),
+        material=replace(bar_material(d), standard=ALLOYS[d.plate_alloy].standard),
         body=Extrusion(outer, SHEET, (window,)),
         features=(eye,),
         colour="#b8c4d0",

@@ -213,6 +213,10 @@ class PlanarDesign(CommonTables):
         return tables | {"design": replace(own, title=title)}
 
     @property
+    def plate_alloy(self) -> str:
+        return self.housing.plate_alloy
+
+    @property
     def foil_tolerance(self) -> float:
         """Tolerance of the foil's thickness, mm."""
         stated = self.tolerance.thickness

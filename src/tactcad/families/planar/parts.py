@@ -17,7 +17,6 @@ from math import ceil
 from typing import Any, cast
 
 from tactcad.contour import Contour, Corner, circle, rectangle, rounded_polygon
-from tactcad.design.materials import ALLOYS
 from tactcad.parts.array.clamp import PRESS_FIT, pressed
 from tactcad.parts.array.element import sheet_material
 from tactcad.parts.bought.screws import CAP_SCREW_LENGTHS
@@ -34,7 +33,7 @@ from tactcad.parts.language.description import (
 )
 from tactcad.parts.language.limits import FACES, Characteristic, Geometric, within
 from tactcad.parts.language.metric import METRIC, tapped_through
-from tactcad.parts.language.stock import BREAK_EDGES, FRAME, FRAME_DATUMS, PLACE
+from tactcad.parts.language.stock import BREAK_EDGES, FRAME, FRAME_DATUMS, PLACE, plate_material
 
 from .cell_layout import Kind, PlanarLayout
 from .cell_tables import FoilProcess
@@ -337,12 +336,6 @@ def upper_spacer(layout: PlanarLayout) -> Part:
     return _spacer(layout, "upper", layout.upper_spacer, 0.03, False)
 
 
-def aluminium(layout: PlanarLayout) -> Material:
-    """Of what is milled, and of what may not be drawn by magnets."""
-    alloy = ALLOYS[layout.design.housing.plate_alloy]
-    return Material(alloy.name, alloy.density, standard=alloy.standard, magnetic=alloy.magnetic or "")
-
-
 def milled(
     layout: PlanarLayout,
     number: str,
@@ -361,7 +354,7 @@ def milled(
         part_no=f"{d.name}-{number}",
         name=name,
         process="milled",
-        material=aluminium(layout),
+        material=plate_material(d),
         body=body,
         features=tuple(features),
         colour="#7c8794",
