@@ -112,6 +112,19 @@ def test_coverage_of_every_cell(h, E, angle):
     assert np.median(half) < min(0.12, 1.3 * least(h, E, angle))
 
 
+def test_the_noise_is_that_of_the_readings():
+    """At all loads, and at every second one: its square is theirs on average, within four standard errors."""
+    rng = np.random.default_rng(4)
+    at, known = layers(DESIGN, "6", NU)[0], labs.calibration(ARRAY, K[READ], K_V[READ], rng)
+    sink = bench(6.0).sinks(0.5, K, rng.uniform(0, 0.02, len(K)), (0.004, -0.003), labs.LOAD)[READ]
+    for loads in (slice(None), slice(None, None, 2)):
+        signal = K_V[READ, None] * sink[:, loads]
+        signal = signal + labs.NOISE * rng.standard_normal((100, *signal.shape))
+        found = fit(at, NUMBER[READ], labs.LOAD[loads], signal, known)
+        error = (2 / found.dof.mean() / 100) ** 0.5
+        assert np.mean((found.noise / labs.NOISE) ** 2) == pytest.approx(1.0, abs=4 * error)
+
+
 def test_a_fit_ends_where_the_truth_costs_no_less():
     """Inclined by 5 degrees, soft, no. 5 unread: from a start with all free, one fit in ten ended with
     that pad

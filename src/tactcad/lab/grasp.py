@@ -42,7 +42,9 @@ SCHEMA = "tactcad-stiffness-1"
 STRAY = 1e-4  # probability, over all elements, below which an element is reported not to follow the others
 SWAPPED = 5.0  # times nearer to others' zeros than to its own, from which on a channel is swapped; chosen
 EXCHANGED = 10.0  # times widened interval from which on swapped channels are looked for: on a layer elements
-# disagree as well, and an exchange then makes them agree by chance, up to 3 times (80 labs, measured)
+# disagree as well, and an exchange then makes them agree by chance, up to 3 times (80 labs, measured). Of
+# four inclined by 4 degrees, one does at 10 times too: looked for among FEW elements and more.
+FEW = 6
 REVERSED = 0.1  # of the middle element's force, from which on one that falls is refused; chosen
 SURELY = 3.0  # standard errors below zero from which an element's force is reported to fall; chosen
 TOUCHES = 1e-3  # of the largest force on a pad, from which a pad counts as touching
@@ -188,7 +190,7 @@ def evaluate(
     everywhere = [at for group in limits.values() for at in group]
     pairs = tuple(_pair(slopes, everywhere, int(m), r, level) for m in others)
     combined, p, widened = combine(slopes, level)
-    if widened > EXCHANGED:
+    if widened > EXCHANGED and len(readings.element) >= FEW:
         _refuse_exchanged(readings, signal, calibration, terms, level)
     by_limits = tuple(
         (name, hull(combined, [combine(at, level)[0] for at in group])) for name, group in limits.items()

@@ -388,8 +388,10 @@ def _fit(
         gain = np.einsum("gi,gi->g", down_loose, _solve(N_loose, down_loose[..., None])[..., 0])
         quiet = cost - np.einsum("gi,ij,gj->g", q, weigh - loose, q) - gain
         inverse = _solve(N_loose, np.broadcast_to(np.eye(len(free)), N_loose.shape))
-        spent = len(free) - np.einsum("gij,ji->g", inverse, loose[free[:, None], free])
-        dof = np.maximum(count + len(load[touching]) - spent, 1.0)
+        # loads are met far better than their weight says: as readings they would make the noise too small
+        by_load = state[5][..., free] * load_weight**0.5
+        known = loose[free[:, None], free] + by_load.swapaxes(1, 2) @ by_load
+        dof = np.maximum(count - len(free) + np.einsum("gij,gji->g", inverse, known), 1.0)
         noise_now = noise * np.maximum(quiet, 1e-18 * count) ** 0.5 / dof**0.5
         noise, before_ = np.maximum(noise_now, least), noise
         if ((noise < 1.5 * before_) & (noise > before_ / 1.5)).all():

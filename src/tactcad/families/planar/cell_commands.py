@@ -18,7 +18,7 @@ from tactcad.lab.regression import require_level
 from tactcad.report.report import plain
 
 from .cell_calibration import calibrate as calibrate_cells
-from .cell_grasp import CellFields, CellForces, as_rows, by_neighbours, fields, forces, places
+from .cell_grasp import CellFields, CellForces, as_rows, by_neighbours, fields, forces, places, with_rest
 from .cell_layout import PlanarLayout
 from .cell_matrices import Matrices, read_matrices, to_csv, to_json, to_text
 from .cell_tables import PlanarDesign
@@ -94,7 +94,7 @@ def _evaluated(
             elements=len(layout.elements),
         )
         if layers:
-            whole = grasp.on_layers(whole, signals, springs, layers, args.level)
+            whole = grasp.on_layers(whole, with_rest(signals), springs, layers, args.level)
         whole = _with_limits(whole, float(known.stiffness_limit.max()))
     return CellGrasp(read, found, around, whole)
 

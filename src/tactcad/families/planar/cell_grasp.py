@@ -6,7 +6,7 @@ calibrated, its neighbours' magnets by the design. What bends is taken off in ro
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import inf
 from pathlib import Path
 
@@ -207,6 +207,17 @@ def as_rows(read: CellFields, found: CellForces, known: Matrices) -> tuple[Grasp
     )
     signal = found.force[..., 2] * per_newton[:, None]
     return GraspReadings(read.sample, read.element, read.load, read.run, signal, read.path), sensitivity
+
+
+def with_rest(readings: GraspReadings) -> GraspReadings:
+    """The same with the readings without load, from which all others are counted, in front."""
+    runs = np.unique(readings.run)
+    return replace(
+        readings,
+        load=np.concatenate([np.zeros(len(runs)), readings.load]),
+        run=np.concatenate([runs, readings.run]),
+        signal=np.pad(readings.signal, ((0, 0), (len(runs), 0))),
+    )
 
 
 def by_neighbours(
