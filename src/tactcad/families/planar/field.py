@@ -53,13 +53,14 @@ def field(magnet: Magnet, at: NDArray) -> NDArray:
 
 @lru_cache(maxsize=256)
 def pull(magnet: Magnet, away: tuple[float, float]) -> float:
-    """Force, N, of an equal magnet beside this one, its charges on this one's: those of one height repel, those
-    a height apart attract."""
+    """Force, N, of an equal magnet beside this one: charges of one height repel each other, those a height
+    apart attract."""
     x, y, area = _charges(magnet.radius)
     dx, dy = away[0] + np.subtract.outer(x, x), away[1] + np.subtract.outer(y, y)
     level = dx * dx + dy * dy
     across = level + magnet.height**2
-    weight = np.multiply.outer(area, area) * (1.0 / (level * np.sqrt(level)) - 1.0 / (across * np.sqrt(across)))
+    weight = np.multiply.outer(area, area)
+    weight *= 1.0 / (level * np.sqrt(level)) - 1.0 / (across * np.sqrt(across))
     charge = 1e-6 * magnet.remanence**2 / (4.0 * pi * MU0)
     return 2.0 * charge * float(np.hypot((weight * dx).sum(), (weight * dy).sum()))
 
