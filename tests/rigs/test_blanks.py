@@ -12,7 +12,7 @@ from variants import FACING_ROWS
 
 from tactcad.contour import rectangle
 from tactcad.export.dxf import dxf_bytes
-from tactcad.parts.language.description import Extrusion, Hole, Part
+from tactcad.parts.language.description import Extrusion, Hole, Material, Part
 from tactcad.parts.language.stock import STAINLESS_PLATE, cut_section, plate_material, stock_of
 from tactcad.parts.rules import load
 from tactcad.scenes import make_scene, scene_names
@@ -99,3 +99,10 @@ def test_a_material_is_ordered_by_the_standard_of_its_form(name):
         assert part.material.standard.startswith(bar if round_ else flat), part.part_no
         if part.process == "milled" and not round_:
             assert part.material.name.endswith("-T651")  # stretched: flat when one side is milled off
+
+
+def test_spring_steel_is_not_ordered_to_the_limits_of_hot_rolled_sheet():
+    """EN 10051 is of hot-rolled flat steel; 1.4310 is cold-rolled strip (EN 10151)."""
+    element = next(p for p in make_scene(load("macro-array"), "array").parts if p.kind == "element")
+    strip = replace(element, material=Material("1.4310-C1300", 7900, standard="EN 10151 (X10CrNi18-8)"))
+    assert [stock_of(p).standard for p in (element, strip)] == ["EN 485-4", ""]
