@@ -270,8 +270,8 @@ STEEL = "maraging-300-aged"
     [
         ("7075-T6", "a magnetic chuck does not hold it", "pits"),
         ("Ti-6Al-4V-annealed", "a magnetic chuck does not hold it", "discolours"),
-        ("1.4310-C1300", "a magnetic chuck does not hold it", "rusts"),
-        (STEEL, "on a magnetic chuck, demagnetised afterwards", "rusts"),
+        ("1.4310-C1300", "a magnetic chuck does not hold it", "corrodes"),
+        (STEEL, "on a magnetic chuck, demagnetised afterwards", "corrodes"),
     ],
 )
 def test_what_its_magnetism_and_metal_ask_of_the_shop_stands_in_the_notes(alloy, chuck, harm):

@@ -8,15 +8,15 @@ from dataclasses import replace
 
 import ezdxf
 import pytest
+from built import shape_of
 from variants import FACING_ROWS
 
 from tactcad.contour import rectangle
 from tactcad.export.dxf import dxf_bytes
-from tactcad.parts.language.description import Extrusion, Hole, Part
+from tactcad.parts.language.description import Extrusion, Hole, Material, Part
 from tactcad.parts.language.stock import STAINLESS_PLATE, cut_section, plate_material, stock_of
 from tactcad.parts.rules import load
 from tactcad.scenes import make_scene, scene_names
-from tactcad.solids.build import build
 from tactcad.solids.measure import bounding_box
 
 # mm, plus and minus: of rolled plate, written down again from EN 485-3 and EN 10051 as issued to a shop
@@ -71,7 +71,7 @@ def test_a_hole_is_dropped_for_what_it_is_and_not_for_its_text():
 @pytest.mark.cad
 def test_the_solid_lies_in_its_blank():
     part = parts_of("macro-array")["macro-array-carrier"]
-    low, high = bounding_box(build(part))
+    low, high = bounding_box(shape_of(part))
     x0, y0, x1, y1 = cut_section(part).outer.box
     assert (x0, y0) < (low[0] - 1.9, low[1] - 1.9) and (x1, y1) > (high[0] + 1.9, high[1] + 1.9)
 
@@ -99,3 +99,10 @@ def test_a_material_is_ordered_by_the_standard_of_its_form(name):
         assert part.material.standard.startswith(bar if round_ else flat), part.part_no
         if part.process == "milled" and not round_:
             assert part.material.name.endswith("-T651")  # stretched: flat when one side is milled off
+
+
+def test_spring_steel_is_not_ordered_to_the_limits_of_hot_rolled_sheet():
+    """EN 10051 is of hot-rolled flat steel; 1.4310 is cold-rolled strip (EN 10151)."""
+    element = next(p for p in make_scene(load("macro-array"), "array").parts if p.kind == "element")
+    strip = replace(element, material=Material("1.4310-C1300", 7900, standard="EN 10151 (X10CrNi18-8)"))
+    assert [stock_of(p).standard for p in (element, strip)] == ["EN 485-4", ""]

@@ -121,7 +121,7 @@ def _alloy(row: dict[str, str]) -> Alloy:
 ALLOYS = _table()
 # What the water of a wire-cutting machine does to a metal that its supply makes the anode; trade practice,
 # not measured. A supply without mean voltage (anti-electrolysis) prevents it.
-ELECTROLYSIS = {"aluminium": "pits", "titanium": "discolours", "steel": "rusts", "copper": "tarnishes"}
+ELECTROLYSIS = {"aluminium": "pits", "titanium": "discolours", "steel": "corrodes", "copper": "tarnishes"}
 
 
 def family(density: float) -> str:

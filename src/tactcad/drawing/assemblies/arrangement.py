@@ -51,7 +51,7 @@ APART = 11.0  # between views
 LEAST = 1 / 50  # scale: larger paper before a smaller scale
 AROUND = 20.0  # left of and above the views, for overall dimensions
 OVER_FACE, UNDER_PLAN = 14.0, 20.0  # for the dimensions of the sensing face, and two below each other
-LONGEST_ROW = 8  # elements named on the sheet
+LONGEST_ROW = 24  # elements named on the sheet: three lines of a note
 
 
 def arrangement(
@@ -193,7 +193,7 @@ def notes_of(design: CommonTables, scene: Scene) -> tuple[str, ...]:
         )
     placed = {p.designator: p for p in scene.placements}
     layout = family_of(design).layout(design)
-    for row, side in ((1, "+"), (2, "-")):  # of long rows the bill's designators alone say it
+    for row, side in ((1, "+"), (2, "-")):  # of longer rows the designators in the bill alone say it
         own = [p for p in layout.elements if p.row == row and p.designator in placed]
         if 0 < len(own) <= LONGEST_ROW:
             ys = [placed[p.designator].origin[1] for p in own]

@@ -60,7 +60,8 @@ EDGE = ((20.0, 2.0), (50.0, 3.0), (80.0, 5.0), (120.0, 7.0))
 # Over each finished face, mm; chosen: milled off, the skin and bow of a rolled plate of 200 mm; ground off
 # (and so before it is wire-cut), the skin alone.
 FACE = {"ground": 0.2, "milled": 0.5, "wire-cut": 0.2, "etched": 0.0}
-# Spring strip is rolled to any thickness up to this, mm: picked by the part's own limits; chosen.
+# Spring strip is rolled to any thickness up to this, mm: picked by the part's own limits; chosen. It is
+# cold-rolled: the table's limits, of hot-rolled steel, are not its own.
 STRIP, THICKEST_STRIP = "EN 10151", 1.0
 _SOLD = data_rows(__file__, "stock")
 
@@ -97,9 +98,10 @@ def stock_of(part: Part) -> FlatStock | None:
     sold = [
         (number(r["thickness"]), float(r["tolerance"]), r["standard"]) for r in _SOLD if r["metal"] == metal
     ]
-    if part.material.standard.startswith(STRIP) and t <= THICKEST_STRIP:
+    strip = part.material.standard.startswith(STRIP)
+    if strip and t <= THICKEST_STRIP:
         sold = []
-    standard = next((name for size, _, name in sold if size == t), None if sold else "")
+    standard = next(("" if strip else name for size, _, name in sold if size == t), None if sold else "")
     if part.by_contour and own and standard is not None:
         return FlatStock(t, own.lower, own.upper, standard, 0.0, 0.0)
     face, high = FACE[part.process], own.upper if own else t + general(t)
