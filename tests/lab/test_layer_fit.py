@@ -107,8 +107,8 @@ def test_coverage_of_every_cell(h, E, angle):
         f"h {h:g} E {E:g} angle {angle:g}: E {right[:, 0].mean():.3f}, pairs {np.nanmean(right[:, 1:]):.3f}, "
         f"median half-width {np.median(half):.3f}"
     )
-    # labs on one press share its heights and thickness: a share is known to some 1.5 %
-    assert 0.92 < right[:, 0].mean() < 0.99 and 0.92 < np.nanmean(right[:, 1:]) < 0.99
+    # labs on one press share its heights and thickness: a share is known to 0.5 %, by the presses' scatter
+    assert 0.93 < right[:, 0].mean() < 0.975 and 0.93 < np.nanmean(right[:, 1:]) < 0.985
     assert np.median(half) < min(0.12, 1.3 * least(h, E, angle))
 
 
@@ -129,9 +129,9 @@ def test_a_fit_ends_where_the_truth_costs_no_less():
         assert found.modulus[0, 1] < 0.3 < found.modulus[0, 2]
 
 
-def test_signals_without_noise_leave_about_what_is_allowed_for(monkeypatch):
-    """By single patches, 3 mm and 1 MPa, inclined by 5 degrees: more than the least noise where a whole row
-    lifts, and less than half of it else."""
+def test_signals_without_noise_leave_less_than_the_least_noise(monkeypatch):
+    """By single patches, 3 mm and 1 MPa, inclined by 5 degrees: nearly as much where a whole row lifts, less
+    than a third of it else."""
     least, rng, left = layer_fit.SHAPE, np.random.default_rng(3), []
     monkeypatch.setattr(layer_fit, "SHAPE", 1e-9)
     at = layer(NUMBER, PADS, DESIGN.tolerance.pad_height, NU, 3.0, 0.15)
@@ -142,7 +142,7 @@ def test_signals_without_noise_leave_about_what_is_allowed_for(monkeypatch):
         known = labs.calibration(ARRAY, K[READ], K_V[READ], rng, each=1e-5)
         found = fit(at, NUMBER[READ], labs.LOAD, signal[None], known)
         left.append(found.noise[0] / np.ptp(signal, axis=1).max())
-    assert least < left[0] < 1.5 * least and max(left[1:]) < 0.5 * least
+    assert 0.5 * least < left[0] < least and max(left[1:]) < least / 3
 
 
 def one_lab(slope=(0.0, 0.0), E=0.5, seed=1):
