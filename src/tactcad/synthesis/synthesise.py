@@ -223,9 +223,9 @@ def goal_of(target: Target, margin: float = 1.0) -> Goal:
         width = c.half_width
         if wanted is None or least in ("width", "tolerance"):
             return width
-        beyond = np.maximum(width * margin / (wanted / 100.0) - 1.0, 0.0)
+        kept = wanted / (100.0 * width * margin)  # below 1: too wide, which is nearer than a limit missed
         what = {"room": c.area / 1e4, "cut": c.cut / 1e4, "kinds": c.different}[least]
-        return np.where(beyond > 0.0, FAR * (1.0 + beyond), what + 1e-3 * width)
+        return np.where(kept < 1.0, FAR * (1.0 - kept / 2.0), what + 1e-3 * width)
 
     return goal
 
@@ -264,7 +264,7 @@ def attempt(
         now = time.perf_counter()
         if best and now > until:
             break
-        if margin < needed / CLOSE_ENOUGH:
+        if margin < min(needed / CLOSE_ENOUGH, planned[-1][0]):
             continue
         goal, start = goal_of(target, margin), near or (best.found if best else None)
         end = now + (until - now) * (1.0 if len(planned) == 1 else EACH)
@@ -281,7 +281,8 @@ def attempt(
         this = Synthesis(target, chosen, wanted, made, met)
         if best is None or _worth(this) > _worth(best):
             best = this
-        if met or (not chosen.accepted and target.target.least != "tolerance"):
+        too_wide = len(planned) > 1 and chosen.goal >= FAR / 2.0
+        if met or ((not chosen.accepted or too_wide) and target.target.least != "tolerance"):
             break
         needed = _margin(made, chosen, target.target.share)
     assert best is not None
