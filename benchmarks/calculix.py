@@ -129,6 +129,17 @@ def _swept(mesh: PlaneMesh, across: AcrossSpace) -> Array:
     return cells.reshape(-1, 3, 3, 3, 3)
 
 
+def bricks(shape: tuple[int, ...]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Of a grid of that many corners and middles of edges each way: the nodes that are used, and 20-node
+    bricks of these, (n, 20), in CalculiX's order."""
+    corner = np.meshgrid(*(np.arange(0, n - 2, 2) for n in shape), indexing="ij")
+    first = np.ravel_multi_index([c.ravel() for c in corner], shape)
+    used, cells = np.unique(
+        first[:, None] + np.array(_BRICK) @ (shape[1] * shape[2], shape[2], 1), return_inverse=True
+    )
+    return used, cells.reshape(-1, len(_BRICK))
+
+
 def _turned(points: Array, cells: NDArray[np.int64], flipped: list[int]) -> NDArray[np.int64]:
     """Cells with those that run clockwise in (x, z) reversed: CalculiX requires positive volumes."""
     a, b, d = (points[cells[:, i], :2] for i in (0, 1, 3))
@@ -250,23 +261,90 @@ def punch_force(mesh: MeshQuad, body: Body, radius: float, depth: float, path: P
     lines += [f"{i}, {x:.12g}, {y:.12g}, 0." for i, (x, y) in enumerate(points, 1)]
     lines.append("*ELEMENT, TYPE=CAX8R, ELSET=BODY")
     lines += [f"{i}, " + ", ".join(str(n + 1) for n in cell) for i, cell in enumerate(nodes, 1)]
-    shear, bulk = body.modulus / (2 * (1 + body.poisson)), body.modulus / (3 * (1 - 2 * body.poisson))
-    lines += ["*MATERIAL, NAME=SOFT", "*HYPERELASTIC, NEO HOOKE", f"{shear / 2:.12g}, {2 / bulk:.12g}"]
-    lines += ["*SOLID SECTION, ELSET=BODY, MATERIAL=SOFT", "*BOUNDARY"]
+    lines += _soft(body)
     under, bottom = np.flatnonzero((z > -1e-9) & (r < radius + 1e-9)), np.flatnonzero(z < z.min() + 1e-9)
     lines += [f"{n + 1}, 1, 2, 0." for n in bottom]
     lines += [f"{n + 1}, 1, 1, 0." for n in np.union1d(np.flatnonzero(r < 1e-9), under)]
     lines += ["*NSET, NSET=PUNCHED", *(f"{n + 1}," for n in under)]
     lines += ["*STEP, NLGEOM, INC=200", "*STATIC", "0.05, 1., 1e-4, 0.1", "*BOUNDARY"]
     lines += [f"{n + 1}, 2, 2, {-depth:.12g}" for n in under]
-    lines += ["*NODE PRINT, NSET=PUNCHED, TOTALS=ONLY, FREQUENCY=1000", "RF", "*END STEP", ""]
-    path.write_text("\n".join(lines), "ascii")
+    return -180 * float(_pushed(path, lines)[1])  # ccx solves a wedge of two degrees
+
+
+def pad_force(
+    lines: Sequence[Array],
+    body: Body,
+    x: tuple[float, float],
+    y: tuple[float, float],
+    depth: float,
+    fall: float,
+    path: Path,
+) -> float:
+    """Force (N) on the part inside the mesh of a rigid pad, under which the face does not slide, on a bonded
+    neo-Hookean layer: C3D20R, finite strain. A mesh that begins at x = 0 or y = 0 is mirrored there.
+
+    Parameters
+    ----------
+    lines
+        Planes between bricks along x, y and z, rising; z from the base to the face at 0, mm.
+    body
+        The layer.
+    x, y
+        From where to where the pad reaches, mm.
+    depth
+        To which the pad's middle is pressed, mm.
+    fall
+        By which its right edge is deeper than its middle, mm.
+    path
+        Of the input file.
+    """
+    nodes = [np.interp(np.arange(2 * len(v) - 1) / 2.0, np.arange(len(v)), v) for v in lines]
+    used, cells = bricks(tuple(len(v) for v in nodes))
+    px, py, pz = np.stack(np.meshgrid(*nodes, indexing="ij")).reshape(3, -1)[:, used]
+    text = ["*NODE, NSET=ALL"]
+    text += [f"{i}, {u:.12g}, {v:.12g}, {w:.12g}" for i, (u, v, w) in enumerate(zip(px, py, pz), 1)]
+    text += ["*ELEMENT, TYPE=C3D20R, ELSET=BODY", *element_lines(cells), *_soft(body)]
+    on = (pz > -1e-9) & (px > x[0] - 1e-9) & (px < x[1] + 1e-9) & (py > y[0] - 1e-9) & (py < y[1] + 1e-9)
+    under, free = np.flatnonzero(on), ~on & (pz > pz.min() + 1e-9)
+    text += [f"{n + 1}, 1, 3, 0." for n in np.flatnonzero(pz < pz.min() + 1e-9)]
+    text += [f"{n + 1}, 1, 2, 0." for n in under]
+    for i, at in ((1, px), (2, py)):
+        if at.min() == 0.0:
+            text += [f"{n + 1}, {i}, {i}, 0." for n in np.flatnonzero(free & (at < 1e-9))]
+    text += ["*NSET, NSET=PUNCHED", *(f"{n + 1}," for n in under)]
+    text += ["*STEP, NLGEOM, INC=200", "*STATIC", "0.1, 1., 1e-4, 0.2", "*BOUNDARY"]
+    down = depth + fall * (px[under] - sum(x) / 2.0) / (np.ptp(x) / 2.0)
+    text += [f"{n + 1}, 3, 3, {-d:.12g}" for n, d in zip(under, down)]
+    return -float(_pushed(path, text)[2])
+
+
+def element_lines(cells: NDArray[np.int64]) -> Iterator[str]:
+    """Lines of 20-node bricks."""
+    for i, cell in enumerate(cells, 1):
+        names = [str(n + 1) for n in cell]
+        yield from (f"{i}, " + ", ".join(names[:9]) + ",", ", ".join(names[9:]))
+
+
+def _soft(body: Body) -> list[str]:
+    """The neo-Hookean material of all elements."""
+    shear, bulk = body.modulus / (2 * (1 + body.poisson)), body.modulus / (3 * (1 - 2 * body.poisson))
+    return [
+        "*MATERIAL, NAME=SOFT",
+        "*HYPERELASTIC, NEO HOOKE",
+        f"{shear / 2:.12g}, {2 / bulk:.12g}",
+        "*SOLID SECTION, ELSET=BODY, MATERIAL=SOFT",
+        "*BOUNDARY",
+    ]
+
+
+def _pushed(path: Path, lines: list[str]) -> Array:
+    """The punched nodes' total force at the end of the step that lines of input end with, N."""
+    asked = ["*NODE PRINT, NSET=PUNCHED, TOTALS=ONLY, FREQUENCY=1000", "RF", "*END STEP", ""]
+    path.write_text("\n".join([*lines, *asked]), "ascii")
     job = path.with_suffix("")
     subprocess.run([executable() or "ccx", "-i", job.name], cwd=path.parent, check=True, capture_output=True)
-    last = [line.split() for line in job.with_suffix(".dat").read_text("ascii").splitlines() if line.strip()][
-        -1
-    ]
-    return -180 * float(last[1])  # ccx solves a wedge of two degrees
+    rows = [line.split() for line in job.with_suffix(".dat").read_text("ascii").splitlines() if line.strip()]
+    return np.array(rows[-1], dtype=float)
 
 
 def _displacements(path: Path, shape: tuple[int, int]) -> Array:

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import numpy as np
 from scipy.sparse.linalg import splu
-from skfem import Basis, ElementQuad2, MeshQuad
+from skfem import MeshQuad
 
 from tactcad.contact.elastic_body import Body
 from tactcad.contact.large_strain import ACROSS, EDGE, FREE_SIDE, MOST_CORRECTIONS, _Rings
@@ -32,24 +32,8 @@ class Strip(_Rings):
         side = lines_over_pad(1.0, 1.0 + FREE_SIDE * h, ACROSS, EDGE)
         z = np.concatenate([[0.0], outward(0.0, side[ACROSS] - side[ACROSS - 1], h)])
         mesh = MeshQuad.init_tensor(np.concatenate([-side[:0:-1], side]), -z[::-1])
-        basis = self.basis = Basis(mesh, ElementQuad2(), intorder=5)
-        E, nu = body.modulus, body.poisson
-        self.mu, self.kappa = E / (2 * (1 + nu)), E / (3 * (1 - 2 * nu))
-        at = np.asarray(basis.global_coordinates())
-        self.volume = np.array(basis.dx)
-        middle = (at.max(2) + at.min(2))[:, :, None] / 2
-        self.linear = np.concatenate(
-            [np.ones((1, *at.shape[1:])), (at - middle) / np.ptp(at, axis=2)[:, :, None]]
-        )
-        self.mass = np.einsum("peq,req,eq->epr", self.linear, self.linear, self.volume)
-        self.B = np.zeros((*basis.dx.shape, 5, 2 * basis.Nbfun))
-        for n, field in enumerate(basis.basis):
-            slope = np.broadcast_to(field[0].grad, (2, *basis.dx.shape))
-            self.B[:, :, 0, 2 * n], self.B[:, :, 1, 2 * n] = slope
-            self.B[:, :, 2, 2 * n + 1], self.B[:, :, 3, 2 * n + 1] = slope
-        self.dofs = (2 * basis.element_dofs.T[:, :, None] + np.arange(2)).reshape(len(basis.dx), -1)
-        self.rows, self.columns = np.broadcast_arrays(self.dofs[:, :, None], self.dofs[:, None, :])
-        x, z = basis.doflocs
+        self.lay(body, mesh, turned=False)
+        x, z = self.basis.doflocs
         self.punched = np.flatnonzero((z > -1e-9) & (np.abs(x) < 1 + 1e-9))
         bottom = np.flatnonzero(z < -h + 1e-9)
         self.held = np.concatenate([2 * bottom, 2 * bottom + 1])

@@ -25,6 +25,11 @@ def own(part_no: str = "own") -> tc.Part:
     return tc.Part(part_no, "Cover", "milled", tc.Material("6061-T6", 2700), SQUARE)
 
 
+def drilled(**wrong):
+    hole = {"at": (1, 1, 3), "axis": (0, 0, -1), "diameter": 2.0, "depth": 3.0, "through": True} | wrong
+    return replace(own(), features=(tc.Hole("mount", **hole),))
+
+
 def test_loading_a_design_loads_neither_numpy_nor_the_kernel():
     script = "import tactcad as tc, sys; tc.load('macro-array'); print(*sys.modules)"
     done = subprocess.run(
@@ -86,6 +91,27 @@ def test_what_follows_from_a_value_follows_it():
         (lambda d: d.scene("array").add(replace(own(), material="6061-T6")), "a tc.Material"),
         (lambda d: d.scene("array").add(replace(own(), body=replace(SQUARE, outer=3))), "part.body"),
         (lambda d: d.scene("array").add(replace(own(), body=replace(SQUARE, thickness=-1))), "part.body"),
+        (lambda d: d.scene("array").add(drilled(at=(1, 2))), "part.features: not usable.*a list of tc.Hole"),
+        (lambda d: d.scene("array").add(drilled(axis=(0, 0, -2))), "unit axis"),
+        (lambda d: d.scene("array").add(drilled(diameter="3")), "sizes above 0"),
+        (lambda d: d.scene("array").add(drilled(depth=0.0)), "sizes above 0"),
+        (lambda d: d.scene("array").add(drilled(thread="X9")), "thread as M3"),
+        (lambda d: d.scene("array").add(replace(own(), features="hole")), "part.features"),
+        (lambda d: d.scene("array").add(replace(own(), material=tc.Material("a", "b"))), "part.material"),
+        (lambda d: d.scene("array").add(replace(own(), body=replace(SQUARE, thickness="3"))), "part.body"),
+        (lambda d: d.scene("array").check("array"), r"check: too many .*; legal: check\(\)"),
+        (lambda d: d.estimate(forc=1), r"'forc'; legal: estimate\(model='solid', force=None\)"),
+        (lambda d: d.export("out", drawings="maybe"), "drawings: not a yes or no; found 'maybe'"),
+        (lambda d: d.estimate()["K"], "records by number"),
+        (lambda d: tc.rectangle("a"), r"missing .*'y0'; legal: rectangle\(x0, y0, x1, y1\)"),
+        (lambda d: tc.rectangle(0, 0, 1, "a"), "y1: not a number; found 'a'; legal: a length in mm"),
+        (lambda d: tc.rectangle(0, 0, 1, float("inf")), "y1: not a number"),
+        (lambda d: tc.rectangle(1, 0, 0, 1), "no area; .*x0 < x1"),
+        (lambda d: tc.circle(3, 1.0), r"centre: not a place; found 3; legal: \(x, y\) in mm"),
+        (lambda d: tc.circle((0, 0), 0), "diameter: not a size; found 0; legal: above 0 mm"),
+        (lambda d: tc.stiffness("none.csv", d), "calibration: not a path"),
+        (lambda d: tc.calibrate(None), "file: not a path"),
+        (lambda d: tc.design(5), "target: not a path"),
         (lambda d: d.scene(None), "no scene None"),
         (lambda d: d.with_(3), "not fields and values"),
         (lambda d: d.with_({3: 4}), "3: unknown field"),

@@ -15,19 +15,31 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from .contour import circle, rectangle
     from .design.messages import CheckFailure, InputError
-    from .face import LoadedDesign, OpenScene, Reply, calibrate, design, designs, load, new, stiffness
+    from .face import (
+        LoadedDesign,
+        OpenScene,
+        Reply,
+        calibrate,
+        circle,
+        design,
+        designs,
+        load,
+        new,
+        rectangle,
+        stiffness,
+    )
     from .parts.language.description import Extrusion, Hole, Material, Part
 
 __version__ = "0.1.0"
 
 # By name the module that has it. `design` is the room of that name, which is called like a function.
 _PLACES = {
-    **dict.fromkeys(("load", "designs", "new", "calibrate", "stiffness"), "tactcad.face"),
+    **dict.fromkeys(
+        ("load", "designs", "new", "calibrate", "stiffness", "rectangle", "circle"), "tactcad.face"
+    ),
     **dict.fromkeys(("Reply", "LoadedDesign", "OpenScene"), "tactcad.face"),
     **dict.fromkeys(("Part", "Extrusion", "Hole", "Material"), "tactcad.parts.language.description"),
-    **dict.fromkeys(("rectangle", "circle"), "tactcad.contour"),
     **dict.fromkeys(("InputError", "CheckFailure"), "tactcad.design.messages"),
 }
 __all__ = [

@@ -10,12 +10,14 @@ import io
 import json
 import re
 import tempfile
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import redirect_stdout
 from dataclasses import asdict, dataclass, field, is_dataclass, replace
 from functools import wraps
 from html import escape
-from math import isfinite, nan
+from inspect import Parameter, signature
+from math import hypot, inf, isfinite, nan
+from numbers import Real
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar, get_args
 
@@ -28,6 +30,7 @@ from tactcad.design.messages import CheckFailure, InputError, did_you_mean, in_b
 from tactcad.design.text_values import parse_toml
 
 if TYPE_CHECKING:
+    from tactcad.contour import Contour
     from tactcad.design.tree import CommonTables
     from tactcad.parts.language.description import Part
     from tactcad.review.show import ShownPage
@@ -42,10 +45,18 @@ ESTIMATE = ("value", "estimate", "low", "high")
 
 
 def _in_our_words(ask: Callable[Asked, Given]) -> Callable[Asked, Given]:
-    """The function; a library of an extra that is not installed is refused as commands do."""
+    """The function; missing or unknown arguments, and a library of an extra that is not installed, are
+    refused as commands do."""
+    taken = signature(ask)
+    shown = [p.replace(annotation=Parameter.empty) for p in taken.parameters.values() if p.name != "self"]
 
     @wraps(ask)
     def asked(*args: Asked.args, **named: Asked.kwargs) -> Given:
+        try:
+            taken.bind(*args, **named)
+        except TypeError as error:
+            legal = f"{ask.__name__}{taken.replace(parameters=shown, return_annotation=taken.empty)}"
+            raise InputError(ask.__name__, str(error), legal=legal) from None
         try:
             return ask(*args, **named)
         except ImportError as error:
@@ -73,6 +84,8 @@ class Reply(Sequence[Any]):
         return len(self.records)
 
     def __getitem__(self, place: Any) -> Any:
+        if isinstance(place, str):
+            raise InputError(place, "a reply has records by number", legal="[0]; to_frame() has columns")
         return self.records[place]
 
     def to_dict(self) -> dict[str, Any]:
@@ -282,6 +295,9 @@ class LoadedDesign:
         from tactcad.export.pipeline import export
         from tactcad.scenes.scene import REST
 
+        for where, wish in (("drawings", drawings), ("guide", guide)):
+            if not isinstance(wish, bool):
+                raise InputError(where, "not a yes or no", value=wish, legal="True or False")
         options = ExportOptions(self._scenes(scenes), REST, guide, "full", drawings)
         done = export(self.design, options, _path_of(folder, "export"), Quiet())
         files = read_export(str(folder), Path(folder)).files
@@ -302,6 +318,7 @@ class LoadedDesign:
         (name,) = self._scenes((name,))
         return OpenScene(self, name)
 
+    @_in_our_words
     def save(self, file: str | Path) -> Path:
         """Write the design as a new design file; one that is there is never written over."""
         path = _path_of(file, "save")
@@ -420,35 +437,68 @@ class OpenScene:
         self.of.added.append(new)
         return self
 
-    def export(self, folder: str | Path, **options: Any) -> Reply:
+    @_in_our_words
+    def export(self, folder: str | Path, drawings: bool = False, guide: bool = False) -> Reply:
         """As `LoadedDesign.export`, of this scene."""
-        return self.of.export(folder, self.name, **options)
+        return self.of.export(folder, self.name, drawings=drawings, guide=guide)
 
+    @_in_our_words
     def check(self) -> Reply:
         """As `LoadedDesign.check`, of this scene."""
         return self.of.check(self.name)
 
+    @_in_our_words
     def show(self) -> ShownPage:
         """As `LoadedDesign.show`, of this scene."""
         return self.of.show(self.name)
 
 
+def _number(value: Any, least: float = -inf) -> bool:
+    return isinstance(value, Real) and not isinstance(value, bool) and least < float(value) < inf
+
+
+def _place(value: Any, axes: int = 3) -> bool:
+    return isinstance(value, Iterable) and len(values := [*value]) == axes and all(map(_number, values))
+
+
 def _refuse_wrong(part: Part) -> None:
     """Raises InputError if a part holds what no file can."""
     from tactcad.contour import Contour
-    from tactcad.parts.language.description import Extrusion, Material, ModelFile, Process, Revolution
+    from tactcad.parts.language.description import (
+        Extrusion,
+        Hole,
+        Material,
+        ModelFile,
+        Pocket,
+        Process,
+        Revolution,
+    )
+
+    def drilled(feature: Any) -> bool:
+        f = feature
+        sizes = _number(f.diameter, 0) and _number(f.depth, 0) and _number(f.thread_depth, -1)
+        unit = _place(f.at) and _place(f.axis) and abs(hypot(*f.axis) - 1) < 1e-6
+        return sizes and unit and re.fullmatch(r"(M\d+(\.\d+)?)?", str(f.thread)) is not None
 
     body, processes = part.body, get_args(Process)
     cut = (body.outer, *body.openings) if isinstance(body, Extrusion) else ()
     whole = isinstance(body, Extrusion | Revolution | ModelFile) and all(isinstance(c, Contour) for c in cut)
-    dense = isinstance(part.material, Material) and isfinite(part.material.density)
+    whole = whole and _number(getattr(body, "thickness", 1), 0)
+    features = isinstance(part.features, Sequence) and all(
+        drilled(f) if isinstance(f, Hole) else isinstance(f, Pocket) for f in part.features
+    )
+    dense = isinstance(part.material, Material) and _number(part.material.density, 0)
     number = re.fullmatch("[A-Za-z0-9][A-Za-z0-9_.-]{0,79}", str(part.part_no))
     good = {
         "part_no": (number, "letters, digits, _.-"),
         "name": (isinstance(part.name, str) and part.name, "a line of text"),
         "process": (part.process in processes, f"one of {', '.join(processes)}"),
-        "material": (dense and part.material.density > 0, "a tc.Material of a density above 0 kg/m3"),
-        "body": (whole and min(part.volume, getattr(body, "thickness", 1)) > 0, "a tc.Extrusion above 0 mm3"),
+        "material": (dense, "a tc.Material of a density above 0 kg/m3"),
+        "features": (
+            features,
+            "a list of tc.Hole: at and unit axis as x, y, z; sizes above 0 mm; thread as M3",
+        ),
+        "body": (whole and features and part.volume > 0, "a tc.Extrusion above 0 mm3"),
     }
     for name, (fits, legal) in good.items():
         if not fits:
@@ -519,11 +569,13 @@ def load(source: str | Path = DEFAULT_DESIGN) -> LoadedDesign:
     return LoadedDesign(parse_toml(text, str(path)), str(source), text=text)
 
 
+@_in_our_words
 def designs() -> list[str]:
     """Names that `load` takes."""
     return names()
 
 
+@_in_our_words
 def new(source: str = DEFAULT_DESIGN, name: str = "my-sensor") -> LoadedDesign:
     """A design of one's own, started from another; `save(FILE)` writes it."""
     from datetime import date
@@ -533,12 +585,40 @@ def new(source: str = DEFAULT_DESIGN, name: str = "my-sensor") -> LoadedDesign:
 
 
 @_in_our_words
+def rectangle(x0: float, y0: float, x1: float, y1: float) -> Contour:
+    """A rectangle with the corners (x0, y0) and (x1, y1), mm."""
+    from tactcad.contour import rectangle
+
+    sides = {"x0": x0, "y0": y0, "x1": x1, "y1": y1}
+    for where, value in sides.items():
+        if not _number(value):
+            raise InputError(where, "not a number", value=value, legal="a length in mm")
+    if not (x0 < x1 and y0 < y1):
+        raise InputError("rectangle", "no area", value=tuple(sides.values()), legal="x0 < x1 and y0 < y1")
+    return rectangle(x0, y0, x1, y1)
+
+
+@_in_our_words
+def circle(centre: Sequence[float], diameter: float) -> Contour:
+    """A circle about its centre (x, y), mm."""
+    from tactcad.contour import circle
+
+    if not _place(centre, 2):
+        raise InputError("centre", "not a place", value=centre, legal="(x, y) in mm")
+    if not _number(diameter, 0):
+        raise InputError("diameter", "not a size", value=diameter, legal="above 0 mm")
+    x, y = centre
+    return circle((x, y), diameter)
+
+
+@_in_our_words
 def design(target: str | Path, **options: Any) -> Reply:
     """From a target file to the design that feels it; options are those of `tactcad design`, as
     `within="1%"`.
 
     The result's records are the designs found: one, or none.
     """
+    _path_of(target, "target")
     with tempfile.TemporaryDirectory() as folder:
         out = Path(folder) / "found"
         whole = _command("design", target, out=out, **{"best": True} | options)
@@ -553,7 +633,7 @@ def design(target: str | Path, **options: Any) -> Reply:
 def calibrate(file: str | Path, **options: Any) -> Reply:
     """Readings to stiffness and sensitivity, with intervals; options are those of `tactcad calibrate`, as
     `load_cell="57.04+-1"`."""
-    whole = _command("calibrate", file, **options)
+    whole = _command("calibrate", _path_of(file, "file"), **options)
     return Reply(f"calibration of {Path(file).name}", tuple(map(_estimates, whole["elements"])), whole)
 
 
@@ -566,7 +646,8 @@ def stiffness(file: str | Path, calibration: str | Path | Reply, **options: Any)
             kept = Path(folder) / "calibration.json"
             kept.write_text(json.dumps(calibration.to_dict()), "utf-8")
             calibration = kept
-        whole = _command("stiffness", file, calibration=calibration, **options)
+        given = _path_of(calibration, "calibration")
+        whole = _command("stiffness", _path_of(file, "file"), calibration=given, **options)
     return Reply(f"object of {Path(file).name}", tuple(map(_estimates, whole["samples"])), whole)
 
 

@@ -16,9 +16,11 @@ from tactcad.export.board_files import nets_in_board
 from tactcad.families.planar import cell_board
 from tactcad.families.planar.cell_layout import PlanarLayout
 from tactcad.families.planar.checks import check_board
+from tactcad.families.planar.parts import frame
 from tactcad.parts.rules import load
 from tactcad.scenes import make_scene
 
+SCREWED = {"joint": "screwed", "border": 8.2, "side": 5.8}
 DESIGNS = Path(__file__).parents[2] / "hardware"
 
 
@@ -45,6 +47,33 @@ def board():
 def test_kicad_finds_nothing(board, tmp_path):
     needs_kicad()
     checked(board, tmp_path)
+
+
+def test_kicad_finds_nothing_on_the_jaws_board(tmp_path):
+    needs_kicad()
+    checked(laid_out(name="jaw"), tmp_path)
+
+
+CLOSE_BOARDS = [  # rows, columns, pitch, buses, border, side
+    (1, 1, 4.0, 1, 5.7, 1.2), (1, 1, 7.9, 1, 4.6, 4.4), (4, 8, 4.0, 2, 1.9, 1.1), (3, 8, 4.0, 3, 7.4, 5.9),
+    (3, 1, 4.0, 3, 9.8, 1.2), (2, 1, 5.3, 2, 7.4, 6.0), (1, 7, 4.58, 1, 2.6, 2.1), (2, 2, 4.0, 1, 6.6, 4.6),
+    (3, 3, 4.55, 2, 8.1, 5.6), (4, 2, 7.42, 1, 4.9, 5.7), (4, 5, 6.6, 2, 4.5, 4.5), (2, 6, 6.19, 2, 3.7, 3.7),
+    (4, 7, 7.23, 2, 7.9, 5.8), (2, 8, 4.05, 1, 2.0, 1.2), (4, 4, 4.8, 2, 2.2, 5.4), (3, 5, 5.0, 3, 4.4, 2.2),
+]  # fmt: skip
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("values", CLOSE_BOARDS)
+def test_kicad_finds_nothing_on_boards_of_a_small_pitch(values, tmp_path):
+    """One to four rows, one to eight columns, one bus to three; screwed where screws find room."""
+    needs_kicad()
+    rows, columns, pitch, buses, border, side = values
+    joint = "screwed" if border >= 6.6 and side >= 4.6 else "bonded"
+    housing = {"joint": joint, "border": border, "side": side}
+    checked(
+        laid_out(name="jaw", rows=rows, columns=columns, pitch=pitch, hall={"buses": buses}, housing=housing),
+        tmp_path,
+    )
 
 
 @pytest.mark.slow
@@ -82,21 +111,36 @@ def test_a_chip_lies_below_every_magnet_and_the_board_takes_the_screws(board):
     assert (max(xs) - min(xs), max(ys) - min(ys)) == pytest.approx((board.width, board.height))
 
 
-@pytest.mark.parametrize("changes", [{}, {"rows": 1, "columns": 7, "pitch": 10.7, "hall": {"buses": 2}}])
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {},
+        {"rows": 1, "columns": 7, "pitch": 10.7, "hall": {"buses": 2}},
+        {"name": "jaw"},
+        {"rows": 2, "pitch": 7.0, "hall": {"buses": 1}},
+    ],
+)
 def test_no_bare_or_upper_copper_lies_under_the_metal_frame(changes):
-    """Vias and upper tracks keep inside the room that the frame leaves around the chips, or on the tongue."""
+    """Vias, pads and upper tracks keep inside the frame's opening, or lie on the tongue."""
     changes = changes | {"housing": {"joint": "bonded"}} if changes else changes
     layout, board = PlanarLayout(design(**changes)), laid_out(**changes)
-    (hx, hy), (x, y) = layout.half, layout.field_half
-    places = [v.at for v in board.vias] + [
-        p for t in board.tracks if t.layer == "F.Cu" for p in (t.start, t.end)
+    hx, hy = layout.half
+    (opening,) = frame(layout).extrusion.openings
+    x, y = (max(at) for at in zip(*(segment.start for segment in opening.segments)))
+    places = [(v.at, 0.3, 0.3) for v in board.vias]
+    places += [(at, *(size / 2 for size in placed.size(pad))) for placed, pad, at, _ in board.pads]
+    places += [
+        (p, t.width / 2, t.width / 2) for t in board.tracks if t.layer == "F.Cu" for p in (t.start, t.end)
     ]
-    for u, v in places:
-        assert v > 2 * hy or (abs(u - hx) + 0.3 <= x + 1e-9 and abs(v - hy) + 0.3 <= y + 1e-9)
+    for (u, v), w, h in places:
+        assert v > 2 * hy or (abs(u - hx) + w <= x + 1e-9 and abs(v - hy) + h <= y + 1e-9)
+    assert hx - x > 0.79 and hy - y > 0.79
 
 
-def test_no_two_chips_of_a_bus_share_an_address(board):
+@pytest.mark.parametrize("name", ["planar", "jaw"])
+def test_no_two_chips_of_a_bus_share_an_address(name):
     """Read off KiCad's file: first address by the order code, plus A0, plus twice A1, tied to the supply."""
+    board, chips = laid_out(name=name), len(PlanarLayout(design(name)).elements)
     text = board_bytes(board, "NAME A", "title", "2026-01-01", "A")
     nets = {pin: net for net, pins in nets_in_board(text).items() for pin in pins}
     first = {"011": 0x0C, "012": 0x10, "013": 0x14, "014": 0x18}
@@ -109,7 +153,7 @@ def test_no_two_chips_of_a_bus_share_an_address(board):
         assert at == int(said, 16)
         assert nets[name, "3"].removeprefix("SCL") == nets[name, "5"].removeprefix("SDA")
         found[nets[name, "5"], at] += 1
-    assert len(values) == 36 and set(found.values()) == {1}
+    assert len(values) == chips and set(found.values()) == {1}
 
 
 def test_the_bill_counts_what_is_fitted(board):
@@ -125,7 +169,15 @@ def test_the_bill_counts_what_is_fitted(board):
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
-        ({"name": "jaw"}, "the chips are 4 mm apart"),
+        ({"name": "jaw", "pitch": 3.9}, "the chips are 3.9 mm apart"),
+        ({"name": "jaw", "hall": {"buses": 3}}, "2 of 3 hall.buses are used"),
+        ({"name": "jaw", "columns": 9}, "more than 16 chips would share one"),
+        ({"name": "jaw", "housing": {"side": 1.0}}, "under the metal frame: a wider"),
+        ({"name": "jaw", "columns": 1}, "wider than the board"),
+        (
+            {"name": "jaw", "rows": 6, "columns": 2, "pitch": 7.35, "hall": {"buses": 2}, "housing": SCREWED},
+            "a screw's head",
+        ),
         ({"hall": {"chip": "TMAG5273A2"}}, "pins of TMAG5273A2 are unknown"),
         ({"hall": {"buses": 4}}, "at most 3 buses pass"),
         ({"rows": 1, "hall": {"buses": 3}, "housing": {"joint": "bonded"}}, "on 3 buses, at most 2"),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import os
 import shutil
 import subprocess
 import sys
@@ -58,6 +59,7 @@ def test_completion_offers_what_the_parser_takes():
     assert candidates(["estimate", "--model", "fem"]) == ["fem-plane", "fem-solid"]
     assert candidates(["diff", "HEAD", ".", "macro"]) == ["macro-array"]
     assert candidates(["calibrate", "x.csv", "--design", "soft"]) == ["soft-tissue"]
+    assert candidates(["-q", "ex"]) == ["export"]  # as before the command
     assert candidates(["calibrate", "x.csv", "--out", ""]) == []  # a file: the shell's own completion
 
 
@@ -72,16 +74,54 @@ def test_completion_scripts_are_sound(shell, capsys):
     assert (done.returncode, done.stderr) == (0, "")
 
 
-def test_bash_completes_a_command(tmp_path, capsys):
-    main(["completion", "bash"])
+# What a shell makes of each line when Tab is pressed, a line each to the file `typed`.
+TYPED = {
+    "bash": """
+while read -r line; do
+    COMP_WORDS=($line); COMP_CWORD=$((${#COMP_WORDS[@]} - 1)); COMPREPLY=(); _tactcad
+    last=${COMP_WORDS[COMP_CWORD]}
+    echo "${line%$last}${COMPREPLY[*]:-$(compgen -f -- $last)}" >> typed
+done <<< "$LINES_TYPED"
+""",
+    "fish": """
+for line in (string split \\n $LINES_TYPED)
+    set -l before (string replace -r '\\S+$' '' $line)
+    echo $before(complete -C $line) >> typed
+end""",
+    "zsh": """
+zmodload zsh/zpty
+zpty typing zsh -f -i
+zpty -w typing 'autoload -Uz compinit; compinit -u -D; source script; zle -N show; bindkey "^T" show'
+zpty -w typing 'show() { zle complete-word; print -r -- ${BUFFER% } >> typed; BUFFER= }'
+for line in ${(f)LINES_TYPED}; zpty -w -n typing $line$'\\x14'
+zpty -w typing $'\\nexit'
+while zpty -r typing; do :; done > /dev/null""",
+}
+
+
+@pytest.mark.parametrize("shell", TYPED)
+def test_a_shell_completes_commands_options_values_and_files(shell, tmp_path, capsys):
+    if not shutil.which(shell):
+        pytest.skip(f"no {shell} here: its completion is not tried")
+    main(["completion", shell])
+    (tmp_path / "script").write_text(capsys.readouterr().out)
+    (tmp_path / "here.csv").touch()
     (tmp_path / "tactcad").write_text(f'#!/bin/sh\nexec {sys.executable} -m tactcad "$@"\n')
     (tmp_path / "tactcad").chmod(0o755)
-    script = capsys.readouterr().out + (
-        f"PATH={tmp_path}:$PATH; COMP_WORDS=(tactcad export mac); COMP_CWORD=2; _tactcad; "
-        "echo ${COMPREPLY[@]}; COMP_WORDS=(tactcad golden --); _tactcad; echo ${COMPREPLY[@]}"
-    )
-    done = subprocess.run(["bash", "-c", script], capture_output=True, text=True, check=True)
-    assert done.stdout == "macro-array\n--help\n"
+    whole = [
+        "expo|rt",
+        "export mac|ro-array",
+        "estimate --model fem-s|olid",
+        "golden --he|lp",
+        "calibrate her|e.csv",
+    ]
+    lines = "\n".join(f"tactcad {line.partition('|')[0]}" for line in whole)
+    start = "" if shell == "zsh" else "source script"  # zsh's own terminal reads it
+    script, quiet = start + TYPED[shell], {"bash": "--norc", "fish": "--no-config", "zsh": "-f"}[shell]
+    given = os.environ | {"PATH": f"{tmp_path}:{os.environ['PATH']}", "LINES_TYPED": lines}
+    subprocess.run([shell, quiet, "-c", script], cwd=tmp_path, env=given, check=True, timeout=120)
+    typed = (tmp_path / "typed").read_text().splitlines()
+    assert typed == [f"tactcad {line.replace('|', '')}" for line in whole]
 
 
 class Screen(io.StringIO):

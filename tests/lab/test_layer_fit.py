@@ -12,7 +12,7 @@ import pytest
 from scipy.stats import binom
 
 from tactcad.design.messages import InputError
-from tactcad.lab import grasp
+from tactcad.lab import grasp, layer_fit
 from tactcad.lab.layer_fit import fit, layer
 from tactcad.lab.pads import layers, springs_of
 from tactcad.lab.readings import GraspReadings
@@ -107,8 +107,8 @@ def test_coverage_of_every_cell(h, E, angle):
         f"h {h:g} E {E:g} angle {angle:g}: E {right[:, 0].mean():.3f}, pairs {np.nanmean(right[:, 1:]):.3f}, "
         f"median half-width {np.median(half):.3f}"
     )
-    # labs on one press share its heights and thickness: a share is known to some 1.5 %
-    assert 0.92 < right[:, 0].mean() < 0.99 and 0.92 < np.nanmean(right[:, 1:]) < 0.99
+    # labs on one press share its heights and thickness: a share is known to 0.5 %, by the presses' scatter
+    assert 0.93 < right[:, 0].mean() < 0.975 and 0.93 < np.nanmean(right[:, 1:]) < 0.985
     assert np.median(half) < min(0.12, 1.3 * least(h, E, angle))
 
 
@@ -140,6 +140,22 @@ def test_a_fit_ends_where_the_truth_costs_no_less():
         found = fit(at, NUMBER[READ], labs.LOAD, (K_V[READ, None] * sink)[None], known)
         assert found.modulus[0, 0] == pytest.approx(0.3, rel=0.12)
         assert found.modulus[0, 1] < 0.3 < found.modulus[0, 2]
+
+
+def test_signals_without_noise_leave_less_than_the_least_noise(monkeypatch):
+    """By single patches, 3 mm and 1 MPa, inclined by 5 degrees: nearly as much where a whole row lifts, less
+    than a third of it else."""
+    least, rng, left = layer_fit.SHAPE, np.random.default_rng(3), []
+    monkeypatch.setattr(layer_fit, "SHAPE", 1e-9)
+    at = layer(NUMBER, PADS, DESIGN.tolerance.pad_height, NU, 3.0, 0.15)
+    for turn in np.radians([0.0, 22.5, 90.0]):
+        slope = np.tan(np.radians(5.0)) * np.array([np.cos(turn), np.sin(turn)])
+        height = rng.uniform(0, 0.02, len(K))
+        signal = K_V[READ, None] * bench(3.0).sinks(1.0, K, height, slope, labs.LOAD)[READ]
+        known = labs.calibration(ARRAY, K[READ], K_V[READ], rng, each=1e-5)
+        found = fit(at, NUMBER[READ], labs.LOAD, signal[None], known)
+        left.append(found.noise[0] / np.ptp(signal, axis=1).max())
+    assert 0.5 * least < left[0] < least and max(left[1:]) < least / 3
 
 
 def one_lab(slope=(0.0, 0.0), E=0.5, seed=1):

@@ -6,6 +6,7 @@ import re
 from dataclasses import fields, is_dataclass
 
 import pytest
+from built import shapes_of
 from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
 from sound_designs import sound_designs
@@ -433,10 +434,9 @@ def checked(design: Design) -> list[str]:
     from tactcad.checks.on_solids.interference import check_interference
     from tactcad.checks.on_solids.soundness import check_brep, check_mesh
     from tactcad.checks.shop import load_shop
-    from tactcad.solids.build import build
 
     scene, shop = make_scene(design, "array"), load_shop()
-    shapes = {part.part_no: build(part) for part in scene.parts}
+    shapes = shapes_of(scene)
     found = check_interference(scene, shapes)
     for part in scene.parts:
         found += check_brep(part, shapes[part.part_no]) + check_mesh(part, shapes[part.part_no])

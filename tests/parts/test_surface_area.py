@@ -6,6 +6,7 @@ from __future__ import annotations
 from math import pi
 
 import pytest
+from built import shape_of
 from variants import FACING_ROWS
 
 from tactcad.contour import Arc, Contour, Line, circle, rectangle
@@ -75,10 +76,9 @@ def test_a_part_with_openings():
 @pytest.mark.cad
 @pytest.mark.parametrize("name", [*FACING_ROWS, "jaw-array"])
 def test_the_kernel_measures_the_same_on_every_part(name):
-    from tactcad.solids.build import build
     from tactcad.solids.measure import measure
 
     design = load(name)
     for scene in scene_names(design):
         for p in make_scene(design, scene).parts:
-            assert surface_area(p) == pytest.approx(measure(build(p))["area"], rel=1e-8), p.part_no
+            assert surface_area(p) == pytest.approx(measure(shape_of(p))["area"], rel=1e-8), p.part_no

@@ -8,6 +8,7 @@ from dataclasses import replace
 
 import ezdxf
 import pytest
+from built import shape_of
 from variants import FACING_ROWS
 
 from tactcad.contour import rectangle
@@ -16,7 +17,6 @@ from tactcad.parts.language.description import Extrusion, Hole, Material, Part
 from tactcad.parts.language.stock import STAINLESS_PLATE, cut_section, plate_material, stock_of
 from tactcad.parts.rules import load
 from tactcad.scenes import make_scene, scene_names
-from tactcad.solids.build import build
 from tactcad.solids.measure import bounding_box
 
 # mm, plus and minus: of rolled plate, written down again from EN 485-3 and EN 10051 as issued to a shop
@@ -71,7 +71,7 @@ def test_a_hole_is_dropped_for_what_it_is_and_not_for_its_text():
 @pytest.mark.cad
 def test_the_solid_lies_in_its_blank():
     part = parts_of("macro-array")["macro-array-carrier"]
-    low, high = bounding_box(build(part))
+    low, high = bounding_box(shape_of(part))
     x0, y0, x1, y1 = cut_section(part).outer.box
     assert (x0, y0) < (low[0] - 1.9, low[1] - 1.9) and (x1, y1) > (high[0] + 1.9, high[1] + 1.9)
 

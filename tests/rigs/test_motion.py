@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from built import shape_of, shapes_of
 from variants import variant
 
 from tactcad.checks.on_solids.interference import check_interference
@@ -13,7 +14,6 @@ from tactcad.parts.language.finding import Finding
 from tactcad.parts.rules import load
 from tactcad.scenes import make_scene
 from tactcad.scenes.scene import Contact, Motion, Placement, Scene
-from tactcad.solids.build import build
 from tactcad.solids.measure import bounding_box
 
 METAL = Material("metal", 2700)
@@ -40,8 +40,8 @@ def scene(obstacle: Part, at, start, end, contacts=()) -> Scene:
 
 
 def found(s: Scene) -> list[Finding]:
-    full = {p.part_no: build(p) for p in s.parts}
-    return check_motions(s, full, {p.part_no: build(envelope(p)) for p in s.parts})
+    full = shapes_of(s)
+    return check_motions(s, full, {p.part_no: shape_of(envelope(p)) for p in s.parts})
 
 
 def findings(s: Scene) -> list[str]:
@@ -87,7 +87,7 @@ def test_diagonal_ways_do_not_reach_around_corners():
 @pytest.mark.parametrize("name", ["calibration", "sample-stiffness", "grasping"])
 def test_an_envelope_holds_its_part(name):
     for part in make_scene(load("macro-array"), name).parts:
-        outer, inner = bounding_box(build(envelope(part))), bounding_box(build(part))
+        outer, inner = bounding_box(shape_of(envelope(part))), bounding_box(shape_of(part))
         assert all(o <= i + 1e-6 for o, i in zip(outer[0], inner[0]))
         assert all(o >= i - 1e-6 for o, i in zip(outer[1], inner[1]))
         assert envelope(part).volume >= part.volume - 1e-6
@@ -96,8 +96,8 @@ def test_an_envelope_holds_its_part(name):
 def test_a_tip_that_is_not_lifted_enough_is_seen():
     """Half a millimetre of lift clears the pads; none drags the roller over them."""
     good = make_scene(variant({"calibration.retract": 0.5}), "calibration")
-    shapes = {p.part_no: build(p) for p in good.parts}
-    envelopes = {p.part_no: build(envelope(p)) for p in good.parts}
+    shapes = shapes_of(good)
+    envelopes = {p.part_no: shape_of(envelope(p)) for p in good.parts}
     assert check_motions(good, shapes, envelopes) == []
     dragged = tuple(
         Motion(
@@ -120,10 +120,10 @@ def test_a_pressed_element_meets_the_stop_only_beyond_its_gap():
     layout = Layout(design)
     place = layout.elements[3]
     closed = stop_gap(layout, place) * place.load_arm / place.arm
-    shapes = {p.part_no: build(p) for p in array(design).parts}
+    shapes = shapes_of(array(design))
     for deflection, hits in ((0.97 * closed, False), (1.03 * closed, True)):
         pressed = deflected_element(layout, place, round(deflection, 4), 1.0)
         s = array(design, {place.number: pressed})
-        shapes[pressed.part_no] = build(pressed)
+        shapes[pressed.part_no] = shape_of(pressed)
         met = [f for f in check_interference(s, shapes) if "ST1" in f.message and f.check == "overlap"]
         assert bool(met) is hits

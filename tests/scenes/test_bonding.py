@@ -6,6 +6,7 @@ import re
 
 import numpy as np
 import pytest
+from built import shape_of, shapes_of
 from variants import DROP, FACING_ROWS, IN_SLOT, variant
 
 from tactcad.checks.described.goes_together import check_assembly
@@ -24,7 +25,6 @@ from tactcad.parts.rigs.bonding_fixture import bonding_rigs
 from tactcad.parts.rules import broken_rules, load
 from tactcad.scenes import left_out, make_scene, scene_names
 from tactcad.scenes.rig_requirements import PLACE_ON_HINGE
-from tactcad.solids.build import build
 from tactcad.solids.measure import measure
 from tactcad.stacks.virtual_build import sensor
 
@@ -100,7 +100,7 @@ def test_the_tongue_stands_in_the_slot_on_the_leaf():
 def test_the_clamps_weight_acts_over_the_gauge_and_presses_as_wished():
     scene = make_scene(variant(), "bonding")
     bar = placement(scene, "CB1")
-    solid = measure(build(bar.part))
+    solid = measure(shape_of(bar.part))
     x, y, _ = placed(bar, solid["centre"])
     gauge = variant().gauge
     assert x == pytest.approx((gauge.carrier_body_side - gauge.carrier_arm_side) / 2, abs=1e-6)
@@ -124,7 +124,7 @@ def test_a_bar_is_aluminium_where_steel_would_be_too_thin():
 @pytest.mark.parametrize("name", ["macro-array", "better-array"])
 def test_nothing_overlaps_in_the_fixture(name):
     scene = make_scene(load(name), "bonding")
-    shapes = {part.part_no: build(part) for part in scene.parts}
+    shapes = shapes_of(scene)
     assert check_interference(scene, shapes) == []
 
 
@@ -146,7 +146,7 @@ def test_hinges_of_other_sizes_have_a_fixture_in_which_nothing_overlaps(hinge):
     assert [b for b in broken_rules(design) if b.check != "stop_gap_above_tolerance"] == []
     assert left_out(design) == []
     scene = make_scene(design, "bonding")
-    shapes = {part.part_no: build(part) for part in scene.parts}
+    shapes = shapes_of(scene)
     assert check_interference(scene, shapes) == []
     shop = load_shop(DEFAULT)
     for part in (p for p in scene.parts if "-bonding-" in p.part_no):

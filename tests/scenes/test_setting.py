@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from built import shapes_of
 from variants import ROCKING_BLANK, ROCKING_PLATE, variant
 
 from tactcad.checks.on_solids.interference import check_interference
@@ -14,7 +15,6 @@ from tactcad.parts.rigs.setting_fixture import STEP, SettingLayout, setting_fixt
 from tactcad.parts.rules import broken_rules
 from tactcad.scenes import make_scene, scene_names
 from tactcad.scenes.bom import bom_rows
-from tactcad.solids.build import build
 
 ROWS = {
     "two rows": {},
@@ -35,7 +35,7 @@ FAST = ("one row", "two rows")
 def test_the_stack_stands_in_it_and_its_screws_are_reached(rows):
     design = variant(ROWS[rows])
     scene = make_scene(design, "setting")
-    shapes = {p.part_no: build(p) for p in scene.parts}
+    shapes = shapes_of(scene)
     for check in (check_interference, check_steps, check_tools):
         assert check(scene, shapes) == []
     met = {frozenset((c.first, c.second)) for c in scene.contacts}
@@ -59,7 +59,7 @@ def test_what_rules_refuse_the_check_of_steps_finds_rocking(rocks, scene, lies):
     """And what they call legal, nearly at the limit, it lets pass."""
     for changes, free in ((rocks, True), (rocks | lies, False)):
         made = make_scene(variant(changes), scene)
-        trial = Trial(made, {p.part_no: build(p) for p in made.parts}, {})
+        trial = Trial(made, shapes_of(made), {})
         assert any("turn about" in f.message for f in trial.freedoms()) == free
         assert bool(broken_rules(variant(changes))) == free
 

@@ -13,6 +13,7 @@ from pathlib import Path
 import manifold3d
 import numpy as np
 import pytest
+from built import shapes_of
 from OCP.BRep import BRep_Tool
 from OCP.BRepMesh import BRepMesh_IncrementalMesh
 from OCP.IFSelect import IFSelect_RetDone
@@ -32,7 +33,6 @@ from tactcad.export.step_text import Header
 from tactcad.parts.rules import load
 from tactcad.scenes import make_scene, scene_names
 from tactcad.scenes.moves import guide_json
-from tactcad.solids.build import build
 
 pytestmark = pytest.mark.cad
 
@@ -45,7 +45,7 @@ STACK = Path(__file__).parents[2] / "docs" / "stack.md"
 def exported(design, name: str, folder: Path) -> tuple[Path, dict]:
     scene = make_scene(design, name)
     path = folder / f"{name}.step"
-    shapes = {part.part_no: build(part) for part in scene.parts}
+    shapes = shapes_of(scene)
     path.write_bytes(scene_step(scene, shapes, Header(name, name, "A", "2026-01-01", "", "")))
     return path, json.loads(guide_json(scene))
 

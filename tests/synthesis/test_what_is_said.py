@@ -18,8 +18,9 @@ from tactcad.parts.language.finding import Finding
 from tactcad.scenes import LeftOut
 from tactcad.synthesis import relax, synthesise
 from tactcad.synthesis.bounds import Bound
+from tactcad.synthesis.search import FAR
 from tactcad.synthesis.shares import COUNT, variance_shares
-from tactcad.synthesis.synthesise import LeastChange, Synthesis, attempt
+from tactcad.synthesis.synthesise import LeastChange, Synthesis, attempt, goal_of
 from tactcad.synthesis.target import TABLES, Target, parse_target, read_target
 from tactcad.synthesis.target_report import answer, no_other_change, record, refuse_unwritable, report_page
 
@@ -146,6 +147,24 @@ def test_rigs_that_do_not_take_the_array_are_told(monkeypatch):
     assert "not on the rig of this design; scene calibration left out" in notes[0]
     assert notes[1] == str(told[1])
     assert b"scene grasping left out" in report_page(replace(small()))
+
+
+def test_a_least_change_is_of_a_design_that_passes_the_slow_checks(monkeypatch):
+    width = 100.0 * small().found.half_width
+    missed = replace(small(), target=target(("target.half_width", round(0.8 * width, 3))), met=False)
+    task = next(t for t in synthesise._changes(missed, 50) if t.name.endswith("target.half_width"))
+    assert 0.8 * width < task.make().needed < 3.0 * width
+    monkeypatch.setattr(synthesise, "slow_failures", lambda _design: ["a web too thin"])
+    assert task.make() is None
+
+
+def test_where_no_margin_is_enough_the_best_is_the_narrowest_and_keeps_every_limit():
+    width = 100.0 * small().found.half_width
+    asked = target(("target.half_width", round(1.02 * width, 3)), ("target.least", "cut"))
+    got = attempt(asked, arrays=200, within=0.01)
+    assert not got.met and got.found.accepted and got.made.share > 0.0
+    assert got.found.half_width == pytest.approx(small().found.half_width, rel=0.1)
+    assert goal_of(asked, 2.0)(got.found.candidate) < FAR
 
 
 def test_what_solid_elements_cannot_follow_is_said_and_the_rest_is_told(monkeypatch):

@@ -145,10 +145,12 @@ def _cut(ring: list[Point], opening: list[Point]) -> None:
     at = min(opening)
     first = opening.index(at)
     y, best, where = at[1], -1.0, -1
-    for i, (a, b) in enumerate(zip(ring, ring[1:] + ring[:1])):
-        if a[1] != b[1] and min(a[1], b[1]) <= y <= max(a[1], b[1]):
-            x = a[0] + (b[0] - a[0]) * (y - a[1]) / (b[1] - a[1])
+    ax, ay = ring[0]
+    for i, (bx, by) in enumerate(ring[1:] + ring[:1]):
+        if (ay <= y <= by or by <= y <= ay) and ay != by:
+            x = ax + (bx - ax) * (y - ay) / (by - ay)
             if best < x <= at[0]:
                 best, where = x, i
+        ax, ay = bx, by
     hit = (round(best, 6), y)
     ring[where + 1 : where + 1] = [hit, *opening[first:], *opening[:first], at, hit]

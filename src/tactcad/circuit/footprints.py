@@ -20,6 +20,7 @@ TOE, HEEL, SIDE = 0.35, 0.35, 0.03  # mm, gull wings of more than 0.625 mm pitch
 FINE_SIDE = -0.02  # mm, of finer pitch
 # mm, of terminals below a body, level B; chosen: side 0.01, heel 0.03 less, for 0.2 between pads at corners
 NO_LEAD_TOE, NO_LEAD_HEEL, NO_LEAD_SIDE = 0.3, -0.03, -0.05
+FLUSH_TOE = 0.1  # mm; chosen, for chips 4 mm apart: level C asks for 0.2; solder below the terminal holds
 CHIP_TOE, CHIP_HEEL, CHIP_SIDE = 0.35, -0.05, 0.0  # mm, chips from 1608 on, level B
 LEAST_GAP = 0.2  # mm between pads
 COURTYARD = 0.25  # mm around pads and body, level B
@@ -115,10 +116,10 @@ def chip(
 
 def no_leads(
     name: str, side: int, pitch: float, length: Span, terminal: Span, width: Span, slug: float, height: float,
-    library: str, source: str,
+    library: str, source: str, toe: float = NO_LEAD_TOE,
 ) -> Footprint:  # fmt: skip
     """Terminals on four sides, so many a side; the last pad is a square below the body, `slug` mm."""
-    at, long, wide = _land(length, terminal, width, NO_LEAD_TOE, NO_LEAD_HEEL, NO_LEAD_SIDE)
+    at, long, wide = _land(length, terminal, width, toe, NO_LEAD_HEEL, NO_LEAD_SIDE)
     wide = min(wide, pitch - LEAST_GAP)
     steps = [(i - (side - 1) / 2) * pitch for i in range(side)]
     pads = [(-at, y, long, wide) for y in steps] + [(x, at, wide, long) for x in steps]
@@ -182,6 +183,10 @@ FOOTPRINTS = {
         no_leads(
             "QFN-16", 4, 0.5, (2.9, 3.1), (0.3, 0.5), (0.18, 0.30), 1.45, 0.9,
             "Package_DFN_QFN:QFN-16-1EP_3x3mm_P0.5mm_EP1.45x1.45mm", "JEDEC MO-220 VEED",
+        ),
+        no_leads(
+            "QFN-16-FLUSH", 4, 0.5, (2.9, 3.1), (0.3, 0.5), (0.18, 0.30), 1.45, 0.9,
+            "", "JEDEC MO-220 VEED", toe=FLUSH_TOE,
         ),
         chip(
             "0603", (1.45, 1.75), (0.2, 0.5), (0.65, 0.95), 0.95,

@@ -26,7 +26,11 @@ _tactcad() {
 }
 compdef _tactcad tactcad""",
     "fish": """\
-complete -c tactcad -a '(tactcad completion words (commandline -opc)[2..] (commandline -ct) 2>/dev/null)'""",
+function __tactcad
+    set -l found (tactcad completion words (commandline -opc)[2..] (commandline -ct) 2>/dev/null)
+    if test -n "$found"; printf '%s\\n' $found; else; __fish_complete_path (commandline -ct); end
+end
+complete -c tactcad -f -a '(__tactcad)'""",
 }
 NAMES_DESIGN = ("design", "source", "old", "new")  # arguments that take a design's name
 
@@ -45,9 +49,9 @@ def candidates(words: list[str]) -> list[str]:
     """Completions of the last of these words of a command; none for a file's name."""
     from tactcad.design.load import names
 
-    from .main import COMMANDS, parser_of
+    from .main import COMMANDS, LOUDNESS, parser_of
 
-    *before, last = words or [""]
+    *before, last = words[words[:1] in LOUDNESS :] or [""]
     if not before or before == ["help"]:
         return [name for name in (*COMMANDS, "help") if name.startswith(last)]
     if before[0] not in COMMANDS:

@@ -43,13 +43,25 @@ class _Rings:
         h = min(body.thickness, DEEPEST * radius)
         lines = lines_over_pad(radius, wall or radius + FREE_SIDE * h, ACROSS, EDGE)
         z = np.concatenate([[0.0], outward(0.0, lines[ACROSS] - lines[ACROSS - 1], h)])
-        basis = self.basis = Basis(MeshQuad.init_tensor(lines, -z[::-1]), ElementQuad2(), intorder=5)
+        self.lay(body, MeshQuad.init_tensor(lines, -z[::-1]), turned=True)
+        r, z = self.basis.doflocs
+        top, near = z > -1e-9 * h, 1e-9 * radius
+        self.punched = np.flatnonzero(top & (r < radius + near))
+        bottom = np.flatnonzero(z < -h + 1e-9 * h)
+        held = [2 * bottom + 1, 2 * np.flatnonzero(r < near)]
+        held += [2 * bottom] if body.base == "bonded" else []
+        held += [2 * np.flatnonzero(r > wall - near)] if wall else []
+        self.held = np.unique(np.concatenate(held))
+
+    def lay(self, body: Body, mesh: MeshQuad, turned: bool) -> None:
+        """Set up the elements of a section: turned about z, or endless and strained in its plane alone."""
+        basis = self.basis = Basis(mesh, ElementQuad2(), intorder=5)
         self.mu, self.kappa = (
             body.modulus / (2 * (1 + body.poisson)),
             body.modulus / (3 * (1 - 2 * body.poisson)),
         )
         at = np.asarray(basis.global_coordinates())
-        self.volume = 2 * pi * at[0] * basis.dx
+        self.volume = 2 * pi * at[0] * basis.dx if turned else np.array(basis.dx)
         middle = (at.max(2) + at.min(2))[:, :, None] / 2
         self.linear = np.concatenate(
             [np.ones((1, *at.shape[1:])), (at - middle) / np.ptp(at, axis=2)[:, :, None]]
@@ -61,17 +73,10 @@ class _Rings:
             slope = np.broadcast_to(field[0].grad, (2, *basis.dx.shape))
             self.B[:, :, 0, 2 * n], self.B[:, :, 1, 2 * n] = slope
             self.B[:, :, 2, 2 * n + 1], self.B[:, :, 3, 2 * n + 1] = slope
-            self.B[:, :, 4, 2 * n] = np.broadcast_to(np.asarray(field[0]), basis.dx.shape) / at[0]
+            if turned:
+                self.B[:, :, 4, 2 * n] = np.broadcast_to(np.asarray(field[0]), basis.dx.shape) / at[0]
         self.dofs = (2 * basis.element_dofs.T[:, :, None] + np.arange(2)).reshape(len(basis.dx), -1)
         self.rows, self.columns = np.broadcast_arrays(self.dofs[:, :, None], self.dofs[:, None, :])
-        r, z = basis.doflocs
-        top, near = z > -1e-9 * h, 1e-9 * radius
-        self.punched = np.flatnonzero(top & (r < radius + near))
-        bottom = np.flatnonzero(z < -h + 1e-9 * h)
-        held = [2 * bottom + 1, 2 * np.flatnonzero(r < near)]
-        held += [2 * bottom] if body.base == "bonded" else []
-        held += [2 * np.flatnonzero(r > wall - near)] if wall else []
-        self.held = np.unique(np.concatenate(held))
 
     def forces(
         self, u: np.ndarray, p: np.ndarray | None = None

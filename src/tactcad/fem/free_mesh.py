@@ -115,7 +115,12 @@ def _inner_points(contours: tuple[Contour, ...], border: Array, size: _Size) -> 
         z = np.arange(low[1], high[1] + level, level * np.sqrt(0.75))
         lattice = np.stack(np.meshgrid(x, z, indexing="ij"), axis=-1)
         lattice[:, 1::2, 0] += level / 2.0
-        p = lattice.reshape(-1, 2)
+        near = np.full(lattice.shape[:2], 2.0 * level > size.largest)
+        for seed in size.seeds:  # elsewhere larger elements are wanted
+            reach = (2.0 * level - seed.size) / GROWTH + level
+            (i, k), (j, l) = (np.searchsorted(a, (at - reach, at + reach)) for a, at in zip((x, z), seed.at))
+            near[i:k, j:l] = True
+        p = lattice[near]
         wanted = size(p)
         p, wanted = (a[(wanted >= level) & (wanted < 2.0 * level)] for a in (p, wanted))
         p, wanted = (a[inside(contours, p)] for a in (p, wanted))

@@ -81,7 +81,7 @@ class Screwed:
 def screwed(scene: Scene) -> list[Screwed]:
     """Every cap screw of a scene in its thread; its contacts name the threads."""
     by_name = {p.designator: p for p in scene.placements}
-    bored = [_bored(p) for p in scene.placements if not CAP_SCREW.match(p.part.part_no)]
+    bored = _bored([p for p in scene.placements if not CAP_SCREW.match(p.part.part_no)])
     found: list[Screwed] = []
     for contact in scene.contacts:
         if contact.kind != "thread":
@@ -154,7 +154,7 @@ def is_stacked(design: str, p: Placement) -> bool:
 
 
 def _screwed(
-    screw: Placement, tapped: Placement, thread: str, length: float, bored: Sequence[_Bored]
+    screw: Placement, tapped: Placement, thread: str, length: float, bored: _Bored
 ) -> Iterator[Screwed]:
     axis, head = np.array(screw.rotation)[:, 2], np.array(screw.origin)
     for hole, _, end in engaged(screw, tapped):
@@ -162,26 +162,20 @@ def _screwed(
         if end - length > start + COAXIAL or end < start:
             continue  # another hole of the part in the same axis
         mouth = length - end  # from the head
-        passed = [
-            (part.placed, part.holes[i])
-            for part in bored
-            if part.placed != tapped
-            for i in part.along(axis, head, mouth)
-        ]
-        yield Screwed(thread, length, tapped, hole, end, tuple(passed))
+        passed = tuple((p, other) for p, other in bored.along(axis, head, mouth) if p is not tapped)
+        yield Screwed(thread, length, tapped, hole, end, passed)
 
 
 @dataclass(frozen=True)
 class _Bored:
-    """A placed part with its holes; their starts and directions in the scene, (n, 3) mm."""
+    """Holes of placed parts, each with its part; their starts and directions in the scene, (n, 3) mm."""
 
-    placed: Placement
-    holes: tuple[Hole, ...]
+    holes: tuple[tuple[Placement, Hole], ...]
     mouths: Array
     ways: Array
     depths: Array
 
-    def along(self, axis: Array, head: Array, mouth: float) -> Iterator[int]:
+    def along(self, axis: Array, head: Array, mouth: float) -> Iterator[tuple[Placement, Hole]]:
         """Holes in a screw's axis that begin or end between its head and the thread's mouth."""
         from_head = self.mouths - head
         height, turn = from_head @ axis, self.ways @ axis
@@ -189,15 +183,20 @@ class _Bored:
         far = height + self.depths * turn
         passed = np.minimum(height, far) < mouth - COAXIAL
         passed &= (np.maximum(height, far) > COAXIAL) & (beside <= COAXIAL)
-        yield from np.flatnonzero(passed & (np.abs(np.abs(turn) - 1.0) <= COAXIAL)).tolist()
+        passed &= np.abs(np.abs(turn) - 1.0) <= COAXIAL
+        yield from (self.holes[i] for i in np.flatnonzero(passed).tolist())
 
 
-def _bored(p: Placement) -> _Bored:
-    holes, turn = tuple(_holes(p.part)), np.array(p.rotation, float)
-    at = np.array([h.at for h in holes], float).reshape(-1, 3)
-    ways = np.array([h.axis for h in holes], float).reshape(-1, 3)
-    depths = np.array([h.depth for h in holes], float)
-    return _Bored(p, holes, at @ turn.T + np.array(p.origin), ways @ turn.T, depths)
+def _bored(parts: Sequence[Placement]) -> _Bored:
+    holes: list[tuple[Placement, Hole]] = []
+    mouths, ways = [np.zeros((0, 3))], [np.zeros((0, 3))]
+    for p in parts:
+        own, turn = tuple(_holes(p.part)), np.array(p.rotation, float)
+        holes += [(p, hole) for hole in own]
+        mouths.append(np.array([h.at for h in own], float).reshape(-1, 3) @ turn.T + np.array(p.origin))
+        ways.append(np.array([h.axis for h in own], float).reshape(-1, 3) @ turn.T)
+    depths = np.array([hole.depth for _, hole in holes], float)
+    return _Bored(tuple(holes), np.vstack(mouths), np.vstack(ways), depths)
 
 
 def _holes(part: Part) -> Iterator[Hole]:

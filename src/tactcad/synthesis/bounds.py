@@ -65,9 +65,9 @@ RODS: dict[str, Any] = {
     "clamp.mount_pitch_y": 16.0,
 }
 CAP_SCREWS: dict[str, Any] = {
-    "element.rear_length": 11.9,
-    "holes.screw_offsets": (2.2, 9.5),
-    "holes.dowel_offsets": (5.85,),
+    "element.rear_length": 12.0,
+    "holes.screw_offsets": (2.2, 9.6),
+    "holes.dowel_offsets": (5.9,),
     "clamp.end_plate_margin": 0.75,
     "clamp.mount_pitch_y": 28.0,
 }

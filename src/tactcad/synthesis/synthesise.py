@@ -46,6 +46,8 @@ SEARCHING, IN_ALL = 20.0, 105.0
 # The same with a body under the pads: a candidate costs milliseconds, and so do arrays made.
 ON_BODY, ALL_ON_BODY, ARRAYS_ON_BODY = 70.0, 160.0, 400
 SHARE = 0.4  # of the seconds asked for, for the search
+EACH = 0.5  # of the time left, for each search if several may follow
+CLOSE_ENOUGH = 1.03  # a margin smaller by so much than what the arrays need may still do
 HEARD = 0.2  # s, between looks at the clock
 ANSWER = "answer"  # what is done for it
 PARTS = (  # of the report, beside the answer
@@ -221,9 +223,9 @@ def goal_of(target: Target, margin: float = 1.0) -> Goal:
         width = c.half_width
         if wanted is None or least in ("width", "tolerance"):
             return width
-        beyond = np.maximum(width * margin / (wanted / 100.0) - 1.0, 0.0)
+        kept = wanted / (100.0 * width * margin)  # below 1: too wide, which is nearer than a limit missed
         what = {"room": c.area / 1e4, "cut": c.cut / 1e4, "kinds": c.different}[least]
-        return np.where(beyond > 0.0, FAR * (1.0 + beyond), what + 1e-3 * width)
+        return np.where(kept < 1.0, FAR * (1.0 - kept / 2.0), what + 1e-3 * width)
 
     return goal
 
@@ -254,15 +256,21 @@ def attempt(
         one, only what the least change of a field needs is found.
     """
     looked, best, rules = 0, None, refusals if near else all_refusals
+    needed = 1.0  # margin that the arrays of the best so far need
     arrays = min(arrays, TRIED) if near else arrays
     arrays = min(arrays, ARRAYS_ON_BODY) if target.on_layer else arrays
-    for margin, some in tries(target):
-        if best and time.perf_counter() > until:
+    planned = tries(target)
+    for margin, some in planned:
+        now = time.perf_counter()
+        if best and now > until:
             break
-        goal = goal_of(target, margin)
+        if margin < min(needed / CLOSE_ENOUGH, planned[-1][0]):
+            continue
+        goal, start = goal_of(target, margin), near or (best.found if best else None)
+        end = now + (until - now) * (1.0 if len(planned) == 1 else EACH)
         found = _together(
             [
-                partial(_in_turn, s, goal, rules, near, evolve, within, until, len(some) - i)
+                partial(_in_turn, s, goal, rules, start, evolve, within, end, len(some) - i)
                 for i, s in enumerate(some)
             ]
         )
@@ -273,10 +281,18 @@ def attempt(
         this = Synthesis(target, chosen, wanted, made, met)
         if best is None or _worth(this) > _worth(best):
             best = this
-        if met or (not chosen.accepted and target.target.least != "tolerance"):
+        too_wide = len(planned) > 1 and chosen.goal >= FAR / 2.0
+        if met or ((not chosen.accepted or too_wide) and target.target.least != "tolerance"):
             break
+        needed = _margin(made, chosen, target.target.share)
     assert best is not None
     return replace(best, evaluations=looked)
+
+
+def _margin(made: Yield, found: Found, share: float) -> float:
+    """Half-width that a share of the arrays made keep, relative to the nominal one; 1 if they lack more."""
+    kept = float(np.quantile(made.half_widths, share, method="higher")) if made.count else np.inf
+    return kept / found.half_width if np.isfinite(kept) else 1.0
 
 
 def _in_turn(
@@ -523,15 +539,19 @@ def _changes(got: Synthesis, arrays: int) -> Iterator[Task]:
     def change(name: str) -> LeastChange | None:
         near = got.found
 
-        def possible(target: Target) -> bool:
+        def possible(target: Target, checked: bool = False) -> bool:
             nonlocal near
             tried = attempt(target, arrays, QUICK, near=near, evolve=False)
             if not tried.met and near is got.found:  # nothing found yet: from anywhere
                 tried = attempt(target, arrays, QUICK, near=near)
-            near = tried.found if tried.met else near
-            return tried.met
+            met = tried.met and not (checked and slow_failures(tried.found.design))
+            near = tried.found if met else near
+            return met
 
         least = relax.least_change(got.target, name, possible)
+        if least and slow_failures(near.design):
+            near = got.found
+            least = relax.least_change(got.target, name, partial(possible, checked=True))
         return LeastChange(name, relax.value_of(got.target, name), least[0]) if least else None
 
     for name, _ in relax.eased(got.target):

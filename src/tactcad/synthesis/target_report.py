@@ -62,6 +62,7 @@ def record(got: Synthesis) -> dict[str, Any]:
         "object_range": list(got.object_range),
         "object": _object(got),
         "evaluations": got.evaluations,
+        "searched_to_its_end": got.found.in_time,
         "changes": [asdict(c) for c in got.changes],
         "left_out": list(got.left_out),
         "beyond": _beyond(got),
@@ -568,7 +569,8 @@ def answer(r: dict[str, Any]) -> str:
     if r["met"] is False:
         rules = "; ".join(line for line in base["breaks"] if line.startswith("rule "))
         told = f" {base['name']} as it is breaks {rules}." if rules else ""
-        return f"Impossible as asked: the best candidate {_why_not(r)}.{told}"
+        none = "Impossible as asked" if r["searched_to_its_end"] else "None found in this time"
+        return f"{none}: the best candidate {_why_not(r)}.{told}"
     e = r["elements"]
     if base["breaks"]:
         than = f"{base['name']} as it is does not meet the target: {'; '.join(base['breaks'])}"

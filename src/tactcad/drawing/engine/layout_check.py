@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from itertools import combinations
 
 import numpy as np
 
@@ -61,11 +60,14 @@ def layout_faults(sheet: DrawnSheet) -> list[str]:
         if not isinstance(item, Text)
         for chord in item.chords()
     ]
-    boxes = [(t, t.corners(BETWEEN_TEXTS / 2)) for t in texts]
+    quads = [t.corners(BETWEEN_TEXTS / 2) for t in texts]
+    ends = np.array(quads).reshape(-1, 4, 2)
+    low, high = ends.min(1), ends.max(1)
+    near = np.triu((low[:, None] <= high).all(2) & (low <= high[:, None]).all(2), 1)
     over = [
-        f"text {a.text!r} over text {b.text!r} at {_shown(a.at)}"
-        for (a, quad_a), (b, quad_b) in combinations(boxes, 2)
-        if quads_meet(quad_a, quad_b)
+        f"text {texts[a].text!r} over text {texts[b].text!r} at {_shown(texts[a].at)}"
+        for a, b in np.argwhere(near).tolist()
+        if quads_meet(quads[a], quads[b])
     ]
     # inside a hatched area, even between two lines; across its edge a text is over a line anyway
     hatches = [item for item in sheet.items if isinstance(item, Hatch)]

@@ -9,7 +9,7 @@ import os
 from calendar import timegm
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cache, lru_cache
 from html import escape
 from typing import TYPE_CHECKING
 
@@ -40,11 +40,9 @@ def pdf_bytes(sheets: Sequence[DrawnSheet], title: str, author: str, date: str) 
 
     Raises CheckFailure if the font is missing.
     """
-    from reportlab.pdfbase import pdfmetrics
-    from reportlab.pdfbase.ttfonts import TTFont
     from reportlab.pdfgen.canvas import Canvas
 
-    pdfmetrics.registerFont(TTFont(FONT, str(font_file())))
+    _register(str(font_file()))
     out = io.BytesIO()
     # by itself reportlab takes the date of SOURCE_DATE_EPOCH, which users set for other purposes
     given = os.environ.get(EPOCH)
@@ -67,6 +65,15 @@ def pdf_bytes(sheets: Sequence[DrawnSheet], title: str, author: str, date: str) 
         canvas.showPage()
     canvas.save()
     return out.getvalue()
+
+
+@cache
+def _register(file: str) -> None:
+    """Once a process: it takes a tenth of a second."""
+    from reportlab.pdfbase import pdfmetrics
+    from reportlab.pdfbase.ttfonts import TTFont
+
+    pdfmetrics.registerFont(TTFont(FONT, file))
 
 
 def _draw(canvas: Canvas, item: Item) -> None:

@@ -1,4 +1,4 @@
-"""The board under the cells: a chip below every magnet, its capacitor beside it, buses, their connector.
+"""The board under the cells: a chip below every magnet, its capacitor, buses, their connector.
 
     +----------------------------+
     | [U] [U] [U]  lines of a bus on the lower layer above each row of chips
@@ -9,14 +9,22 @@
     +----------------------------+
 
 Chips are turned by 180 degrees, so that nothing but trunks leaves the last row towards the tongue. All places
-are fixed, no router: they keep 0.2 mm between copper of two nets, and the vias' openings in the planes apart,
-at pitches from LEAST_PITCH on.
+are fixed, no router: they keep 0.2 mm between copper of two nets, and the vias' openings in the planes apart.
+
+Below the pitch ROOMY chips have no room for that between them. A bus takes whole rows. Between the corners of
+four chips lie vias of one's lines and one of the supply; lines and trunks are on the lower layer. Capacitors
+lie on the tongue, in line with their chips, and the planes join them: the jaw's 12 mm at a width of 28 mm are
+0.3 nH (mu0 times the planes' distance, a square), a via some 1 nH; what the chip's maker asks for is unread.
+
+    | |  .---.----.--  |     lines of a row, joined by SDA's trunk; SCL's lie above them
+    | | [U]  [U]  [U]  |     trunks of further buses pass below the first column's chips
+    | |  |             |     tongue: capacitors, fan, pull-ups, J1
 """
 
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from math import ceil
 
 from tactcad.circuit.board_layout import Routing
@@ -31,11 +39,11 @@ from tactcad.parts.language.description import Extrusion, Hole, Material, Part, 
 from tactcad.parts.language.metric import METRIC
 
 from .cell_layout import PlanarLayout
-from .parts import SCREW, screw_places
+from .parts import SCREW, copper_room, frame_room, screw_places
 
 GLASS_EPOXY, PACKAGE = Material("FR4", 1850), Material("moulded package", 1800)
 SUPPLY = "VDD"
-LEAST_PITCH = 8.0  # mm, of the places below
+LEAST_PITCH, ROOMY = 4.0, 8.0  # mm, of chips without and with room for capacitors and trunks between them
 # Of MLX90393: pins by the layout library's part MLX90393SLW-ABA-011-RE (SamacSys), first address by order
 # code by RT-Thread's driver (lgnq/mlx90393, inc/mlx90393.h); the maker's sheet is unread.
 PINS = {
@@ -50,6 +58,12 @@ SCL_X, SDA_X, CAP, CAP_VIAS = -2.75, -0.75, (1.1, -2.9), (-1.6, 2.75)
 LINES = ((2.5, 3.15), (3.8, 4.45))  # SCL's and SDA's lines of the row's first bus, and of its second
 # mm of SDA's trunk and SCL's from the middle between two columns, and of their ways down from the last row
 TRUNKS, DOWN = {"SDA": -0.4, "SCL": 0.5}, {"SDA": 1.2, "SCL": 1.9}
+# Closer: vias' places from a chip's middle, before it is turned; x of each bus's trunks from the middle of
+# the first column, of SCL's of the first bus from the last one's
+CLOSE = {"SCL": (-2.6, 1.4), "SDA": (-1.4, 1.4), SUPPLY: (-2.0, -1.4)}
+CLOSE_TRUNKS = ({"SDA": 1.4, "SCL": 2.6}, {"SDA": -0.6, "SCL": 0.6}, {"SDA": -1.4, "SCL": -1.0})
+AISLE, LINE, WAY = 2.0, 0.6, 2.1  # mm: tracks between chips, from a middle; a via to its line; to that way
+CAP_ROW, FIRST_CAP = 2.2, 1.6  # mm between capacitors with their names, and from the housing
 HEAD_ROOM = 2.3  # mm from a trunk to a screw's middle: its head is 3.8 wide
 ROW, BELOW_FAN = 0.45, 1.75  # mm: of the fan, and from it to the resistors' middles
 PIN, EDGE, RESISTOR = 2.54, 5.0, 3.4  # mm: header's pitch, from the edge; resistors from it
@@ -62,7 +76,15 @@ def why_none(layout: PlanarLayout) -> str:
         return f"pins of {layout.chip.name} are unknown: boards are laid out for {BOARDS_FOR}"
     if d.planar.pitch < LEAST_PITCH:
         return f"the chips are {d.planar.pitch:g} mm apart, and the layout takes {LEAST_PITCH:g} mm or more"
-    ways = len(channels(layout))
+    return (_why_not_roomy if roomy(layout) else _why_not_close)(layout)
+
+
+def roomy(layout: PlanarLayout) -> bool:
+    return layout.design.planar.pitch >= ROOMY
+
+
+def _why_not_roomy(layout: PlanarLayout) -> str:
+    d, ways = layout.design, len(channels(layout))
     if d.hall.buses > ways:
         pass_ = f"at most {ways} buses pass" if ways else "no bus passes"
         return f"{pass_} between columns and screws, and hall.buses is {d.hall.buses}"
@@ -75,12 +97,41 @@ def why_none(layout: PlanarLayout) -> str:
     return ""
 
 
+def _why_not_close(layout: PlanarLayout) -> str:
+    p, buses = layout.design.planar, layout.design.hall.buses
+    used, most = ceil(p.rows / ceil(p.rows / buses)), min(layout.chip.addresses, 4 * len(CODES))
+    if used < buses or buses > len(CLOSE_TRUNKS):
+        return (
+            f"buses take whole rows: {used} of {buses} hall.buses are used, at most {len(CLOSE_TRUNKS)} pass"
+        )
+    if chips_a_bus(layout) > most:
+        return f"buses take whole rows, and more than {most} chips would share one: more hall.buses"
+    if any(have < need - 1e-9 for have, need in zip(frame_room(layout), copper_room(layout))):
+        return (
+            "tracks around the outer chips would pass under the metal frame: a wider housing.border or side"
+        )
+    pins = 2 + 2 * buses
+    if 2.0 * layout.half[0] < max(PIN * (pins + 0.7), printed_width(_name(layout), HIGH) + 1.4):
+        return "the connector or the board's name is wider than the board: a wider housing.border"
+    first, last = layout.elements[0].x, layout.elements[-1].x
+    ways = [first + x for at in CLOSE_TRUNKS[:buses] for x in at.values()]
+    ways[1] += last - first
+    if any(abs(x - way) < HEAD_ROOM for x, y in screw_places(layout) if y < 0.0 for way in ways):
+        return "a screw's head would cover the trunks of a bus: other columns or housing.border"
+    return ""
+
+
 def bus_of(layout: PlanarLayout, number: int) -> tuple[int, str, int]:
     """A cell's bus, from 1 on, its chip's order code and address: cells are shared out in their order; a code
     has four addresses, by its pins A0 and A1."""
-    bus, place = divmod(number - 1, ceil(len(layout.elements) / layout.design.hall.buses))
+    bus, place = divmod(number - 1, chips_a_bus(layout))
     code = list(CODES)[place // 4]
     return 1 + bus, code, CODES[code] + place % 4
+
+
+def chips_a_bus(layout: PlanarLayout) -> int:
+    p, buses = layout.design.planar, layout.design.hall.buses
+    return ceil(p.rows * p.columns / buses) if roomy(layout) else p.columns * ceil(p.rows / buses)
 
 
 def rows_of(layout: PlanarLayout) -> dict[int, list[int]]:
@@ -109,7 +160,12 @@ def tongue(layout: PlanarLayout) -> float:
     """Length of the board beyond the housing, mm, on the side of the least y; 0 without a board's layout."""
     if why_none(layout):
         return 0.0
-    return ceil(2.0 * (EDGE + RESISTOR + BELOW_FAN + ROW * 2 * layout.design.hall.buses + 0.5)) / 2.0
+    caps = 0.0 if roomy(layout) else CAP_ROW * layout.design.planar.rows + 1.0
+    return ceil(2.0 * (EDGE + RESISTOR + BELOW_FAN + ROW * 2 * layout.design.hall.buses + 0.5 + caps)) / 2.0
+
+
+def _name(layout: PlanarLayout) -> str:
+    return f"{layout.design.name}-board {layout.design.design.revision}"
 
 
 def _component(name: str, kind: str, value: str, part_no: str, package: str, *nets: str) -> Component:
@@ -137,7 +193,7 @@ def netlist(layout: PlanarLayout) -> Netlist:
                 order,
                 pins,
                 element=e.number,
-                footprint="QFN-16",
+                footprint="QFN-16" if roomy(layout) else "QFN-16-FLUSH",
             )
         )
         parts.append(
@@ -159,7 +215,8 @@ def netlist(layout: PlanarLayout) -> Netlist:
 
 def lines_of(layout: PlanarLayout) -> list[str]:
     """Nets of the buses in the order of their trunks and of the connector's pins after supply and ground."""
-    return [f"{line}{bus}" for bus in range(1, layout.design.hall.buses + 1) for line in TRUNKS]
+    buses = range(1, layout.design.hall.buses + 1)
+    return [f"{line}{bus}" for bus in (buses if roomy(layout) else reversed(buses)) for line in TRUNKS]
 
 
 def made(layout: PlanarLayout) -> tuple[BoardCopper, ...]:
@@ -172,32 +229,29 @@ def _laid_out(layout: PlanarLayout) -> BoardCopper:
     board = {c.designator: c for c in circuit.components}
     half_x, half_y = layout.half
     width, height = 2.0 * half_x, 2.0 * half_y + tongue(layout)
-    lines, rows = lines_of(layout), rows_of(layout)
+    lines, roomy_ = lines_of(layout), roomy(layout)
     taps: dict[str, list[Point]] = {net: [] for net in lines}  # vias that each net's lines reach
+    rows = rows_of(layout)
     for e in layout.elements:
-        at = (e.x + half_x, half_y - e.y)
+        at, chip, cap = (e.x + half_x, half_y - e.y), board[f"U{e.number}"], board[f"C{e.number}"]
         slot = rows[e.row].index(bus_of(layout, e.number)[0])
-        for net, tap in _cell(sheet, board[f"U{e.number}"], board[f"C{e.number}"], at, LINES[slot]):
+        if roomy_:
+            found = _cell(sheet, chip, cap, at, LINES[slot])
+        else:
+            found = _close_cell(sheet, chip, at, layout.design.planar.pitch, e.column == 1)
+            _close_cap(
+                sheet, cap, (at[0], 2.0 * half_y + FIRST_CAP + CAP_ROW * (e.row - 1)), layout, e.column
+            )
+        for net, tap in found:
             taps[net].append(tap)
-    last_row = half_y - layout.elements[0].y
     ways = _header(sheet, board, lines, width / 2.0, height - EDGE)
-    middles = channels(layout)
-    for (net, points), end, rank in zip(taps.items(), ways, range(len(ways)), strict=True):
-        line, bus = net[:3], int(net[3:])
-        x = round(middles[bus - 1] + half_x + TRUNKS[line], 3)
-        ys = sorted({y for _, y in points})
-        for y in ys:
-            along = sorted({*(px for px, py in points if py == y), x})
-            sheet.path(net, *((px, y) for px in along), layer=BOTTOM)
-            sheet.vias.append(Via(net, (x, y)))
-        down = round(last_row + DOWN[line], 3)
-        sheet.via(net, (x, ys[0]), (x, down), width=0.2)
+    trunks = (_trunks if roomy_ else _close_trunks)(layout, sheet, taps)
+    for net, (x, down), end, rank in zip(lines, trunks, ways, range(len(ways)), strict=True):
         base = height - EDGE - RESISTOR - BELOW_FAN
         turn = base - ROW * (rank if x < end[0] else len(ways) - 1 - rank)
         sheet.path(net, (x, down), (x, turn), (end[0], turn), end, layer=BOTTOM)
     holes = tuple((x + half_x, half_y - y, METRIC[SCREW].clearance) for x, y in screw_places(layout))
-    d = layout.design
-    long = printed_width(f"{d.name}-board {d.design.revision}", HIGH)
+    long = printed_width(_name(layout), HIGH)
     name = (max(width / 4.0, long / 2.0 + 0.7), height - EDGE - RESISTOR - 3.5)
     return BoardCopper(
         circuit,
@@ -213,10 +267,84 @@ def _laid_out(layout: PlanarLayout) -> BoardCopper:
     )
 
 
-def _cell(
-    sheet: Routing, chip: Component, cap: Component, at: Point, lines: tuple[float, float]
+def _trunks(layout: PlanarLayout, sheet: Routing, taps: dict[str, list[Point]]) -> Iterator[Point]:
+    """Lines of the rows, trunks, and their ways down from the last row; yields the end of each."""
+    half_x, half_y = layout.half
+    last_row, middles = half_y - layout.elements[0].y, channels(layout)
+    for net, points in taps.items():
+        line, bus = net[:3], int(net[3:])
+        x = round(middles[bus - 1] + half_x + TRUNKS[line], 3)
+        ys = sorted({y for _, y in points})
+        for y in ys:
+            along = sorted({*(px for px, py in points if py == y), x})
+            sheet.path(net, *((px, y) for px in along), layer=BOTTOM)
+            sheet.vias.append(Via(net, (x, y)))
+        down = round(last_row + DOWN[line], 3)
+        sheet.via(net, (x, ys[0]), (x, down), width=0.2)
+        yield x, down
+
+
+def _close_trunks(layout: PlanarLayout, sheet: Routing, taps: dict[str, list[Point]]) -> Iterator[Point]:
+    """The same on the lower layer alone."""
+    first = layout.half[0] + layout.elements[0].x
+    for net, points in taps.items():
+        line, bus = net[:3], int(net[3:])
+        x = round(first + CLOSE_TRUNKS[bus - 1][line], 3)
+        up = max(px for px, _ in points) if line == "SCL" else x  # the trunk along the rows of this bus
+        meets = [y for px, y in points if px == up]
+        for y in sorted({y for _, y in points}):
+            if along := sorted(px for px, py in points if py == y and px != up):
+                way = round(y + (LINE if line == "SDA" else -LINE), 3)
+                for px in along:
+                    sheet.path(net, (px, y), (px, way), layer=BOTTOM)
+                sheet.path(net, *((px, way) for px in sorted({*along, up})), layer=BOTTOM)
+                meets.append(way)
+        down = max(meets) if bus == 1 or line == "SDA" else max(y for _, y in points) + WAY
+        sheet.path(net, (up, min(meets)), (up, down), (x if bus > 1 else up, down), layer=BOTTOM)
+        yield (x if bus > 1 else up), down
+
+
+def _close_cell(
+    sheet: Routing, chip: Component, at: Point, pitch: float, first: bool
 ) -> Iterator[tuple[str, Point]]:
-    """A chip, turned, with its capacitor; yields each bus net and the via that its line must reach."""
+    """A chip of the first column or another; yields as `_cell`."""
+    reach = AISLE if first else pitch - AISLE  # x of the next aisle, whose track is on the supply
+    there, pad, nets = _chip(sheet, chip, at, lambda y: ((reach, y),))
+    x, y = CLOSE[SUPPLY]
+    sheet.via(SUPPLY, *there(pad["CS"], (x, pad["CS"][1]), (x, y)), width=0.2)
+    sheet.path(SUPPLY, *there(pad["VDD"], (pad["VDD"][0], -AISLE), (x + LINE, -AISLE), (x, y)))
+    x = pad["VDD_IO"][0]
+    sheet.path(SUPPLY, *there(pad["VDD_IO"], (x, AISLE), (AISLE if first else x + pitch, AISLE)))
+    if first:
+        sheet.via(SUPPLY, *there((AISLE, AISLE), (AISLE, y)), width=0.2)
+    (x, y), low = CLOSE["SCL"], pad["SCL"][1]
+    sheet.via(
+        nets["SCL"], *there(pad["SCL"], (-AISLE, low), (-AISLE, y - 0.4), (x + 0.2, y), (x, y)), width=0.2
+    )
+    x, y = CLOSE["SDA"]
+    sheet.via(nets["SDA"], *there(pad["SDA"], (pad["SDA"][0], y), (x, y)), width=0.2)
+    yield from ((nets[line], there(CLOSE[line])[0]) for line in ("SCL", "SDA"))
+
+
+def _close_cap(sheet: Routing, cap: Component, at: Point, layout: PlanarLayout, column: int) -> None:
+    """A chip's capacitor on the tongue: it shares its vias with those beside it, so supply and ground change
+    sides from one to the next."""
+    right, left = (SUPPLY, GROUND) if column % 2 else (GROUND, SUPPLY)
+    pads = sheet.place(cap, at, 180 if right == SUPPLY else 0)
+    ends = {net: pads[number] for net, number in ((SUPPLY, "1"), (GROUND, "2"))}
+    sheet.via(right, ends[right], (at[0] + AISLE, at[1]))
+    beside = (at[0] + AISLE - (2.0 * AISLE if column == 1 else layout.design.planar.pitch), at[1])
+    if column == 1:
+        sheet.via(left, ends[left], beside)
+    else:
+        sheet.path(left, ends[left], beside, width=0.3)
+
+
+def _chip(
+    sheet: Routing, chip: Component, at: Point, outside: Callable[[float], tuple[Point, ...]]
+) -> tuple[Callable[..., list[Point]], dict[str, Point], dict[str, str]]:
+    """A chip, turned, with its pins on ground joined to its slug, and its straps to the supply by a way
+    `outside`; returns what turns places, and pads and nets by role."""
 
     def there(*points: Point) -> list[Point]:
         return [(round(at[0] - x, 3), round(at[1] - y, 3)) for x, y in points]
@@ -225,16 +353,21 @@ def _cell(
     pads = {pad.number: (pad.x, pad.y) for pad in footprint(chip.footprint).pads}
     pad = {role: pads[str(number)] for role, number in PINS.items()}
     sheet.place(chip, at, 180)
-    sheet.place(cap, there(CAP)[0], 180)
     sheet.vias.append(Via(GROUND, there((0.0, 0.0))[0]))
     x, y = pad["VSS"]
     sheet.path(GROUND, *there((x, y), (x, -1.05), (0.6, -0.6)))
     for role, inside in (("A1", ((0.6, -0.25),)), ("A0", ((1.05, -0.75), (0.6, -0.6)))):
-        x, y = pad[role]
-        if nets[role] == GROUND:
-            sheet.path(GROUND, *there((x, y), *inside))
-        else:
-            sheet.path(SUPPLY, *there((x, y), (2.3, y), (2.75, -0.5)))
+        way = inside if nets[role] == GROUND else outside(pad[role][1])
+        sheet.path(nets[role], *there(pad[role], *way))
+    return there, pad, nets
+
+
+def _cell(
+    sheet: Routing, chip: Component, cap: Component, at: Point, lines: tuple[float, float]
+) -> Iterator[tuple[str, Point]]:
+    """A chip with its capacitor; yields each bus net and the via that its line must reach."""
+    there, pad, nets = _chip(sheet, chip, at, lambda y: ((2.3, y), (2.75, -0.5)))
+    sheet.place(cap, there(CAP)[0], 180)
     if SUPPLY in (nets["A0"], nets["A1"]):
         sheet.vias.append(Via(SUPPLY, there((2.75, -0.5))[0]))
     x, y = pad["CS"]

@@ -57,6 +57,7 @@ PLATE_ZONE, STOP_FLAT, REAMED, LAND_DEPTH = 0.02, 0.01, 0.014, 0.01
 FOOT_INSET = 0.03  # mm of island around its foot plate; chosen: the etching's tolerance
 WEB = 0.8  # mm of base left over the chips' pocket, at least: checks/data/shop.toml's floor of a pocket
 FRAME_CORNER = 0.5  # mm; chosen: a cutter of 1 mm, and room for the outer chips
+COPPER = 1.4, 0.6  # mm of tracks and vias beyond the outer chips along x and y: cell_board.CLOSE
 CHIP_ROOM = 0.2  # mm above and around a chip; chosen: soldered boards' usual tolerance
 SPRING_STEEL = Material("1.4310", 7900, "+C1300", "EN 10151")
 NEODYMIUM = Material("NdFeB, nickel plated", 7500)
@@ -401,10 +402,28 @@ def base(layout: PlanarLayout) -> Part:
     )
 
 
+def copper_room(layout: PlanarLayout) -> tuple[float, float]:
+    """Half sides of the room of the chips' copper if they lie close, mm."""
+    last = layout.elements[-1]
+    return last.x + layout.chip.length / 2.0 + COPPER[0], last.y + layout.chip.width / 2.0 + COPPER[1]
+
+
+def frame_room(layout: PlanarLayout) -> tuple[float, float]:
+    """Half sides of the frame's opening, mm: the cells', or as much more as the chips' copper needs and the
+    walls bear."""
+    hole = METRIC[SCREW].clearance / 2.0
+    walls = (WEB + (border / 2.0 + hole if layout.screwed else 0.0) for border in layout.borders)
+    x, y = (
+        round(max(field, min(copper, half - wall)), 9)
+        for field, copper, half, wall in zip(layout.field_half, copper_room(layout), layout.half, walls)
+    )
+    return x, y
+
+
 def frame(layout: PlanarLayout) -> Part:
     """Keeps the board off the base by the chips' height."""
     t = chip_room(layout)
-    x, y = layout.field_half
+    x, y = frame_room(layout)
     room = rounded_polygon(
         [Corner((sx * x, sy * y), FRAME_CORNER) for sx, sy in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
     )

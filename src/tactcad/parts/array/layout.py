@@ -203,12 +203,12 @@ class Layout:
         given = self.design.array.spacer
         return round(self.design.array.pitch - self.design.sheet.thickness, 9) if given is None else given
 
-    @property
+    @cached_property
     def positions(self) -> int:
         """Elements side by side in the longer row; the other row is filled up with blanks."""
         return max(len(arms) for arms in self.design.array.row_arms)
 
-    @property
+    @cached_property
     def stack(self) -> float:
         """Length of elements and spacers, one spacer outside at each end."""
         return round(self.positions * self.design.array.pitch + self.spacer, 6)

@@ -127,14 +127,12 @@ def _stop_lines(layout: Layout) -> Iterator[Deflection]:
         ("carrier", "held by its threads in the middle", carrier_opens, carrier, "fail"),
         ("carrier", "the array held by its end plates alone", lambda layout, y: held, carrier, "flag"),
     )
+    arms = []
+    for p in layout.elements:
+        gap = max(stop_limit(layout, p, give=0.0).gap, 1e-9)  # of a zero allowance, any share is passed
+        arms.append((p.y, layout.design.rating.overload_force * p.load_arm / p.arm, 1e3 * SHARE * gap))
     for part, model, give, fields, severity in cases:
-        states = []
-        for p in layout.elements:
-            force = layout.design.rating.overload_force * p.load_arm / p.arm
-            gap = max(stop_limit(layout, p, give=0.0).gap, 1e-9)  # of a zero allowance, any share is passed
-            allowed = 1e3 * SHARE * gap
-            states.append((give(layout, p.y) * force * 1e3 / allowed, force, allowed))
-        share, force, allowed = max(states)
+        share, force, allowed = max((give(layout, y) * f * 1e3 / most, f, most) for y, f, most in arms)
         where, why = f"{force_field} on one arm, at its tip", "a tenth of the stop's gap"
         gives = share * allowed
         yield Deflection("array", part, model, force, where, gives, allowed, why, fields, severity)

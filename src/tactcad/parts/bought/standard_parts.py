@@ -5,6 +5,7 @@ standard's lengths; ball bearings of ISO 15; O-rings of ISO 3601-1 in static fac
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 from math import pi, sqrt
 
 from tactcad.contour import chain, circle
@@ -27,6 +28,7 @@ def dowel_lengths(size: str) -> tuple[float, ...]:
     return tuple(float(n) for n in _SERIES if shortest <= n <= longest)
 
 
+@cache
 def dowel_diameter(size: str) -> float:
     """Diameter as modelled, mm: the middle of tolerance m6."""
     return round(sum(dowel_limits(size)) / 2, 6)

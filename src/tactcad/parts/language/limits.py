@@ -11,6 +11,7 @@ from __future__ import annotations
 import re
 from collections.abc import Collection, Iterator
 from dataclasses import dataclass
+from functools import cache
 from typing import Literal
 
 from tactcad.design.text_values import data_rows
@@ -129,6 +130,7 @@ def _row(table: list[dict[str, str]], size: float, what: str) -> dict[str, str]:
     raise ValueError(f"{what}: no limits for {size:g} mm; legal: up to {table[-1]['to']} mm")
 
 
+@cache
 def deviations(code: str, size: float) -> tuple[float, float]:
     """Lower and upper deviation of an ISO 286 tolerance class, mm.
 
