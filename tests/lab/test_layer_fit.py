@@ -108,7 +108,7 @@ def test_coverage_of_every_cell(h, E, angle):
         f"median half-width {np.median(half):.3f}"
     )
     # labs on one press share its heights and thickness: a share is known to 0.5 %, by the presses' scatter
-    assert 0.93 < right[:, 0].mean() < 0.975 and 0.93 < np.nanmean(right[:, 1:]) < 0.985
+    assert 0.93 < right[:, 0].mean() < 0.975 and 0.93 < np.nanmean(right[:, 1:]) < 0.975
     assert np.median(half) < min(0.12, 1.3 * least(h, E, angle))
 
 

@@ -52,8 +52,8 @@ STAGES = 4  # each finds the noise anew
 # expected values: with all free from the start, one fit in ten missed the best, with an unread pad lifted.
 ROUGH = 10.0
 # Least noise, of the largest change of a signal: the law of pads that lift leaves 0.004 to 0.009 % (rms) of
-# signals by single patches, 0.029 % where a whole row lifts.
-SHAPE = 3.5e-4
+# signals by single patches, 0.032 % where a whole row lifts.
+SHAPE = 3.2e-4
 # Of the weight of the pads' heights in a pair's fit. The readings give heights over the approach; taken as
 # known, their size would tell the approach and so K_obj, by as much as one pair does.
 FREE_HEIGHTS = 0.01
