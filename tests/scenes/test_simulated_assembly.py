@@ -38,7 +38,10 @@ pytestmark = pytest.mark.cad
 
 STEP = 2.0  # mm
 MOST = 0.1  # mm3: chords of curved faces
-DESIGNS = ("macro-array", "better-array", "double-sample", "smallest-bearing", "soft-tissue", "tissue-array")
+DESIGNS = (  # planar-array's steps are those of jaw-array, three times as many
+    *("macro-array", "better-array", "double-sample", "smallest-bearing", "soft-tissue", "tissue-array"),
+    "jaw-array",
+)
 STACK = Path(__file__).parents[2] / "docs" / "stack.md"
 
 

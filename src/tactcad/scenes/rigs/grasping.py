@@ -311,14 +311,24 @@ def place_axis(b: Builder, rig: GuideLayout, rail: str, lift: float) -> tuple[st
     disc = rigs.ballast(rig, ballast)
     name = b.place("BA", disc, (0, 0, z))
     b.meet(platform, name)
+    axis, off = tuple(b.groups["axis"]), (0.0, 0.0, 2 * rig.grasping.rail_length)
+    inner, aside = (LATCH_KEPT - LATCH, 0.0, 0.0), (LATCH_KEPT - LATCH, -off[2], 0.0)
     b.step(
         "Ballast",
         (0, 0, 305),
-        "Slide all that moves up off the guide on the carriage's transport rail and weigh it without that "
-        f"rail, leads held up: with the ballast it must be {rig.grasping.moving_weight:g} N, "
-        f"{rig.grasping.moving_weight / NEWTON:.1f} g. Turn the ballast thinner until it is; then slide it "
-        "back, on the latch.",
+        "Lay the ballast on the platform. Hold the bar, take the latch out, and slide all that "
+        "moves up off the guide on the carriage's transport rail. Weigh it without that rail, leads held up: "
+        f"with the ballast it must be {rig.grasping.moving_weight:g} N, "
+        f"{rig.grasping.moving_weight / NEWTON:.1f} g. Turn the ballast thinner until it is. Slide it back, "
+        "and set the latch under the carriage again, in the inner of its holes.",
         tools=("balance, 0.1 g",),
+        order=[
+            (name,),
+            Move(("LP1",), inner, (aside,)),
+            Move(axis, up, (off,)),
+            Move(axis, off, (up,)),
+            Move(("LP1",), aside, (inner,)),
+        ],
         at=up,
     )
     return name, z + disc.extrusion.thickness
