@@ -245,7 +245,10 @@ def array_steps(layout: Layout, placed: Mapping[str, Sequence[Placement]]) -> tu
             FIRST_PLATE,
             (0, 0.6 * width, 0),
             _first_plate(layout, c, placed[FIRST_PLATE][0]),
-            ("arbor press or vice with soft jaws",),
+            (
+                "arbor press or vice with soft jaws",
+                f"a sleeve {round(c.dowel - dowel_depth(layout), 9):g} mm long as stop",
+            ),
         ),
         step(STACK, (0, -way, 0), _stacking(layout, placed[STACK]), fan=ABREAST, elements=True),
         step(OTHER_PLATE, (0, -way - width, 0), _other_plate(c, placed[OTHER_PLATE][0])),

@@ -38,7 +38,7 @@ def setting(design: Design, pose: Pose = REST) -> Scene:
         (0, 0, 0),
         f"Press the pins into the fixture from above, {rig.pin_length - PIN_OUT:g} mm deep. Set it on a "
         "flat bench and wipe floor and steps.",
-        tools=("arbor press or vice with soft jaws",),
+        tools=("arbor press or vice with soft jaws", f"a sleeve {PIN_OUT:g} mm long as stop"),
     )
     blanks = [p for p in whole.placements if p.designator.startswith("BL")]
     strip = ""
