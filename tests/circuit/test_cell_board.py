@@ -63,9 +63,12 @@ CLOSE_BOARDS = [  # rows, columns, pitch, buses, border, side
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("values", CLOSE_BOARDS)
+@pytest.mark.parametrize(
+    "values", [*CLOSE_BOARDS[:8], *(pytest.param(v, marks=pytest.mark.nightly) for v in CLOSE_BOARDS[8:])]
+)
 def test_kicad_finds_nothing_on_boards_of_a_small_pitch(values, tmp_path):
-    """One to four rows, one to eight columns, one bus to three; screwed where screws find room."""
+    """One to four rows, one to eight columns, one bus to three; screwed where screws find room. The second
+    half is nightly: slow tests are near their time."""
     needs_kicad()
     rows, columns, pitch, buses, border, side = values
     joint = "screwed" if border >= 6.6 and side >= 4.6 else "bonded"
