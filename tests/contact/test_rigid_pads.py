@@ -63,6 +63,12 @@ def test_a_pads_law_is_its_patches_and_its_derivative_a_difference():
         assert d == pytest.approx(numeric, rel=1e-5, abs=1e-5)
 
 
+def test_an_endless_tilt_has_no_finite_force():
+    """A fit that runs away tries such; it was an IndexError."""
+    with np.errstate(all="ignore"):
+        assert not np.isfinite(pad_law(0.49, 6.0, "bonded", 2.0, 3.0)(np.array([0.1, np.inf, 0.0]))[0]).any()
+
+
 def test_whole_pads_change_nothing_between_each_other_and_moments_are_those_of_the_pressure():
     pads, _, move = array()
     many = ManyPresses(pads.x, pads.y, pads.length, pads.width, move, Body(1.0, 0.49, 6.0))

@@ -20,6 +20,7 @@ TOE, HEEL, SIDE = 0.35, 0.35, 0.03  # mm, gull wings of more than 0.625 mm pitch
 FINE_SIDE = -0.02  # mm, of finer pitch
 # mm, of terminals below a body, level B; chosen: side 0.01, heel 0.03 less, for 0.2 between pads at corners
 NO_LEAD_TOE, NO_LEAD_HEEL, NO_LEAD_SIDE = 0.3, -0.03, -0.05
+FLUSH = "QFN-16-FLUSH"
 FLUSH_TOE = 0.1  # mm; chosen, for chips 4 mm apart: level C asks for 0.2; solder below the terminal holds
 CHIP_TOE, CHIP_HEEL, CHIP_SIDE = 0.35, -0.05, 0.0  # mm, chips from 1608 on, level B
 LEAST_GAP = 0.2  # mm between pads
@@ -153,6 +154,7 @@ def pin_header(pins: int) -> Footprint:
 
 
 SMD = "tactcad"
+QFN_16 = (4, 0.5, (2.9, 3.1), (0.3, 0.5), (0.18, 0.30), 1.45, 0.9)
 FOOTPRINTS = {
     f.name: f
     for f in (
@@ -181,13 +183,10 @@ FOOTPRINTS = {
             "Package_CSP:LFCSP-32-1EP_5x5mm_P0.5mm_EP3.6x3.6mm", "JEDEC MO-220 VHHD",
         ),
         no_leads(
-            "QFN-16", 4, 0.5, (2.9, 3.1), (0.3, 0.5), (0.18, 0.30), 1.45, 0.9,
+            "QFN-16", *QFN_16,
             "Package_DFN_QFN:QFN-16-1EP_3x3mm_P0.5mm_EP1.45x1.45mm", "JEDEC MO-220 VEED",
         ),
-        no_leads(
-            "QFN-16-FLUSH", 4, 0.5, (2.9, 3.1), (0.3, 0.5), (0.18, 0.30), 1.45, 0.9,
-            "", "JEDEC MO-220 VEED", toe=FLUSH_TOE,
-        ),
+        no_leads(FLUSH, *QFN_16, "", "JEDEC MO-220 VEED", toe=FLUSH_TOE),
         chip(
             "0603", (1.45, 1.75), (0.2, 0.5), (0.65, 0.95), 0.95,
             "Capacitor_SMD:C_0603_1608Metric", "EIA 0603",

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from tactcad.design.messages import CheckFailure
 
 from .copper import VIA_DRILL, BoardCopper, Placed, Point
-from .footprints import COURTYARD
+from .footprints import COURTYARD, FLUSH
 from .letters import strokes, width
 
 INK = 0.15  # mm wide; board houses print from 0.12 to 0.15 on
@@ -40,9 +40,7 @@ def printed(board: BoardCopper, name: str) -> Iterator[tuple[Point, Point]]:
         text = placed.component.designator
         free = (p for p in _beside(placed, text) if not _meets(_box(text, *p), taken))
         if (found := next(free, None)) is None:
-            if (
-                placed.component.element
-            ):  # chips side by side, without room for names: the first pin's mark stays
+            if placed.component.footprint == FLUSH:  # chips side by side: the first pin's mark stays
                 continue
             raise CheckFailure(f"circuit board: no place to print {text}")
         at, upright = found

@@ -66,9 +66,8 @@ class PadLaw:
     def moments(self, r: np.ndarray) -> np.ndarray:
         """`spread` of pads at r, [..., power, 3]."""
         _, ratio, sign, _ = self._place(r)
-        at = ratio * (KNOTS - 1)
-        cell = np.minimum(at.astype(int), KNOTS - 2)
-        u = (at - cell)[..., None, None]
+        cell, u = _cell(ratio)
+        u = u[..., None, None]
         i, j = cell[..., 0], cell[..., 1]
         low = (1 - u[..., 0, :, :]) * self.spread[i, j] + u[..., 0, :, :] * self.spread[i + 1, j]
         high = (1 - u[..., 0, :, :]) * self.spread[i, j + 1] + u[..., 0, :, :] * self.spread[i + 1, j + 1]
@@ -90,9 +89,7 @@ class PadLaw:
         """
         side = np.array([self.length, self.width])
         size, ratio, sign, touches = self._place(r)
-        at = ratio * (KNOTS - 1)
-        cell = np.minimum(at.astype(int), KNOTS - 2)
-        u = at - cell
+        cell, u = _cell(ratio)
         coefficients = self.cells[cell[..., 0], cell[..., 1]]
         power = np.stack([np.ones_like(u), u, u * u, u**3], -1)
         slope = np.stack([np.zeros_like(u), np.ones_like(u), 2 * u, 3 * u * u], -1) * (KNOTS - 1)
@@ -114,6 +111,14 @@ class PadLaw:
         derivative = np.concatenate([by_size[..., None], by_fall * (sign * side)[..., None, :]], -1)
         derivative = derivative * turn[..., None]
         return forces * touches[..., None], derivative * touches[..., None, None]
+
+
+def _cell(ratio: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The cell between knots of each ratio, and the place in it; NaN, as an endless tilt has it, is in the
+    first."""
+    at = ratio * (KNOTS - 1)
+    cell = np.clip(at.astype(int), 0, KNOTS - 2)
+    return cell, at - cell
 
 
 @lru_cache(maxsize=32)

@@ -52,7 +52,8 @@ STAGES = 4  # each finds the noise anew
 # expected values: with all free from the start, one fit in ten missed the best, with an unread pad lifted.
 ROUGH = 10.0
 # Least noise, of the largest change of a signal: the law of pads that lift leaves 0.004 to 0.009 % (rms) of
-# signals by single patches, 0.032 % where a whole row lifts.
+# signals by single patches, 0.032 % where a whole row lifts, and 0.058 % at most in a climb (3 mm, 3 MPa,
+# 5 degrees). Where it leaves more than this, the fit finds so much noise.
 SHAPE = 3.2e-4
 # Of the weight of the pads' heights in a pair's fit. The readings give heights over the approach; taken as
 # known, their size would tell the approach and so K_obj, by as much as one pair does.

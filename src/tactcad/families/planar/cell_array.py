@@ -13,6 +13,7 @@ from tactcad.parts.bought.electronic_parts import MECHANICAL, Supply
 from tactcad.parts.bought.standard_parts import dowel, dowel_diameter, dowel_limits
 from tactcad.parts.language.description import Part
 from tactcad.scenes.builder import Builder
+from tactcad.scenes.moves import PRESS
 from tactcad.scenes.requirement import LEAST_PRESS, Deviations, DimensionLimits, Requirement, summed, variable
 from tactcad.scenes.rig import ARRAY, rig_of
 from tactcad.scenes.scene import Scene
@@ -62,10 +63,11 @@ def scene(design: PlanarDesign, _pose: object = None) -> Scene:
     for pin in pins:
         b.meet(pin, base, "press")
         b.meet(pin, frame)
-    first = "Press the two dowels into the base, flush with its lower face."
+    first, tool = "Press the two dowels into the base, flush with its lower face.", PRESS
     if not layout.screwed:
         first = "Bond every layer on the one below, flush at its edges, between two straight edges."
-    b.step("Base", (0, 0, -15), first)
+        tool = "two straight edges"
+    b.step("Base", (0, 0, -15), first, tools=(tool,))
     lower = b.place("SP", parts.lower_spacer(layout), (0, 0, layout.base_z))
     b.meet(lower, base)
     b.step(

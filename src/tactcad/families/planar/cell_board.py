@@ -29,7 +29,7 @@ from math import ceil
 
 from tactcad.circuit.board_layout import Routing
 from tactcad.circuit.copper import BOTTOM, CLEARANCE, VIA, BoardCopper, Point, Via
-from tactcad.circuit.footprints import footprint
+from tactcad.circuit.footprints import FLUSH, footprint
 from tactcad.circuit.letters import width as printed_width
 from tactcad.circuit.netlist import GROUND, Component, Netlist, Pin
 from tactcad.circuit.printed import HIGH
@@ -193,7 +193,7 @@ def netlist(layout: PlanarLayout) -> Netlist:
                 order,
                 pins,
                 element=e.number,
-                footprint="QFN-16" if roomy(layout) else "QFN-16-FLUSH",
+                footprint="QFN-16" if roomy(layout) else FLUSH,
             )
         )
         parts.append(

@@ -36,6 +36,7 @@ from tactcad.parts.rules.calibration_rules import FITS as CALIBRATION_FITS
 from tactcad.parts.rules.rule import misfit
 
 from ..builder import Builder
+from ..moves import PRESS
 from ..rig import ARRAY, Rig, none
 from ..scene import AGAINST_Y, ALONG_Y, DOWN, UPRIGHT, Held, Placement, Scene, Step
 
@@ -245,10 +246,7 @@ def array_steps(layout: Layout, placed: Mapping[str, Sequence[Placement]]) -> tu
             FIRST_PLATE,
             (0, 0.6 * width, 0),
             _first_plate(layout, c, placed[FIRST_PLATE][0]),
-            (
-                "arbor press or vice with soft jaws",
-                f"a sleeve {round(c.dowel - dowel_depth(layout), 9):g} mm long as stop",
-            ),
+            (PRESS, f"a sleeve {round(c.dowel - dowel_depth(layout), 9):g} mm long as stop"),
         ),
         step(STACK, (0, -way, 0), _stacking(layout, placed[STACK]), fan=ABREAST, elements=True),
         step(OTHER_PLATE, (0, -way - width, 0), _other_plate(c, placed[OTHER_PLATE][0])),

@@ -22,6 +22,7 @@ from tactcad.parts.rigs.stiffness import bonding_lines
 from tactcad.parts.rules.bonding_rules import FITS
 
 from ..builder import Builder
+from ..moves import PRESS
 from ..rig import Rig, none
 from ..rig_requirements import bonding_requirements
 from ..scene import AGAINST_Y, REST, UPRIGHT, Placement, Pose, Rotation, Scene
@@ -85,7 +86,7 @@ def _pad(b: Builder, rig: BondingLayout, y: float) -> str:
 
 
 LOUPE = "stereo microscope or loupe, 20x"
-FIXTURE_TOOLS = ("arbor press or vice with soft jaws", "balance, 1 g")
+FIXTURE_TOOLS = (PRESS, "balance, 1 g")
 SURFACE_TOOLS = ("nitrile gloves",)
 GAUGE_TOOLS = (LOUPE, "tweezers", "clear tape for gauges")
 TRIM_TOOLS = ("scalpel",)

@@ -95,6 +95,7 @@ from .array import array, without_gaps
 # Relative difference allowed between the parts' weight and the design's: the ballast is turned to weight
 # anyway.
 AGREES = 0.005
+INNER = (LATCH_KEPT - LATCH, 0.0, 0.0)  # mm, from the latch's outer hole, where the scene has it
 
 
 def grasping(design: Design, pose: Pose = REST) -> Scene:
@@ -187,11 +188,10 @@ def _levelled(layout: Layout) -> str:
 
 def _latched(on: bool) -> list[Move]:
     """The latch by hand from its outer hole into the inner one, under the carriage, or back."""
-    side = LATCH_KEPT - LATCH
-    out, over, inner = (0.0, -LATCH_LENGTH, 0.0), (side, -LATCH_LENGTH, 0.0), (side, 0.0, 0.0)
+    out, over = (0.0, -LATCH_LENGTH, 0.0), (INNER[0], -LATCH_LENGTH, 0.0)
     if on:
-        return [Move(("LP1",), STILL, (out, over, inner))]
-    return [Move(("LP1",), inner, (over, out, STILL))]
+        return [Move(("LP1",), STILL, (out, over, INNER))]
+    return [Move(("LP1",), INNER, (over, out, STILL))]
 
 
 def _guide(b: Builder, rig: GuideLayout, post: str, latched: bool) -> str:
@@ -312,7 +312,7 @@ def place_axis(b: Builder, rig: GuideLayout, rail: str, lift: float) -> tuple[st
     name = b.place("BA", disc, (0, 0, z))
     b.meet(platform, name)
     axis, off = tuple(b.groups["axis"]), (0.0, 0.0, 2 * rig.grasping.rail_length)
-    inner, aside = (LATCH_KEPT - LATCH, 0.0, 0.0), (LATCH_KEPT - LATCH, -off[2], 0.0)
+    aside = (INNER[0], -off[2], 0.0)
     b.step(
         "Ballast",
         (0, 0, 305),
@@ -324,10 +324,10 @@ def place_axis(b: Builder, rig: GuideLayout, rail: str, lift: float) -> tuple[st
         tools=("balance, 0.1 g",),
         order=[
             (name,),
-            Move(("LP1",), inner, (aside,)),
+            Move(("LP1",), INNER, (aside,)),
             Move(axis, up, (off,)),
             Move(axis, off, (up,)),
-            Move(("LP1",), aside, (inner,)),
+            Move(("LP1",), aside, (INNER,)),
         ],
         at=up,
     )

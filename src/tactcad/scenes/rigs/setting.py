@@ -11,6 +11,7 @@ from tactcad.parts.bought.standard_parts import dowel
 from tactcad.parts.rigs.setting_fixture import BASE, PIN_OUT, SettingLayout
 
 from ..builder import Builder
+from ..moves import PRESS
 from ..rig import Rig, none
 from ..scene import REST, STILL, UPRIGHT, Contact, Held, Move, Pose, Rotation, Scene
 from .array import COPLANAR, STACKED, array, flatness_tools, setting_words, wedge
@@ -38,7 +39,7 @@ def setting(design: Design, pose: Pose = REST) -> Scene:
         (0, 0, 0),
         f"Press the pins into the fixture from above, {rig.pin_length - PIN_OUT:g} mm deep. Set it on a "
         "flat bench and wipe floor and steps.",
-        tools=("arbor press or vice with soft jaws", f"a sleeve {PIN_OUT:g} mm long as stop"),
+        tools=(PRESS, f"a sleeve {PIN_OUT:g} mm long as stop"),
     )
     blanks = [p for p in whole.placements if p.designator.startswith("BL")]
     strip = ""
