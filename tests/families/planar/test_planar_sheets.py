@@ -20,6 +20,7 @@ from tactcad.families.planar import cell_array, parts
 from tactcad.families.planar.cell_layout import PlanarLayout
 from tactcad.families.planar.cell_plan import cell_plan
 from tactcad.parts.rules import load
+from tactcad.scenes import make_scene
 from tactcad.solids.step import to_bytes
 
 pytestmark = pytest.mark.cad
@@ -144,9 +145,10 @@ def test_stack_names_every_fit_and_all_are_made():
         assert len(own) == fits
         for requirement in own:
             assert (requirement.margin(requirement.value(built)) >= 0.0).all(), requirement.name
+        parts = {p.part_no: p for s in ("array", "bonding") for p in make_scene(lay.design, s).parts}
         for v in known.values():  # every limit that it names is the part's
             for number, limit in v.stated:
-                part = next(p for p in cell_array.scene(lay.design).parts if p.part_no == number)
+                part = parts[number]
                 found = {c.name for c in part.characteristics} | {g.name for g in part.geometric}
                 assert limit in found
 

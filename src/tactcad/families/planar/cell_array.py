@@ -12,6 +12,7 @@ from tactcad.parts.array.stiffness_table import Deflection
 from tactcad.parts.bought.electronic_parts import MECHANICAL, Supply
 from tactcad.parts.bought.standard_parts import dowel, dowel_diameter, dowel_limits
 from tactcad.parts.language.description import Part
+from tactcad.scenes import scene_names
 from tactcad.scenes.builder import Builder
 from tactcad.scenes.moves import PRESS
 from tactcad.scenes.requirement import LEAST_PRESS, Deviations, DimensionLimits, Requirement, summed, variable
@@ -189,7 +190,9 @@ def limits(
     of_rigs: dict[str, Requirement] = {}
     for scene in scenes:
         of_rigs |= {r.name: r for r in rig_of(d, scene.name).requirements(layout, known)}
-    asked = variable("", -tol.magnet_place, tol.magnet_place, n)  # of whoever bonds them without the jig
+    if MAGNET_BOND not in known and "bonding" in scene_names(d):  # judged by its jig without being asked for
+        rig_of(d, "bonding").requirements(layout, known)
+    asked = variable("", -tol.magnet_place, tol.magnet_place, n)  # of a design that the jig does not take
     places = [
         [v for v in known if v.startswith(MAGNET_PLACE + axis)] or [MAGNET_PLACE + axis] for axis in "xy"
     ]
