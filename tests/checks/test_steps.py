@@ -171,8 +171,10 @@ def test_every_step_tells_its_moves_and_ends_in_place():
                 assert {"designator", "from", "path", "by"} <= set(move)
                 assert at.get(move["designator"], move["from"]) == move["from"]
                 at[move["designator"]] = move["path"][-1]
-        assert set(at) == {p.designator for p in made.placements}
-        assert all(offset == [0.0, 0.0, 0.0] for offset in at.values())
+        aids = {aid["designator"] for aid in told["aids"]}
+        assert set(at) == {p.designator for p in made.placements} | aids
+        off = {m["designator"] for s in told["steps"] if s["apart"] for m in s["moves"]} | aids
+        assert all(offset == [0.0, 0.0, 0.0] for name, offset in at.items() if name not in off)
 
 
 def test_usual_ways_follow_from_the_placements():

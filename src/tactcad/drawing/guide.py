@@ -68,7 +68,7 @@ def exploded(scene: Scene) -> tuple[Placement, ...]:
 def at_step(scene: Scene, number: int) -> tuple[tuple[Placement, ...], tuple[Placement, ...]]:
     """Parts in place before step `number` (from 1), or on the bench for a bench step; and the step's own
     parts at the start of its first move, or FAR before its end."""
-    placed = {p.designator: p for p in scene.placements}
+    placed = {p.designator: p for p in (*scene.placements, *scene.aids)}
     there: dict[str, Vector] = {}
     coming: dict[str, Vector] = {}
     benched: set[str] = set()

@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from math import floor
 from types import MappingProxyType
+from typing import Any
 
 from tactcad.design.fields import present
 from tactcad.design.tree import Design
@@ -224,13 +225,15 @@ def array_steps(layout: Layout, placed: Mapping[str, Sequence[Placement]]) -> tu
         fan: int = 0,
         elements: bool = False,
         limit: str = "",
-        held: tuple[Held, ...] = (),
+        **freedoms: Any,
     ) -> Step:
         names = tuple(p.designator for p in placed.get(title, ()))
         return Step(
-            title, names, explode, text, fan=fan, tools=tools, elements=elements, limit=limit, held=held
+            title, names, explode, text, fan=fan, tools=tools, elements=elements, limit=limit, **freedoms
         )
 
+    pins = " ".join(p.designator for p in placed[FIRST_PLATE] if p.part.bought)
+    other = placed[OTHER_PLATE][0].designator
     on_ledge = [p.designator for p in placed[STACK] if p.part.part_no != spacer(layout).part_no]
     ledges = tuple(sorted(on_ledge, key=lambda name: (len(name), name)))
 
@@ -248,8 +251,22 @@ def array_steps(layout: Layout, placed: Mapping[str, Sequence[Placement]]) -> tu
             _first_plate(layout, c, placed[FIRST_PLATE][0]),
             (PRESS, f"a sleeve {round(c.dowel - dowel_depth(layout), 9):g} mm long as stop"),
         ),
-        step(STACK, (0, -way, 0), _stacking(layout, placed[STACK]), fan=ABREAST, elements=True),
-        step(OTHER_PLATE, (0, -way - width, 0), _other_plate(c, placed[OTHER_PLATE][0])),
+        step(
+            STACK,
+            (0, -way, 0),
+            _stacking(layout, placed[STACK]),
+            fan=ABREAST,
+            elements=True,
+            sets=(f"all on {pins}: along x and z, to the play of their holes", "each on the last: along y"),
+            leaves=("each: turn about its dowel, along y away from the last",),
+        ),
+        step(
+            OTHER_PLATE,
+            (0, -way - width, 0),
+            _other_plate(c, placed[OTHER_PLATE][0]),
+            sets=(f"{other} on {pins}: along x and z, turn about y", f"{other} on the stack: along y"),
+            leaves=(f"{other}: along y, away from the stack",),
+        ),
         step(
             COPLANAR,
             (0, -way - 20.0 - 1.6 * width, 0),
