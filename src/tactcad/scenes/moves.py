@@ -25,6 +25,9 @@ BENCH = 100.0
 SAME = 1e-6  # mm: boxes that touch
 FASTENERS = ("cap screw", "set screw", "nut")
 TWEEZED = "tweezers"
+# mm: width and thickness of a fingertip. Chosen: half of an adult's 16 to 20 mm, which is soft (often quoted
+# from Dandekar et al., J. Biomech. Eng. 125, 2003; not read).
+FINGERTIP = (12.0, 10.0)
 PRESS = "arbor press or vice with soft jaws"
 
 Box = tuple[Vector, Vector]

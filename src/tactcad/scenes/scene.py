@@ -123,8 +123,8 @@ class Step:
     fixed by contacts, which the check of steps tries with the solids. `sets` and `leaves`: freedoms that it
     fixes and leaves, if contacts do not show them; `needs`: other parts that must be in place or away.
     `by`: what makes the usual moves, if no hand or driver does. `limit`: the limit that the step must reach,
-    noted on the assembly drawing. `apart`: what its last moves
-    take off stays off.
+    noted on the assembly drawing. `view`: of its picture in the guide (drawing/engine/picture.py).
+    `apart`: what its last moves take off stays off.
     """
 
     title: str
@@ -145,6 +145,7 @@ class Step:
     needs: tuple[Need, ...] = ()
     by: str = ""
     limit: str = ""
+    view: str = "above"
     apart: bool = False
 
 

@@ -22,7 +22,7 @@ from tactcad.parts.array.layout import LEVER
 from tactcad.parts.language.description import Vector
 from tactcad.parts.language.finding import Finding
 from tactcad.parts.language.metric import METRIC
-from tactcad.scenes.moves import PRESS, TWEEZED, Moment, entering, moments
+from tactcad.scenes.moves import FINGERTIP, PRESS, TWEEZED, Moment, entering, moments
 from tactcad.scenes.scene import FREEDOMS, HAND, STILL, Held, Placement, Scene, Step
 from tactcad.solids.build import build
 from tactcad.solids.changed import closed
@@ -38,9 +38,8 @@ AROUND = 0.1  # mm around a body's path on a leg: only this much of a large part
 REACH = 0.03  # mm that a body is shifted to find its contacts
 SLIP = 0.1  # mm, in a hole that slips over a pin: 0.075 is the play to one side that rules leave a dowel
 PATCH = 1e-3  # mm3 of overlap that shows a contact: 0.03 mm2
-# Two fingertips that hold a pin: thickness and width of each, and length of the pin's end that they cover
-# (mm). Chosen: half of an adult's fingertip of 16 to 20 mm, which is soft.
-THICK, WIDE, GRIP = 10.0, 12.0, 4.0
+WIDE, THICK = FINGERTIP
+GRIP = 4.0  # mm of a pin's end that two fingertips cover
 FINGER = 40.0  # mm of a finger behind its tip; chosen: two of its joints
 TWEEZERS, TWEEZERS_LONG = (1.0, 1.0), 20.0  # mm: the tip of plastic ones, and behind it; chosen
 # Chosen, in mm: an arbor press's ram over a pin, and the wall of the sleeve that is its stop; an open-ended
@@ -345,7 +344,9 @@ class Trial:
             room = np.array([middle - half, middle + half])
             room[:, k] = sorted((start, stop))
             if sign * (stop - start) > FILM and not self._free(room, moment, self._standing(moment, without)):
-                message = f"step '{step.title}': {name}: no room for the press's {what}, {2 * half:g} mm wide"
+                message = (
+                    f"step '{step.title}': {name}: no room for the press's {what}, {2 * half:.3g} mm wide"
+                )
                 yield Finding("tool-room", "fail", name, (), 0.0, 2 * half, message)
 
     def _spanner_room(self, step: Step, moment: Moment) -> Iterator[Finding]:
@@ -367,9 +368,7 @@ class Trial:
                 fits.append(not any(self._meets(turned, other, moment) for other in moment.standing))
             if any(a and b for a, b in zip(fits, fits[1:] + fits[:1])):
                 return
-        message = (
-            f"step '{step.title}': {name}: no spanner of {flats:g} mm goes on and turns by {SWING:g} degrees"
-        )
+        message = f"step '{step.title}': {name}: no spanner of {flats:g} mm turns by {SWING:g} degrees on it"
         yield Finding("tool-room", "fail", name, (), 0.0, SWING, message)
 
     def _standing(self, moment: Moment, without: Sequence[str] = ()) -> dict[str, np.ndarray]:

@@ -349,7 +349,7 @@ def place_axis(b: Builder, rig: GuideLayout, rail: str, lift: float) -> tuple[st
             Move(("LP1",), aside, (INNER,)),
         ],
         at=up,
-        sets=(f"{name} on {platform}: along z; along x and y by the pin",),
+        sets=(f"{name} on {platform}: along z", f"{name}: along x and y, by the pin"),
         leaves=(f"{name}: up the pin, turn about z",),
     )
     return name, z + disc.extrusion.thickness
