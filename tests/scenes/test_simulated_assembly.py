@@ -2,6 +2,8 @@
 
 Every part is moved along its path in steps of STEP mm, past what stands there by then; it may share with
 another part no more than both share at their places, or a third more: a screw that passes its whole thread.
+
+    python tests/scenes/test_simulated_assembly.py         prints the table of docs/stack.md
 """
 
 from __future__ import annotations
@@ -182,8 +184,8 @@ SHIFT = 0.12  # mm at a body's ends: more than any pin's play in a hole
 
 
 def held(said: str, bodies: dict[str, manifold3d.Manifold], found: Tried) -> None:
-    """A body that some parts hold, such as 'EP1 EP2 by FX1: along z, turn about x': shifted, or
-    turned about its middle, one way or the other, it cuts into them."""
+    """A body that some parts hold, such as 'EP1 EP2 by FX1: along z, turn about x': shifted, or turned about
+    its own middle or that of a part inside it, one way or the other, it cuts into them."""
     line = re.fullmatch(r"([A-Z0-9 ]+?)(, each)? (?:by|on|against) ([A-Z0-9 ]+): (.*)", said)
     if not line or line[4].startswith("all"):
         return
@@ -192,24 +194,26 @@ def held(said: str, bodies: dict[str, manifold3d.Manifold], found: Tried) -> Non
     for own in [[n] for n in names] if line[2] else [names]:
         body = manifold3d.Manifold.batch_boolean([bodies[n] for n in own], manifold3d.OpType.Add)
         box = np.reshape(body.bounding_box(), (2, 3))
-        middle, now = box.mean(axis=0), (body ^ holding).volume()
-        far = np.degrees(2 * SHIFT / np.linalg.norm(box[1] - box[0]))
+        now, far = (body ^ holding).volume(), np.degrees(2 * SHIFT / np.linalg.norm(box[1] - box[0]))
+        pivots = [np.reshape(b.bounding_box(), (2, 3)).mean(axis=0) for b in (body, *(bodies[n] for n in by))]
         along, _, about = line[4].partition("turn about")
         for axes, turns in ((along, False), (about, True)):
             for axis in re.findall(r"\b[xyz]\b", axes):
                 found.freedoms += 1
-                unit = np.eye(3)["xyz".index(axis)]
-                moved = [
-                    body.translate(list(-middle)).rotate(list(s * far * unit)).translate(list(middle))
-                    if turns
-                    else body.translate(list(s * SHIFT * unit))
-                    for s in (-1, 1)
-                ]
-                cuts = [(m ^ holding).volume() - now for m in moved]
-                if max(cuts) < 1e-3:
-                    found.met.append(
-                        f"{' '.join(own)} is free {'about' if turns else 'along'} {axis}: {cuts}"
-                    )
+                k = "xyz".index(axis)
+                inside = [np.all(np.delete((box[0] < p) & (p < box[1]), k)) for p in pivots]
+                cuts = []
+                for pivot in [p for p, near in zip(pivots, inside) if near] if turns else pivots[:1]:
+                    moved = []
+                    for way in (-np.eye(3)[k], np.eye(3)[k]):
+                        if turns:
+                            turned = body.translate(list(-pivot)).rotate(list(far * way))
+                            moved.append(turned.translate(list(pivot)))
+                        else:
+                            moved.append(body.translate(list(SHIFT * way)))
+                    cuts.append(max((m ^ holding).volume() - now for m in moved))
+                if min(cuts) < 1e-3:
+                    found.met.append(f"{' '.join(own)} is free {'about' if turns else 'along'} {axis}")
 
 
 def table(found: dict[str, dict[str, Tried]]) -> str:
@@ -233,7 +237,7 @@ def whole(design: str, folder: Path) -> dict[str, Tried]:
 
 
 def test_a_part_in_the_way_is_seen(tmp_path):
-    """The stack let down 10 mm aside comes down on a pin of the fixture; lifted by 0.2 nothing holds it."""
+    """The stack let down 10 mm aside comes down on a pin of the fixture; 0.2 over it nothing holds it."""
     path, told = exported(load("macro-array"), "setting", tmp_path)
     for move in told["steps"][1]["moves"]:
         move["path"] = [[-1.5, 0.0, 0.0], *move["path"]]
