@@ -253,7 +253,7 @@ def guide_files(plan: Plan) -> Iterator[Batch]:
     """Each scene's assembly guide: an exploded view, a picture a step, the page that shows them; and every
     move as data."""
     from tactcad.drawing import guide
-    from tactcad.scenes.moves import guide_json
+    from tactcad.scenes.moves import guide_json, moments
 
     def picture(
         scene: Scene,
@@ -274,9 +274,10 @@ def guide_files(plan: Plan) -> Iterator[Batch]:
             continue
         title = f"{plan.design.design.title}: {scene.name}, exploded"
         yield picture(scene, "exploded", title, guide.exploded(scene))
+        order = moments(scene)
         for n, step in enumerate(scene.steps, start=1):
             if guide.pictured(step):
-                standing, coming = guide.at_step(scene, n)
+                standing, coming = guide.at_step(scene, order, n)
                 title = f"{scene.name}, step {n}: {step.title}"
                 yield picture(scene, f"{n:02d}", title, (*standing, *coming), coming, step.view)
         if face := guide.sensing_face_map(scene):

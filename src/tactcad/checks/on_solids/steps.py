@@ -33,7 +33,7 @@ from ..check import Check
 
 PLACES = 9  # on a leg, at least, from the first to the last contact of a pair's boxes; chosen
 FILM = 0.05  # mm3: what chords of two curved faces, 0.002 mm off, may share over a pin's length
-CHORD, TURN = 0.02, 0.1  # mm, rad: of the meshes
+CHORD, TURN = 0.02, 0.2  # mm, rad: of the meshes; the kernel's facets turn by half as much
 AROUND = 0.1  # mm around a body's path on a leg: only this much of a large part is cut each time
 REACH = 0.03  # mm that a body is shifted to find its contacts
 SLIP = 0.1  # mm, in a hole that slips over a pin: 0.075 is the play to one side that rules leave a dowel
@@ -188,7 +188,8 @@ class Trial:
         if (*key, p.rotation) not in self.known:
             if key not in self.known:
                 shape = build(p.part) if p.designator in self.aids else self.shapes[p.part.part_no]
-                self.known[key] = closed(triangles(shape, CHORD, TURN))
+                # always by the quicker method: no file holds this mesh
+                self.known[key] = closed(triangles(shape, CHORD, TURN, many=0))
             turn = np.column_stack([np.array(p.rotation), np.zeros(3)])
             self.known[*key, p.rotation] = self.known[key].transform(turn)
         return self.known[*key, p.rotation]
