@@ -9,6 +9,7 @@ from dataclasses import replace
 import pytest
 from built import shapes_of
 from test_tools import block
+from variants import variant
 
 from tactcad.checks.on_solids.steps import Trial, check_steps
 from tactcad.parts.bought.screws import cap_screw, jam_nut
@@ -224,6 +225,19 @@ def test_a_drill_point_is_told_from_a_thread():
     one = scene((step("T1"), step("SC1")), IN_T1)
     stuck = replace(one, placements=(replace(one.placements[0], part=blind), one.placements[1]))
     assert found(one) == [] and [f.check for f in found(stuck)] == ["insertion"]
+
+
+@pytest.mark.parametrize("rows", [[[6.0]], [[4.0, 7, 6, 8] * 3, [8.0, 5, 4, 7] * 3]], ids=["one", "tie rods"])
+def test_hands_get_into_small_and_long_arrays(rows):
+    """One element's strip is laid by tweezers; a long array's nuts, low over the fixture, want sockets: an
+    open spanner has no room there."""
+    made = make_scene(variant({"array.row_arms": rows}), "setting")
+    assert found(made) == []
+    (nuts,) = (s for s in made.steps if s.title == "Coplanar pads")
+    spanner = Move(("NU1",), (0, -30.0, 0), (STILL,), "spanner 5.5 mm")
+    if "NU1" in nuts.designators:
+        other = replace(made, steps=(*made.steps[:-1], replace(nuts, order=(spanner,))))
+        assert ("tool-room", "NU1") in {(f.check, f.part) for f in found(other)}
 
 
 @pytest.mark.parametrize("name", ["macro-array", "soft-tissue"])

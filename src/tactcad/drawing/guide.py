@@ -128,7 +128,7 @@ def tools(design: CommonTables, scene: Scene) -> list[str]:
     for part in {p.part.part_no: p.part for p in scene.placements if p.designator not in ready}.values():
         if part.thread:
             m = METRIC[part.thread]
-            sizes = {"set screw": ("hex key", m.set_key), "nut": ("two spanners", m.nut)}
+            sizes = {"set screw": ("hex key", m.set_key), "nut": ("two deep sockets", m.nut)}
             driver, turned = sizes.get(part.kind, ("hex key", m.key)), f"{part.thread} {part.kind}s"
             if turned not in drivers.setdefault(driver, []):
                 drivers[driver].append(turned)

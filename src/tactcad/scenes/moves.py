@@ -207,7 +207,7 @@ def driver(part: Part) -> str:
         return ""
     m = METRIC[part.thread]
     if part.kind == "nut":
-        return f"spanner {m.nut:g} mm"
+        return f"deep socket {m.nut:g} mm"
     return f"hex key {m.set_key if part.kind == 'set screw' else m.key:g} mm"
 
 
