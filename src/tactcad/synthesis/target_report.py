@@ -296,7 +296,7 @@ def bounds_part(r: dict[str, Any]) -> str:
     if not r["bounds"]:
         return ""
     rows = [(b["field"], value(b["value"]), b["whose"], value(b["beyond"]), beyond(b)) for b in r["bounds"]]
-    heads = ("field", "value", "whose", "one step beyond", "half-width there")
+    heads = ("field", "value", "whose", "one step beyond", "half-width there, as drawn")
     text = "<h2>Bounds that the answer lies on</h2>" + table(heads, rows)
     return text + "".join(f"<p>{escape(field)}: {escape(by)}.</p>" for field, by in r["room"].items())
 
@@ -310,14 +310,14 @@ def bound_line(b: dict[str, Any]) -> str:
     """A bound in one line, for the terminal."""
     return (
         f"bound: {b['field']} {said(b['value'])} ({b['whose']}); one step beyond, {said(b['beyond'])}: "
-        f"half-width {beyond(b)}"
+        f"{beyond(b) if b['half_width'] is None else f'half-width as drawn {beyond(b)}'}"
     )
 
 
 def limit_line(limit: dict[str, Any]) -> str:
     """A field that limits the answer in one line, for the terminal."""
     return (
-        f"{limit['field']}: {said(limit['value'])} eased to {said(limit['eased'])}: half-width "
+        f"{limit['field']}: {said(limit['value'])} eased to {said(limit['eased'])}: half-width as drawn "
         f"{100 * limit['half_width']:.3g} % ({-100 * limit['gain']:.2g} %)"
     )
 
