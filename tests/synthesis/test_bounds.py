@@ -113,7 +113,7 @@ def test_met_is_null_unless_a_half_width_was_asked(tmp_path, capsys, answer_only
     assert told["met"] is met and ("no half-width was asked" in answer(told)) == (asked is None)
     page = (tmp_path / "o" / "report.html").read_text()
     assert told["bounds"] and all(f"<td>{b['field']}</td>" in page for b in told["bounds"])
-    assert told["size_mm"][0] > 50.0
+    assert told["size_mm"][0] > 50.0 and '<meta name="viewport" content="width=device-width' in page
 
 
 def test_a_bound_says_which_half_width_it_compares():

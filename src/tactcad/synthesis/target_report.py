@@ -38,6 +38,7 @@ body{font:15px/1.5 system-ui,sans-serif;margin:2em auto;max-width:62em;padding:0
 table{border-collapse:collapse;margin:.5em 0 1.2em}
 th,td{text-align:left;padding:.25em .8em .25em 0;border-bottom:1px solid #d8dee4}
 td.n,th.n{text-align:right;font-variant-numeric:tabular-nums}svg{max-width:100%;height:auto}
+@media(max-width:700px){table{display:block;overflow-x:auto}}
 .answer{font-size:1.25em;border-left:5px solid #31618f;padding-left:.8em}
 .no{border-color:#b3372b}small{color:#4a5866}
 """
@@ -275,6 +276,7 @@ def page(title: str, parts: Sequence[str]) -> bytes:
     body = "\n".join(parts)
     return (
         f'<!doctype html>\n<html lang="en"><head><meta charset="utf-8"><title>{escape(title)}</title>'
+        '<meta name="viewport" content="width=device-width,initial-scale=1">'
         f"<style>{STYLE}</style></head>\n<body>\n{body}\n</body></html>\n"
     ).encode()
 
