@@ -134,7 +134,8 @@ def tools(design: CommonTables, scene: Scene) -> list[str]:
                 torques.add(tight)
     lines = [f"{kind} {size:g} mm: {', '.join(whose)}" for (kind, size), whose in sorted(drivers.items())]
     if torques:
-        lines.append(f"torque driver for {', '.join(f'{t:g}' for t in sorted(torques))} N m, with these bits")
+        said = ", ".join(f"{t:g}" for t in sorted(torques))
+        lines.append(f"torque driver for {said} N m, with these bits; oil every thread")
     return [*lines, *dict.fromkeys(tool for step in scene.steps for tool in step.tools)]
 
 

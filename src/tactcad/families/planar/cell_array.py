@@ -66,7 +66,8 @@ def scene(design: PlanarDesign, _pose: object = None) -> Scene:
         b.meet(pin, frame)
     first, tool = "Press the two dowels into the base, flush with its lower face.", PRESS
     if not layout.screwed:
-        first = "Bond every layer on the one below, flush at its edges, between two straight edges."
+        out = ", the board's tongue past one of them" if cell_board.tongue(layout) else ""
+        first = f"Bond every layer on the one below, flush at its edges between two straight edges{out}."
         tool = "two straight edges"
     b.step("Base", (0, 0, -15), first, tools=(tool,))
     lower = b.place("SP", parts.lower_spacer(layout), (0, 0, layout.base_z))
