@@ -100,10 +100,10 @@ def test_what_a_guide_uses_up_is_in_its_bill(scene, said, part_no):
         ("calibration", "Array on its mount", r"row 1 at the end marked x"),
         ("calibration", "Mount on the stages", r"rows then run along y"),
         ("calibration", "Mount on the stages", r"fit a quarter turn off too: look at the mark"),
-        ("calibration", "Calibrate, then fit the stop plate", r"take the carrier off .* \(hex key"),
+        ("calibration", "Take the array off, then fit the stop plate", r"take the carrier off .* \(hex key"),
         ("grasping", "Riser", r"rows at z = 85 and 165 mm"),
         ("grasping", "Riser", r"upright within 0\.01 mm on 100 mm .* shim foil between post and riser"),
-        ("grasping", "Guide rail", r"end stop's pin in below the rail, 8 mm deep"),
+        ("grasping", "End stop", r"8 mm deep"),
     ],
 )
 def test_a_step_says_what_hands_must_know(scene, step, said):
