@@ -70,7 +70,7 @@ def at_step(
 ) -> tuple[tuple[Placement, ...], tuple[Placement, ...]]:
     """Parts in place before step `number` (from 1), or on the bench for a bench step; and the step's own
     parts at the start of its first move, or FAR before its end. `order`: the scene's moments."""
-    placed = {p.designator: p for p in scene.placements}
+    placed = {p.designator: p for p in (*scene.placements, *scene.aids)}
     there: dict[str, Vector] = {}
     coming: dict[str, Vector] = {}
     benched: set[str] = set()
@@ -136,7 +136,8 @@ def tools(design: CommonTables, scene: Scene) -> list[str]:
                 torques.add(tight)
     lines = [f"{kind} {size:g} mm: {', '.join(whose)}" for (kind, size), whose in sorted(drivers.items())]
     if torques:
-        lines.append(f"torque driver for {', '.join(f'{t:g}' for t in sorted(torques))} N m, with these bits")
+        said = ", ".join(f"{t:g}" for t in sorted(torques))
+        lines.append(f"torque driver for {said} N m, with these bits; oil every thread")
     return [*lines, *dict.fromkeys(tool for step in scene.steps for tool in step.tools)]
 
 
