@@ -229,8 +229,8 @@ def test_a_drill_point_is_told_from_a_thread():
 
 @pytest.mark.parametrize("rows", [[[6.0]], [[4.0, 7, 6, 8] * 3, [8.0, 5, 4, 7] * 3]], ids=["one", "tie rods"])
 def test_hands_get_into_small_and_long_arrays(rows):
-    """One element's strip is laid by tweezers; a long array's nuts, low over the fixture, want sockets: an
-    open spanner has no room there."""
+    """One element's strip is laid by tweezers; a long array's nuts, low over the fixture, want nut drivers:
+    an open spanner has no room there."""
     made = make_scene(variant({"array.row_arms": rows}), "setting")
     assert found(made) == []
     (nuts,) = (s for s in made.steps if s.title == "Coplanar pads")

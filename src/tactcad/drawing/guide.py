@@ -128,7 +128,7 @@ def tools(design: CommonTables, scene: Scene) -> list[str]:
     for part in {p.part.part_no: p.part for p in scene.placements if p.designator not in ready}.values():
         if part.thread:
             m = METRIC[part.thread]
-            sizes = {"set screw": ("hex key", m.set_key), "nut": ("two deep sockets", m.nut)}
+            sizes = {"set screw": ("hex key", m.set_key), "nut": ("two nut drivers", m.nut)}
             driver, turned = sizes.get(part.kind, ("hex key", m.key)), f"{part.thread} {part.kind}s"
             if turned not in drivers.setdefault(driver, []):
                 drivers[driver].append(turned)
@@ -136,7 +136,8 @@ def tools(design: CommonTables, scene: Scene) -> list[str]:
                 torques.add(tight)
     lines = [f"{kind} {size:g} mm: {', '.join(whose)}" for (kind, size), whose in sorted(drivers.items())]
     if torques:
-        lines.append(f"torque driver for {', '.join(f'{t:g}' for t in sorted(torques))} N m, with these bits")
+        said = ", ".join(f"{t:g}" for t in sorted(torques))
+        lines.append(f"torque driver for {said} N m, with these bits; oil every thread")
     return [*lines, *dict.fromkeys(tool for step in scene.steps for tool in step.tools)]
 
 

@@ -202,12 +202,13 @@ class _Assembly:
 
 
 def driver(part: Part) -> str:
-    """The driver of a screw or nut; "" for other parts."""
+    """The driver of a screw or nut; "" for other parts. Nuts stand too near each other, or too low over the
+    setting fixture, for spanners."""
     if part.kind not in FASTENERS:
         return ""
     m = METRIC[part.thread]
     if part.kind == "nut":
-        return f"deep socket {m.nut:g} mm"
+        return f"nut driver {m.nut:g} mm"
     return f"hex key {m.set_key if part.kind == 'set screw' else m.key:g} mm"
 
 

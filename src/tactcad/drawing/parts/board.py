@@ -80,6 +80,7 @@ class Board:
         self._boxes: list[Quad] = []  # around texts and letters in frames, and what bounds each
         self._bounds: list[Box] = []
         self._array: np.ndarray | None = None
+        self._bounds_array: np.ndarray | None = None
 
     def add(self, items: Iterable[Item]) -> None:
         for item in items:
@@ -96,11 +97,13 @@ class Board:
     def _keep_clear(self, quad: Quad) -> None:
         self._boxes.append(quad)
         self._bounds.append(bounds(quad))
+        self._bounds_array = None
 
     def _texts_meeting(self, box: Box) -> list[Quad]:
         """Texts and framed letters whose bounds meet the box."""
-        b = np.array(self._bounds).reshape(-1, 4)
-        x0, y0, x1, y1 = box
+        if self._bounds_array is None:
+            self._bounds_array = np.array(self._bounds).reshape(-1, 4)
+        b, (x0, y0, x1, y1) = self._bounds_array, box
         return [
             self._boxes[i]
             for i in np.flatnonzero((b[:, 2] >= x0) & (b[:, 0] <= x1) & (b[:, 3] >= y0) & (b[:, 1] <= y1))

@@ -67,7 +67,8 @@ def scene(design: PlanarDesign, _pose: object = None) -> Scene:
     first = "Press the two dowels into the base, flush with its lower face."
     tools: tuple[str, ...] = (PRESS, "a flat plate under the base as stop")
     if not layout.screwed:
-        first = "Bond every layer on the one below, flush at its edges, between two straight edges."
+        out = ", the board's tongue past one of them" if cell_board.tongue(layout) else ""
+        first = f"Bond every layer on the one below, flush at its edges between two straight edges{out}."
         tools = ("two straight edges",)
     b.step("Base", (0, 0, -15), first, tools=tools, sets=_laid(layout, base, frame))
     lower = b.place("SP", parts.lower_spacer(layout), (0, 0, layout.base_z))
