@@ -231,7 +231,7 @@ def table(found: dict[str, dict[str, Tried]]) -> str:
 def shown() -> dict[str, dict[str, str]]:
     """The page's table, by design and scene."""
     text = re.search(r"<!-- table assembly -->\n(.*?)\n<!-- end -->", STACK.read_text("utf-8"), re.S)[1]
-    head, _, *rows = ([cell for cell in line.strip("|").split("|")] for line in text.splitlines())
+    head, _, *rows = (line[1:-1].split("|") for line in text.splitlines())
     return {d: {row[0]: row[n] for row in rows if row[n]} for n, d in enumerate(head) if n}
 
 
