@@ -49,7 +49,8 @@ STEPS = 40
 SETTLED = 0.1  # of a cost in squared standard errors: the estimate is then a third of one from its end
 STAGES = 4  # each finds the noise anew
 # The first stage's noise over the law's error; in it all but modulus, slopes, offsets and approaches keep
-# their expected values: with all free from the start, one fit in ten missed the best, with an unread pad lifted.
+# their expected values: with all free from the start, one fit in ten missed the best, with an unread pad
+# lifted.
 ROUGH = 20.0
 # Error of the law of pads that lift, of the largest change of a signal: what it leaves (rms) of signals by
 # single patches at 1 MPa and 5 degrees. It is much the same at every load, so loads do not average it as they
@@ -62,7 +63,7 @@ SAME = 1e-6  # relative difference of stiffness below which two elements are no 
 LOOSE = 1e-4  # share of a prior's weight that leaves the parameter practically free
 THICKER = 0.02  # relative step by which the layer's part in the sinks is found
 BATCH = 250  # grasps at once: 0.3 GB
-NEWTON, LOADED = 30, 1e-4  # steps at most to the approach of a load, and its relative error
+NEWTON, LOADED = 30, 1e-6  # steps at most to the approach of a load, and its relative error
 
 
 @dataclass(frozen=True)
@@ -345,6 +346,14 @@ def _fit(
             N[:, p, o] += resting.sum() / sigma[:, None] ** 2
         return N, down - q @ weigh
 
+    def follow(i: np.ndarray, q: np.ndarray, state: tuple) -> np.ndarray:
+        """Steps of the approaches alone, [grasp, load]."""
+        _, off, over = cost_of(i, q, state)
+        a, t = np.arange(part["approach"].start, part["approach"].stop), np.arange(len(model.load))
+        A, B = state[4][:, :, t, a] / noise[i, None, None], state[5][:, t, a]
+        downhill = (A * off / noise[i, None, None]).sum(1) + B * over * load_weight
+        return downhill / ((A**2).sum(1) + B**2 * load_weight)
+
     every = np.arange(G)
     q = _start(model, pressed, before, load[touching])
     state = model.signals(q)
@@ -369,6 +378,16 @@ def _fit(
             tried_q = q[i] + step / np.maximum(far, 1.0)[:, None]
             tried = model.signals(tried_q, now[2], lifted[i])
             gain = cost[i] - cost_of(i, tried_q, tried)[0]
+            if (bent := np.flatnonzero(gain < 0)).size:
+                # along a valley that bends, approaches follow what else has moved
+                followed_q = tried_q[bent]
+                followed_q[:, part["approach"]] += follow(i[bent], followed_q, tuple(a[bent] for a in tried))
+                followed = model.signals(followed_q, tried[2][bent], lifted[i[bent]])
+                gain_by_it = cost[i[bent]] - cost_of(i[bent], followed_q, followed)[0]
+                up = gain_by_it > gain[bent]
+                tried_q[bent[up]], gain[bent[up]] = followed_q[up], gain_by_it[up]
+                for old, new in zip(tried, followed):
+                    old[bent[up]] = new[up]
             better = gain >= 0
             q[i[better]] = tried_q[better]
             for old, new in zip(state, tried):
@@ -381,7 +400,9 @@ def _fit(
             if not len(at_work):
                 break
         if not stage:
-            noise = by_law
+            # from the law's error at once, one inclined fit in two ran out of steps
+            left = cost_of(every, q, state)[1]
+            noise = np.clip((left**2).mean((1, 2)) ** 0.5, by_law, noise / 3)
             continue
         N, down = normal(every, q, state)
         down_loose = (down + q @ weigh - q @ loose)[:, free]
