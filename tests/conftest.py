@@ -8,9 +8,12 @@ from __future__ import annotations
 import gc
 import os
 
+import manifold3d
 import pytest
 from built import shapes_of
 from variants import variant
+
+gc.disable()  # while 300 modules are loaded: nearly all of it stays
 
 
 @pytest.fixture(scope="session", autouse=True)
@@ -25,6 +28,17 @@ def own_cache(tmp_path_factory):
         yield
 
 
+@pytest.fixture(scope="session", autouse=True)
+def one_thread_of_meshes():
+    """manifold3d starts as many threads as there are cores when it first computes. Tests run side by side
+    already: a second thread, which waits by turning round, takes a third more processor time."""
+    cores = os.sched_getaffinity(0)
+    os.sched_setaffinity(0, {min(cores)})
+    ball = manifold3d.Manifold.sphere(1.0, 4)
+    assert (ball ^ ball.translate((0.1, 0.0, 0.0))).volume() > 0.0
+    os.sched_setaffinity(0, cores)
+
+
 def pytest_collection_modifyitems(items):
     """Pages first: typing them takes one worker long, and at the end the other one would stand idle."""
     items.sort(key=lambda item: item.path.name != "test_pages.py")
@@ -36,6 +50,7 @@ def pytest_collection_finish():
     time."""
     gc.collect()
     gc.freeze()
+    gc.enable()
     gc.set_threshold(100_000, 20, 100)
 
 

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from tactcad.cli.main import COMMANDS, main
+from tactcad.cli.main import COMMANDS, main, parser_of
 
 ROOT = Path(__file__).parents[1]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
@@ -52,6 +52,14 @@ def test_every_command_named_is_a_command_and_every_option_is_known(capsys):
         text = capsys.readouterr().out
         for option in re.findall(r"--[a-z]+", rest):
             assert option in text, f"tactcad {name} has no {option}"
+
+
+def test_a_command_shown_with_arguments_lacks_none():
+    shown = [line for block in BLOCKS for line in block.splitlines()] + re.findall(r"`([^`\n]+)`", README)
+    for line in shown:
+        words = shlex.split(line, comments=True)
+        if "tactcad" in (Path(w).name for w in words[:1]) and words[2:] and words[1] in COMMANDS:
+            parser_of(words[1], raises=True).parse(words[2:])
 
 
 def test_make_targets_named_exist():

@@ -11,13 +11,14 @@ from built import shapes_of
 from test_tools import block
 
 from tactcad.checks.on_solids.steps import Trial, check_steps
-from tactcad.parts.bought.screws import cap_screw
+from tactcad.parts.bought.screws import cap_screw, jam_nut, nut
 from tactcad.parts.bought.standard_parts import STAGES, dowel
 from tactcad.parts.language.description import Hole
 from tactcad.parts.rigs import stand
 from tactcad.parts.rules import load
 from tactcad.scenes import make_scene, scene_names
-from tactcad.scenes.moves import guide_json, settles, step_moves
+from tactcad.scenes.builder import Builder
+from tactcad.scenes.moves import driver, guide_json, settles, step_moves
 from tactcad.scenes.scene import DOWN, STILL, Contact, Held, Move, Need, Placement, Scene, Step
 
 pytestmark = pytest.mark.cad
@@ -75,6 +76,80 @@ BAD = {
 @pytest.mark.parametrize("check", sorted(BAD))
 def test_a_bad_step_of_each_kind_is_found(check):
     assert check in {f.check for f in found(BAD[check])}
+
+
+def beside(*walls: Placement, by: str = "", press: bool = False, moved: tuple = ()) -> list[str]:
+    """What is found if a pin of 3 x 16, or a thin nut M6, goes where walls stand."""
+    nut = by.startswith("spanner")
+    put = Placement("JN1", jam_nut(), (0, 0, 10)) if nut else Placement("DW1", dowel("3", 16.0), (0, 0, 2))
+    met = (Contact("DW1", "P1", "press"),) if press else ()
+    last = step(put.designator, by="" if nut else by, order=moved)
+    steps = (step("P1", *(w.designator for w in walls)), last)
+    made = Scene("beside", (Placement("P1", HOLED), *walls, put), met, steps=steps)
+    return [f"{f.check}: {f.message}" for f in found(made)]
+
+
+def wall(at: float, top: float, wide: float = 20.0) -> Placement:
+    """Across x, its nearer face so far from the pin's axis, up to so far over the plate."""
+    name = f"W{'A' if at > 0 else 'B'}{abs(at):g}"
+    return Placement(name, block(f"WALL-{top:g}", 2, wide, top), (at + (1 if at > 0 else -1), 0, 10))
+
+
+def test_a_press_wants_room_for_ram_and_sleeve():
+    """Over 8 mm of pin: a ram 20 mm wide, and a sleeve 2 mm thick, which a lower wall 3 mm off is in."""
+    assert beside(wall(10.1, 20), press=True) == [] == beside(wall(3.6, 8), press=True)
+    (ram,) = beside(wall(9.9, 20), press=True)
+    assert "tool-room" in ram and "press's ram, 20 mm wide" in ram
+    (sleeve,) = beside(wall(3.0, 7), press=True)
+    assert "press's sleeve, 7 mm wide" in sleeve
+
+
+def test_a_fingertip_reaches_what_it_lays():
+    """Down a hole of 3.02 mm none does, tweezers do; between walls 9 mm apart, higher than the pin, none."""
+    drilled = block("ROUND", 20, 20, 30, Hole("way", (0, 0, 0), (0, 0, 1), 3.02, 30, True))
+    deep = Placement("W1", drilled, (0, 0, 10))
+    assert beside(wall(5.1, 60), wall(-5.1, 60)) == [] == beside(deep, by="tweezers")
+    for walls in ((wall(4.5, 60), wall(-4.5, 60)), (deep,)):
+        (said,) = beside(*walls)
+        assert said.startswith("fingers") and "no fingertip, 12 x 10 mm, reaches it" in said
+
+
+def test_a_spanner_wants_room_to_turn():
+    """Its handle, 60 mm long, turns by 30 degrees between walls along it; between closer ones it does not."""
+    turn = (Move(("JN1",), (0, 0, 30.0), (STILL,), "spanner 10 mm"),)
+    assert beside(by="spanner", moved=turn) == []
+    assert beside(wall(42, 20, 200), wall(-42, 20, 200), by="spanner", moved=turn) == []
+    (said,) = beside(wall(25, 20, 200), wall(-25, 20, 200), by="spanner", moved=turn)
+    assert said.startswith("tool-room") and "no spanner of 10 mm turns by 30 degrees on it" in said
+
+
+def test_a_thin_spanner_goes_where_a_usual_one_does_not():
+    """Under a plate 3.5 mm over the nut's seat, with a shaft through it: 3 mm do, 5 do not."""
+    over = Placement("W1", block("OVER", 60, 60, 5), (0, 0, 13.5))
+    for thick, free in ((", 3 mm thick", True), ("", False)):
+        turn = (Move(("JN1",), (40.0, 0, 0), (STILL,), f"spanner 10 mm{thick}"),)
+        assert (beside(over, by="spanner", moved=turn) == []) is free
+
+
+@pytest.mark.parametrize("away", [True, False])
+def test_a_box_that_a_step_brings_is_moved_and_stands_there(away):
+    """A gauge block on the plate is in the pin's way until it is taken off it; the roof is in the block's."""
+    b = Builder()
+    aid = b.aid("block", (-5, -5, 10), (5, 5, 20))
+    out = (Move((aid,), STILL, ((0, 0, 30.0),)),) if away else ()
+    steps = (step("P1", order=(("P1",), Move((aid,), (0, 0, 30.0), (STILL,)), *out)), step("DW1"))
+    with_block = replace(scene(steps), aids=tuple(b.aids))
+    assert ("insertion" in {f.check for f in found(with_block)}) is not away
+    low = scene((step("P1", "RO1"), step(order=steps[0].order[1:])), roof=30.0)
+    cuts = [f for f in found(replace(low, aids=tuple(b.aids))) if f.check == "insertion"]
+    assert {f.part for f in cuts} == {"AID1"} and all("into RO1" in f.message for f in cuts)
+
+
+def test_only_a_step_that_takes_apart_leaves_parts_off():
+    off = Move(("P1",), STILL, ((0, 0, 30.0),))
+    assert found(scene((step("P1"), step(order=(off,), apart=True)))) == []
+    (said,) = found(scene((step("P1"), step(order=(off,)))))
+    assert "P1 is left 30 mm off" in said.message
 
 
 def test_a_pin_wants_its_length_before_its_hole():
@@ -171,8 +246,10 @@ def test_every_step_tells_its_moves_and_ends_in_place():
                 assert {"designator", "from", "path", "by"} <= set(move)
                 assert at.get(move["designator"], move["from"]) == move["from"]
                 at[move["designator"]] = move["path"][-1]
-        assert set(at) == {p.designator for p in made.placements}
-        assert all(offset == [0.0, 0.0, 0.0] for offset in at.values())
+        aids = {aid["designator"] for aid in told["aids"]}
+        assert set(at) == {p.designator for p in made.placements} | aids
+        off = {m["designator"] for s in told["steps"] if s["apart"] for m in s["moves"]} | aids
+        assert all(offset == [0.0, 0.0, 0.0] for name, offset in at.items() if name not in off)
 
 
 def test_usual_ways_follow_from_the_placements():
@@ -201,3 +278,8 @@ def test_every_stage_sold_can_be_screwed_down(monkeypatch, stage):
     met = tuple(c for c in made.contacts if {c.first, c.second} <= names)
     stands = replace(made, placements=placed, contacts=met, steps=steps, groups=(), motions=(), ready=())
     assert found(stands) == []
+
+
+def test_small_nuts_are_turned_by_a_nut_driver():
+    """Rods of M2 stand 7 mm apart: a spanner's head meets the next nut (6 mm and half a nut's corners)."""
+    assert [driver(nut(thread)) for thread in ("M2", "M3")] == ["nut driver 4 mm", "spanner 5.5 mm"]

@@ -19,6 +19,7 @@ from tactcad.families.planar.checks import check_board
 from tactcad.families.planar.parts import frame
 from tactcad.parts.rules import load
 from tactcad.scenes import make_scene
+from tactcad.scenes.bom import bom_rows
 
 SCREWED = {"joint": "screwed", "border": 8.2, "side": 5.8}
 DESIGNS = Path(__file__).parents[2] / "hardware"
@@ -167,6 +168,13 @@ def test_the_bill_counts_what_is_fitted(board):
     fitted = Counter(c.part_no for c in board.netlist.components)
     assert lines - Counter(["CIRCUIT-BOARD"]) == fitted and chips <= fitted
     assert {p.part.process for p in scene.placements if p.designator[0] == "U"} == {"included"}
+    rows = bom_rows(scene, "A", {})  # whoever buys by the parts list finds one line with an order code
+    sold = {s.mpn for s in scene.supplies if s.description == "three-axis Hall chip"}
+    for code in sold:
+        (line,) = (r for r in rows if r.mpn == code)
+        assert line.process == "electronic" and line.spares
+    for row in (r for r in rows if r.process == "included"):
+        assert not row.mpn and not row.spares and "ordered by" in row.standard_designation
 
 
 @pytest.mark.parametrize(

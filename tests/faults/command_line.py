@@ -147,9 +147,11 @@ from tactcad.cli.main import COMMANDS, main
 modules = "drawing.assemblies.assembly_sheets export.pipeline export.sides release.make"
 modules += " checks.run solids.build"
 modules += " lab.batch lab.grasp paper.validation"
-for name in (*modules.split(), *("cli." + name for name in COMMANDS)):
+names = ["tactcad." + name for name in (*modules.split(), *("cli." + name for name in COMMANDS))]
+late = ["ezdxf", "matplotlib.ft2font", "pypdf", "reportlab.pdfgen.canvas", "scipy.ndimage", "trimesh"]
+for name in (*late, *names):
     with contextlib.suppress(ModuleNotFoundError):  # where extras are hidden
-        importlib.import_module("tactcad." + name)
+        importlib.import_module(name)
 gc.freeze()  # or a child would copy all of it when it looks for what is no longer used
 while line := sys.stdin.buffer.readline():
     asked = json.loads(line)

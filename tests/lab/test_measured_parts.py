@@ -6,6 +6,7 @@ from __future__ import annotations
 import csv
 import io
 import json
+from dataclasses import replace
 from hashlib import sha256
 from itertools import permutations
 
@@ -23,9 +24,9 @@ LAYOUT = Layout(DESIGN)
 REISSUED = f"{DESIGN.design.revision}M"
 
 
-def sheet(tmp_path, values: dict[tuple[str, str], float]):
+def sheet(tmp_path, values: dict[tuple[str, str], float], layout=LAYOUT):
     """The exported sheet, filled in as a shop does."""
-    rows = list(csv.DictReader(io.StringIO(inspection_bytes(LAYOUT).decode(), newline="")))
+    rows = list(csv.DictReader(io.StringIO(inspection_bytes(layout).decode(), newline="")))
     for row in rows:
         if (value := values.get((row["element"], row["characteristic"]))) is not None:
             row["measured"] = f"{value:.4f}"
@@ -52,6 +53,8 @@ def test_spacers_are_the_pitch_less_the_measured_sheet(tmp_path):
     digest = sha256(path.read_bytes()).hexdigest()[:16]
     assert any(path.name in note and digest in note and "3.042" in note for note in part.notes)
     assert again.design.design.revision == REISSUED
+    two = replace(DESIGN, design=replace(DESIGN.design, revision="AB"))
+    assert reissued(two, sheet(tmp_path, thick(3.042), Layout(two))).design.design.revision == "ABM"
     # beside the stack's last spacer the array is as long as drawn
     assert Layout(again.design).stack - LAYOUT.stack == pytest.approx(0.958 - 1.0)
 

@@ -557,3 +557,16 @@ def test_what_the_stop_plate_s_rule_calls_legal_is_legal():
     for thickness in (2.5, 4.0):
         derived = {**soft, "clamp.stop_plate_thickness": thickness, "clamp.hold_down_pitch": DROP}
         assert broken_rules(variant(derived)) == []
+
+
+def test_every_broken_rule_is_found_also_behind_a_broken_one():
+    """Faults of different parts are found together as they are alone; the refusal names the first only."""
+    faults = (
+        {"element.fillet_radius": 0.5},
+        {"element.rear_length": 12.0},
+        {"clamp.carrier_screw_offset": 30.0},
+    )
+    alone = {b.check for fault in faults for b in broken_rules(variant(fault))}
+    together = variant({path: value for fault in faults for path, value in fault.items()})
+    assert {b.check for b in broken_rules(together, every=True)} == alone
+    assert {b.check for b in broken_rules(together)} < alone

@@ -25,7 +25,8 @@ from tactcad.parts.array.layout import Layout
 from tactcad.parts.rules import load
 from tactcad.review.causes import causes
 from tactcad.review.consequences import KINDS, meaning
-from tactcad.review.summary import MOST_LINES, lines, markdown
+from tactcad.review.effect import SensorEffect
+from tactcad.review.summary import MOST_LINES, effect_lines, lines, markdown
 from tactcad.stacks.virtual_build import sensor
 
 ROOT = Path(__file__).parents[2]
@@ -430,6 +431,13 @@ def test_the_summary_is_short_and_holds_no_markup(tmp_path, capsys):
     assert len({line.count("|") for line in text.splitlines() if line.startswith("|")}) == 1
     assert "<img" not in page.read_text() and "&lt;img src=x&gt;" in page.read_text()
     assert "What it means" in page.read_text()
+
+
+def test_a_size_that_changes_in_print_only_is_told():
+    size = (64.0, 40.0, 26.0)
+    assert [*effect_lines(SensorEffect(size=(size, (64.02, 40.0, 26.0))))] == []
+    (said,) = effect_lines(SensorEffect(size=(size, (64.0, 47.0, 26.0))))
+    assert said == "overall size: 64.0 x 40.0 x 26.0 mm -> 64.0 x 47.0 x 26.0 mm"
 
 
 def test_the_summary_of_no_change_says_so():

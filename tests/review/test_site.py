@@ -8,6 +8,8 @@ from pathlib import Path
 import pytest
 from browser import BROKEN
 
+from tactcad.synthesis.target_report import STYLE, table
+
 ROOT = Path(__file__).parents[2]
 SIZES = ((1400, 900), (1920, 1080), (800, 1000), (390, 844))
 pytestmark = pytest.mark.slow  # builds the site, starts a browser
@@ -69,3 +71,13 @@ def test_no_cell_is_narrower_than_its_longest_word(opened, name, size):
     page = opened(name, size=size)
     assert page.evaluate(BROKEN) == []
     assert page.evaluate("document.documentElement.scrollWidth") <= size[0]
+
+
+def test_the_report_of_a_target_fits_a_phone(running, tmp_path):
+    """A table that is wider is scrolled by itself, not with the page."""
+    wide = table([f"column-{n}" for n in range(12)], [["0123456789"] * 12])
+    (tmp_path / "report.html").write_text(f"<style>{STYLE}</style>{wide}")
+    page = running.new_page(viewport={"width": 390, "height": 844})
+    page.goto((tmp_path / "report.html").as_uri())
+    assert page.evaluate("document.documentElement.scrollWidth") <= 390
+    page.close()

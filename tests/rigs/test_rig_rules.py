@@ -3,6 +3,8 @@ scene."""
 
 from __future__ import annotations
 
+import re
+
 import pytest
 from variants import DROP, variant
 
@@ -98,6 +100,24 @@ def test_an_array_that_does_not_fit_costs_the_scene_and_says_why(rule):
     with pytest.raises(InputError, match="left out"):
         chosen_scenes(design, [scene])
     assert "array" in chosen_scenes(design, None)
+
+
+@pytest.mark.parametrize(
+    ("path", "changes"),
+    [
+        ("clamp.mount_pitch_y", {"clamp.mount_pitch_y": 100.0}),
+        ("array.row_arms", {"element.rear_length": 50.0, "array.row_arms": [[6.0] * 17] * 2}),
+    ],
+)
+def test_a_carrier_too_wide_names_a_value_of_the_field(path, changes):
+    """What is found is the field's own value, and the legal one takes the carrier between the screws."""
+    rule = next(r for r in all_rigs(Design)["calibration"].rules if r.name == "mount_clears_carrier")
+    (found,) = rule(Layout(variant(changes)))
+    legal = re.match(r"at most ([\d.]+) (?:mm|elements a row)", str(found.limit))[1]
+    rows = path == "array.row_arms"
+    assert (found.part, found.value) == (path, 17 if rows else changes[path])
+    enough = variant({**changes, path: [[6.0] * int(legal)] * 2 if rows else float(legal)})
+    assert not rule(Layout(enough))
 
 
 @pytest.mark.parametrize("name", ["macro-array", "double-sample", "smallest-bearing"])

@@ -28,6 +28,7 @@ from tactcad.parts.rigs.stand import StandLayout
 from tactcad.parts.rigs.stiffness import calibration_loads
 from tactcad.parts.rules import load
 from tactcad.scenes import make_scene, scene_names
+from tactcad.scenes.moves import moments
 from tactcad.scenes.rig import pose_of, poses
 from tactcad.scenes.rigs.calibration import check_travel
 from tactcad.scenes.scene import Pose, Scene
@@ -227,8 +228,8 @@ def test_the_calibration_has_no_stop_plate_and_the_array_s_guide_says_when_it_co
     assert closing == {4.0, 5.0}
     texts = {step.title: step.text for step in make_scene(design, "array").steps}
     assert "without stop plate" in texts["Stop plate"]
-    last = make_scene(design, "calibration").steps[-1]
-    assert "stop plate" in last.title and "arm 4 carries 3.42 N and would yield at 179 um" in last.text
+    *_, pressed, last = make_scene(design, "calibration").steps
+    assert "stop plate" in last.title and "arm 4 carries 3.42 N and would yield at 179 um" in pressed.text
 
 
 @pytest.mark.parametrize(
@@ -349,7 +350,7 @@ def test_an_exploded_view_pulls_every_part_out_along_its_step():
             way = [b - a for a, b in zip(rest[d], out[d])]
             shares = [w / e for w, e in zip(way, step.explode) if e]
             assert all(0.5 < s <= 1 + 1e-9 for s in shares)
-    standing, coming = guide.at_step(scene, 3)
+    standing, coming = guide.at_step(scene, moments(scene), 3)
     assert {p.designator for p in coming} == set(scene.steps[2].designators)
     assert {p.designator for p in standing} == {d for s in scene.steps[:2] for d in s.designators}
 

@@ -227,6 +227,7 @@ def test_the_guide_says_every_step_with_its_limits():
     scene = make_scene(variant(), "bonding")
     assert [s.title for s in scene.steps] == [
         "Fixture",
+        "Clamp bar",
         "Surface",
         "Element on the tongue",
         "Gauge",

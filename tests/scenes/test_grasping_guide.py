@@ -48,13 +48,14 @@ def test_latch_and_stop_are_there_before_they_are_used():
         for word in ("latch", "end stop")
     }
     rail = order.index("Guide rail")
-    assert "ES1" in steps["Guide rail"][1] and "LP1" in steps["Guide rail"][1]
-    assert first["latch"] == first["end stop"] == rail
+    assert "ES1" in steps["End stop"][1] and "LP1" in steps["Guide rail"][1]
+    assert first["end stop"] == order.index("End stop") < order.index("Riser") < first["latch"] == rail
     # the carriage is held while something is screwed on it, and no sample lies yet where the flat plate does
     text = steps["Bar on the carriage"][0]
     assert text.index("set the latch under it") < text.index("screw it on the carriage")
     level, sample = order.index("Pads level with the lid"), order.index("Sample")
-    assert order.index("Cart on the base plate") < level < sample < order.index("Weights")
+    cart, boards = order.index("Cart on the base plate"), order.index("Boards on the bench")
+    assert cart < boards < level < sample < order.index("Weights")
 
 
 def test_levelling_is_measured():
@@ -85,7 +86,7 @@ def test_every_part_ends_at_its_place(weights):
     at = {}
     for moment in moments(scene):
         at |= dict.fromkeys(moment.move.designators, moment.move.path[-1])
-    assert set(at.values()) == {STILL}
+    assert {at[p.designator] for p in scene.placements} == {STILL}
     assert scene.steps[-1].title == ("Weights" if weights else "Lower")
 
 

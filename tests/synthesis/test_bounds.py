@@ -36,7 +36,7 @@ from tactcad.synthesis.bounds import (
 from tactcad.synthesis.candidates import stands
 from tactcad.synthesis.search import Found, all_refusals, refusals, search
 from tactcad.synthesis.target import parse_target
-from tactcad.synthesis.target_report import answer, beyond
+from tactcad.synthesis.target_report import answer, beyond, bound_line
 
 TIGHT = SMALL.partition("[elements]")[0].replace("pitch = 4", "pitch = 4\nlength = 62")
 
@@ -113,7 +113,16 @@ def test_met_is_null_unless_a_half_width_was_asked(tmp_path, capsys, answer_only
     assert told["met"] is met and ("no half-width was asked" in answer(told)) == (asked is None)
     page = (tmp_path / "o" / "report.html").read_text()
     assert told["bounds"] and all(f"<td>{b['field']}</td>" in page for b in told["bounds"])
-    assert told["size_mm"][0] > 50.0
+    assert told["size_mm"][0] > 50.0 and '<meta name="viewport" content="width=device-width' in page
+
+
+def test_a_bound_says_which_half_width_it_compares():
+    """The answer gives two half-widths: the arrays' and, smaller, that as drawn."""
+    bound = {"field": "room.length", "value": 40.0, "whose": "written", "beyond": 44.0, "half_width": 0.055}
+    assert (
+        bound_line(bound) == "bound: room.length 40 (written); one step beyond, 44: half-width as drawn 5.5 %"
+    )
+    assert bound_line(bound | {"half_width": None}).endswith("one step beyond, 44: no design there")
 
 
 def test_the_answer_is_written_before_what_follows_it(tmp_path, capsys, monkeypatch):
@@ -202,4 +211,4 @@ def test_a_newcomers_box_is_met_by_two_commands(tmp_path, capsys):
     assert design.material.alloy == "1.4310-C1300" and design.clamp.screw == "M2"
     assert max(overall_size(design)[:2]) <= 40.0 + 1e-6
     assert "with M3 nothing fits the room" in capsys.readouterr().out
-    assert main(["check", str(out / "design.toml"), "--scene", "array"]) == 0
+    assert main(["check", str(out / "design.toml")]) == 0

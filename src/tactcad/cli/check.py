@@ -85,7 +85,11 @@ def _every_rule(sources: list[str]) -> list[str]:
     from tactcad.design.load import read
     from tactcad.parts.rules import broken_rules, refusal
 
-    return [f"tactcad: {source}: {refusal(b)}" for source in sources for b in broken_rules(read(source))]
+    return [
+        f"tactcad: {source}: {refusal(b)}"
+        for source in sources
+        for b in broken_rules(read(source), every=True)
+    ]
 
 
 def _picked(args: argparse.Namespace, asked: Allowance) -> tuple[Meshing, Picked]:

@@ -210,7 +210,7 @@ def _dispatch(argv: list[str]) -> int:
     if argv[:1] == ["help"] and len(argv) == 2 and argv[1] in COMMANDS:
         parser_of(argv[1]).print_help()
         return DONE
-    if argv in ([], ["help"], ["-h"], ["--help"]):
+    if argv in ([], ["help"], ["-h"], ["--help"], ["help", "help"], ["help", "-h"], ["help", "--help"]):
         print(overview())
         return DONE
     if argv == ["--version"]:

@@ -101,7 +101,7 @@ def run(args: argparse.Namespace) -> int:
 
     asked = allowance(args)
     refuse_named(asked, "--model", args.model)
-    design = taken_as(load(args.design), Design, "size --design")
+    design = taken_as(load(args.design), Design, "size")
     if asked.within is None:
         answer = _answer(args, design, parameter, args.model or DEFAULT_RUNG)
     else:

@@ -43,9 +43,7 @@ def run(args: argparse.Namespace) -> int:
         refuse_overwriting(args.out, args.table1, args.table2, find(args.design))
     with replacing(args.out, report.SCHEMA, args.others) if args.out else nullcontext() as work:
         data = published.load(args.table1, args.table2)
-        made = validation.validate(
-            data, array.from_design(taken_as(load(args.design), Design, "validate --design"))
-        )
+        made = validation.validate(data, array.from_design(taken_as(load(args.design), Design, "validate")))
         as_json = report.to_json(made)
         if work:
             files = {"report.html": report.to_html(made).encode(), "report.json": as_json.encode()}

@@ -20,7 +20,7 @@ from tactcad.design.tree import CommonTables
 from tactcad.parts.array import seating
 from tactcad.parts.language.description import Part, Vector, vector
 from tactcad.parts.language.metric import METRIC
-from tactcad.scenes.moves import moments, settles
+from tactcad.scenes.moves import Moment, nut_tool, settles
 from tactcad.scenes.scene import Placement, Scene, Step
 
 from .engine.boxes import Box, bounds, bounds_of, box_of, corners, moved_by, placed
@@ -65,14 +65,16 @@ def exploded(scene: Scene) -> tuple[Placement, ...]:
     return tuple(moved[p.designator] for p in scene.placements)
 
 
-def at_step(scene: Scene, number: int) -> tuple[tuple[Placement, ...], tuple[Placement, ...]]:
+def at_step(
+    scene: Scene, order: Sequence[Moment], number: int
+) -> tuple[tuple[Placement, ...], tuple[Placement, ...]]:
     """Parts in place before step `number` (from 1), or on the bench for a bench step; and the step's own
-    parts at the start of its first move, or FAR before its end."""
-    placed = {p.designator: p for p in scene.placements}
+    parts at the start of its first move, or FAR before its end. `order`: the scene's moments."""
+    placed = {p.designator: p for p in (*scene.placements, *scene.aids)}
     there: dict[str, Vector] = {}
     coming: dict[str, Vector] = {}
     benched: set[str] = set()
-    for moment in moments(scene):
+    for moment in order:
         if moment.step > number - 1:
             break
         move = moment.move
@@ -126,7 +128,7 @@ def tools(design: CommonTables, scene: Scene) -> list[str]:
     for part in {p.part.part_no: p.part for p in scene.placements if p.designator not in ready}.values():
         if part.thread:
             m = METRIC[part.thread]
-            sizes = {"set screw": ("hex key", m.set_key), "nut": ("two spanners", m.nut)}
+            sizes = {"set screw": ("hex key", m.set_key), "nut": (f"two {nut_tool(m.nut)}s", m.nut)}
             driver, turned = sizes.get(part.kind, ("hex key", m.key)), f"{part.thread} {part.kind}s"
             if turned not in drivers.setdefault(driver, []):
                 drivers[driver].append(turned)
@@ -134,7 +136,8 @@ def tools(design: CommonTables, scene: Scene) -> list[str]:
                 torques.add(tight)
     lines = [f"{kind} {size:g} mm: {', '.join(whose)}" for (kind, size), whose in sorted(drivers.items())]
     if torques:
-        lines.append(f"torque driver for {', '.join(f'{t:g}' for t in sorted(torques))} N m, with these bits")
+        said = ", ".join(f"{t:g}" for t in sorted(torques))
+        lines.append(f"torque driver for {said} N m, with these bits; oil every thread")
     return [*lines, *dict.fromkeys(tool for step in scene.steps for tool in step.tools)]
 
 

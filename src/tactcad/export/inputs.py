@@ -16,6 +16,8 @@ from importlib import metadata
 from pathlib import Path
 from typing import Any
 
+from tactcad.parts.language.description import Part
+
 PACKAGE = Path(__file__).parents[1]
 
 ABSENT = "(absent)"
@@ -27,14 +29,13 @@ def digest(value: object) -> str:
     Equal for equal values in any process: floats go in by repr, which is exact, sets and dicts in sorted
     order; types count, so that 1, 1.0 and True differ. Raises TypeError for anything else.
     """
-    return hashlib.sha256(_canonical(value, {})).hexdigest()
+    return hashlib.sha256(_canonical(value)).hexdigest()
 
 
-def _canonical(value: object, known: dict[int, bytes]) -> bytes:
+def _canonical(value: object) -> bytes:
     """Unambiguous encoding: a tag, and lengths before contents.
 
-    `known` holds the digest of every dataclass met, by identity, so that a part placed a thousand times is
-    encoded once.
+    A part keeps its digest, so that one placed a thousand times is encoded once.
     """
     match value:
         case None | bool() | int() | float():
@@ -44,19 +45,20 @@ def _canonical(value: object, known: dict[int, bytes]) -> bytes:
         case bytes():
             return b"bytes " + _framed([value])
         case tuple() | list():
-            return b"list " + _framed(_canonical(v, known) for v in value)
+            return b"list " + _framed(_canonical(v) for v in value)
         case set() | frozenset():
-            return b"set " + _framed(sorted(_canonical(v, known) for v in value))
+            return b"set " + _framed(sorted(_canonical(v) for v in value))
         case Mapping():
-            pairs = ((_canonical(k, known), _canonical(v, known)) for k, v in value.items())
+            pairs = ((_canonical(k), _canonical(v)) for k, v in value.items())
             return b"map " + _framed(part for pair in sorted(pairs) for part in pair)
     if is_dataclass(value) and not isinstance(value, type):
-        if id(value) not in known:
+        kept = vars(value) if isinstance(value, Part) else {}
+        if "_digest" not in kept:
             name = f"{type(value).__module__}.{type(value).__qualname__}".encode()
-            rest = [(f.name.encode(), _canonical(getattr(value, f.name), known)) for f in fields(value)]
+            rest = [(f.name.encode(), _canonical(getattr(value, f.name))) for f in fields(value)]
             whole = _framed([name, *(part for pair in rest for part in pair)])
-            known[id(value)] = b"data " + hashlib.sha256(whole).digest()
-        return known[id(value)]
+            kept["_digest"] = b"data " + hashlib.sha256(whole).digest()
+        return kept["_digest"]
     raise TypeError(f"no stable digest of a {type(value).__name__}")
 
 

@@ -253,14 +253,19 @@ def guide_files(plan: Plan) -> Iterator[Batch]:
     """Each scene's assembly guide: an exploded view, a picture a step, the page that shows them; and every
     move as data."""
     from tactcad.drawing import guide
-    from tactcad.scenes.moves import guide_json
+    from tactcad.scenes.moves import guide_json, moments
 
     def picture(
-        scene: Scene, label: str, title: str, placements: Sequence[Placement], marked: Sequence[Placement]
+        scene: Scene,
+        label: str,
+        title: str,
+        placements: Sequence[Placement],
+        marked: Sequence[Placement] = (),
+        view: str = "above",
     ) -> Batch:
         description = f"{plan.design.name}-{scene.name} revision {plan.revision}"
-        key = digest(("guide picture", plan.shapes.made_by, placements, marked, title, description))
-        make = partial(picture_bytes, placements, "above", plan.shapes, title, description, marked)
+        key = digest(("guide picture", plan.shapes.made_by, placements, marked, title, description, view))
+        make = partial(picture_bytes, placements, view, plan.shapes, title, description, marked)
         path = guide.picture_path(scene, label)
         return _one(Output(path, "picture", "", key), make, len(placements))
 
@@ -268,12 +273,13 @@ def guide_files(plan: Plan) -> Iterator[Batch]:
         if not scene.steps:
             continue
         title = f"{plan.design.design.title}: {scene.name}, exploded"
-        yield picture(scene, "exploded", title, guide.exploded(scene), ())
+        yield picture(scene, "exploded", title, guide.exploded(scene))
+        order = moments(scene)
         for n, step in enumerate(scene.steps, start=1):
             if guide.pictured(step):
-                standing, coming = guide.at_step(scene, n)
+                standing, coming = guide.at_step(scene, order, n)
                 title = f"{scene.name}, step {n}: {step.title}"
-                yield picture(scene, f"{n:02d}", title, (*standing, *coming), coming)
+                yield picture(scene, f"{n:02d}", title, (*standing, *coming), coming, step.view)
         if face := guide.sensing_face_map(scene):
             path = guide.picture_path(scene, guide.MAP)
             yield _one(Output(path, "picture", "", digest(("guide map", face))), partial(bytes, face))

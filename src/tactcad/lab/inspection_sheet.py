@@ -260,7 +260,7 @@ def reissued(design: Design, path: str | Path) -> Reissued:
     )
     made = replace(
         design,
-        design=replace(design.design, revision=f"{design.design.revision[:1]}M"),
+        design=replace(design.design, revision=f"{design.design.revision}M"),
         sheet=replace(design.sheet, thickness=round(sheet / STEP) * STEP),
         array=replace(design.array, spacer=spacer),
         origin={**design.origin, "array.spacer": said, "sheet.thickness": said},

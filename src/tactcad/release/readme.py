@@ -27,7 +27,7 @@ from tactcad.parts.language.finding import grouped
 from tactcad.scenes.rig import ARRAY
 
 from .archive import MANIFEST
-from .packages import MACHINING, ORDER, PART_INSPECTION, SHEET, WIRE, Packed, table_rows
+from .packages import ETCHING, MACHINING, ORDER, PART_INSPECTION, SHEET, WIRE, Packed, table_rows
 from .release_contents import PROCESSES, SETS, SPARES, ReleaseContents
 
 MARK = "PRELIMINARY"
@@ -337,7 +337,7 @@ def _sections(contents: ReleaseContents, one: Packed, shop: Shop) -> Sequence[tu
                 numbered(["Price and delivery for the quantities above."]),
             ),
         )
-    if one.package is SHEET:
+    if one.package in (SHEET, ETCHING):
         return (("DELIVERY", [DATES, "", *paragraph(PAPERS)]),)
     return (("DELIVERY", [DATES, ""]),)
 

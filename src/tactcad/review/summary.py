@@ -139,7 +139,7 @@ def _words(effect: SensorEffect, title: bool) -> Iterator[str]:
     if title:
         yield "title block of every sheet"
         return
-    if effect.size:
+    if effect.size and len({*map(stated_size, effect.size)}) > 1:
         yield "overall size: " + " -> ".join(map(stated_size, effect.size))
     yield from (f"now {text}" for text in effect.now)
     yield from (f"no longer {text}" for text in effect.no_longer)

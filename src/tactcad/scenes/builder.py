@@ -6,9 +6,10 @@ from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from typing import Any
 
+from tactcad.contour import rectangle
 from tactcad.parts.bought import screws
 from tactcad.parts.bought.electronic_parts import Supply
-from tactcad.parts.language.description import Part, Vector, vector
+from tactcad.parts.language.description import Extrusion, Material, Part, Vector, vector
 
 from .scene import (
     AGAINST_Y,
@@ -33,6 +34,8 @@ POINTING: dict[Vector, Rotation] = {
     (0, -1, 0): AGAINST_Y,
 }
 
+AID = Material("steel", 7850)
+
 
 class Builder:
     """Collects placements in order. A group or a step takes the parts placed while it is open; `placed_in`
@@ -51,6 +54,7 @@ class Builder:
         self._open: list[str] = []  # placed, in no step yet
         self._ready: set[str] = set()
         self._scenes: list[Scene] = []
+        self.aids: list[Placement] = []
         self._unit = ""
 
     def group(self, name: str | None) -> None:
@@ -96,6 +100,15 @@ class Builder:
         self.meet(name, into, "thread")
         return name
 
+    def aid(self, name: str, low: Vector, high: Vector) -> str:
+        """A box between two corners that steps bring, and that is no part of the scene; its designator."""
+        x, y, z = (round(b - a, 9) for a, b in zip(low, high))
+        body = Extrusion(rectangle(0.0, 0.0, x, y), z)
+        designator = f"AID{len(self.aids) + 1}"
+        box = Part(f"AID-{x:g}x{y:g}x{z:g}", name, "reference", AID, body)
+        self.aids.append(Placement(designator, box, _rounded(low)))
+        return designator
+
     def subassembly(self, scene: Scene, rotation: Rotation, shift: Vector) -> None:
         """Everything of another scene, turned and moved; its designators are kept."""
         for p in scene.placements:
@@ -139,6 +152,7 @@ class Builder:
             tuple(motions),
             tuple(self.steps),
             tuple(self._scenes),
+            tuple(self.aids),
         )
 
 

@@ -23,7 +23,12 @@ APPROACH = 20.0
 # mm between bench and assembly; chosen: two hands' width
 BENCH = 100.0
 SAME = 1e-6  # mm: boxes that touch
+SMALL_NUT = 4.0  # mm over flats, M2: up to here a nut driver turns it (check `tools` tries it); chosen
 FASTENERS = ("cap screw", "set screw", "nut")
+TWEEZED = "tweezers"
+# mm: width and thickness of a fingertip. Chosen: half of an adult's 16 to 20 mm, which is soft (often quoted
+# from Dandekar et al., J. Biomech. Eng. 125, 2003; not read).
+FINGERTIP = (12.0, 10.0)
 PRESS = "arbor press or vice with soft jaws"
 
 Box = tuple[Vector, Vector]
@@ -73,7 +78,8 @@ class _Assembly:
 
     def __init__(self, scene: Scene) -> None:
         self.scene = scene
-        self.placed = {p.designator: p for p in scene.placements}
+        self.placed = {p.designator: p for p in (*scene.placements, *scene.aids)}
+        self.aids = {p.designator for p in scene.aids}
         self.boxes = {name: box(p) for name, p in self.placed.items()}
         self.contacts: dict[str, list[Contact]] = {}
         for c in scene.contacts:
@@ -106,6 +112,8 @@ class _Assembly:
             moving = set(move.designators)
             found.append(Moment(number, move, {name: self.at[name] for name in there - moving}))
             self.at |= dict.fromkeys(move.designators, move.path[-1])
+            if any(move.path[-1]):  # an aid that is taken away
+                self.at = {n: p for n, p in self.at.items() if n not in self.aids & moving}
             if step.bench:
                 own += [n for n in move.designators if n not in own]
             elif landing:
@@ -124,7 +132,7 @@ class _Assembly:
         fastened = all(self.placed[n].part.kind in FASTENERS for n in item)
         far = self._clear(item, way, there, fastened, place) + APPROACH
         start = vector(p + far * w for p, w in zip(place, way))
-        return Move(item, start, (place,), self._by(item))
+        return Move(item, start, (place,), step.by or self._by(item))
 
     def _on_bench(self, number: int) -> Vector:
         """Place on the bench of parts assembled there: out along the normal by which they come in."""
@@ -200,8 +208,13 @@ def driver(part: Part) -> str:
         return ""
     m = METRIC[part.thread]
     if part.kind == "nut":
-        return f"spanner {m.nut:g} mm"
+        return f"{nut_tool(m.nut)} {m.nut:g} mm"
     return f"hex key {m.set_key if part.kind == 'set screw' else m.key:g} mm"
+
+
+def nut_tool(flats: float) -> str:
+    """What turns a nut of that width over flats (mm): small nuts stand too near each other for spanners."""
+    return "spanner" if flats > SMALL_NUT else "nut driver"
 
 
 def _names(item: Move | tuple[str, ...]) -> tuple[str, ...]:
@@ -274,7 +287,7 @@ def settles(scene: Scene, number: int) -> tuple[tuple[str, ...], tuple[str, ...]
         kept = {f for held in step.held if body in held.bodies for f in held.freedoms}
         left.setdefault(_ways([f for f in FREEDOMS if f not in kept]), []).append(" ".join(body))
     leaves += [f"{' '.join(names)}: {ways}" for ways, names in left.items() if ways]
-    return step.sets or tuple(sets), step.leaves or tuple(leaves)
+    return (step.sets, step.leaves) if step.sets else (tuple(sets), step.leaves or tuple(leaves))
 
 
 def _held_text(held: Held) -> str:
@@ -305,7 +318,8 @@ FRAME = (
     "from and path: offsets of the part from its final place in the scene's STEP file, mm, along the "
     "scene's axes; straight from each to the next, the part not turned but a screw about its own axis; "
     "after the last one of path it stays there. Moves of one number in `together` are made at the same "
-    "time."
+    "time. `aids` are boxes, in no STEP file: one that does not end at its place is out of the way. What a "
+    "step `apart` takes off stays off."
 )
 
 
@@ -336,9 +350,14 @@ def guide_json(scene: Scene) -> bytes:
                     {"parts": list(need.what), "there": not need.away, "why": need.why} for need in needed
                 ],
                 "bench": step.bench,
+                "apart": step.apart,
             }
         )
-    told = {"schema": 1, "scene": scene.name, "units": "mm", "frame": FRAME, "steps": steps}
+    aids = [
+        {"designator": p.designator, "name": p.part.name, "box": [_rounded(end) for end in box(p)]}
+        for p in scene.aids
+    ]
+    told = {"schema": 1, "scene": scene.name, "units": "mm", "frame": FRAME, "aids": aids, "steps": steps}
     return (json.dumps(told, indent=1) + "\n").encode()
 
 

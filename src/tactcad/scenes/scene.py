@@ -122,7 +122,9 @@ class Step:
     parts follow one by one. `at`: offset of its parts from their final place for now, mm. `held`: bodies
     fixed by contacts, which the check of steps tries with the solids. `sets` and `leaves`: freedoms that it
     fixes and leaves, if contacts do not show them; `needs`: other parts that must be in place or away.
-    `limit`: the limit that the step must reach, noted on the assembly drawing.
+    `by`: what makes the usual moves, if no hand or driver does. `limit`: the limit that the step must reach,
+    noted on the assembly drawing. `view`: of its picture in the guide (drawing/engine/picture.py).
+    `apart`: what its last moves take off stays off.
     """
 
     title: str
@@ -141,7 +143,10 @@ class Step:
     leaves: tuple[str, ...] = ()
     held: tuple[Held, ...] = ()
     needs: tuple[Need, ...] = ()
+    by: str = ""
     limit: str = ""
+    view: str = "above"
+    apart: bool = False
 
 
 @dataclass(frozen=True)
@@ -194,6 +199,9 @@ class Scene:
         Of the assembly; they place every designator once.
     ready
         Scenes, at their places, that were assembled before and whose parts are in this one.
+    aids
+        Boxes of what steps bring, use and mostly take away: gauge blocks, plates, boards beside a rig. They
+        are in no file of the scene but the guide's.
 
     Raises
     ------
@@ -210,6 +218,7 @@ class Scene:
     motions: tuple[Motion, ...] = ()
     steps: tuple[Step, ...] = ()
     ready: tuple[Scene, ...] = ()
+    aids: tuple[Placement, ...] = ()
 
     def __post_init__(self) -> None:
         names = [p.designator for p in self.placements]

@@ -8,8 +8,10 @@ from dataclasses import replace
 
 from tactcad.design.fields import present
 from tactcad.parts import rigs
+from tactcad.parts.array.board_plate import BOARD_OUTLINE, EDGE, PLATE_AHEAD, STAND_OFF
+from tactcad.parts.array.board_plate import PLATE as BOARD_PLATE
 from tactcad.parts.array.leads import BESIDE as BOARDS_OFF
-from tactcad.parts.array.leads import Bench
+from tactcad.parts.array.leads import Bench, stands
 from tactcad.parts.array.supplies import supplies
 from tactcad.parts.bought import screws, standard_parts
 from tactcad.parts.bought.standard_parts import STAGES, bearing
@@ -46,8 +48,13 @@ BESIDE: Vector = (
     2.0,
 )  # place of the cart during its assembly, mm from its place on the base plate
 OVER: Vector = (0.0, 0.0, 2.0)
+WHEELS_LOOSE = ("shims and bearings on their axles: along x and z; along y, between plate and head",)
+WHEELS_RISE = ("axles: by their play in the bores, until they are tight", "bearings: turn about y")
+WHEELS_TIGHT = ("axles in the cart plate: all, by their threads", *WHEELS_LOOSE)
+WHEELS_TURN = ("outer rings: turn about y",)
 RAISED = 6.0  # mm that the force axis is driven up while something is brought in under it
-JAM_SPANNER = f"spanner {screws.JAM_NUT[2][0]:g} mm: the tip's jam nut"
+# of usual thickness none enters between tip and gauge
+JAM_SPANNER = f"spanner {screws.JAM_NUT[2][0]:g} mm, 3 mm thick: the tip's jam nut"
 
 
 def place_stand(b: Builder, rig: StandLayout, stages: bool) -> str:
@@ -114,6 +121,8 @@ def place_cart(b: Builder, rig: CartLayout, roll: float) -> str:
                 else ""
             ),
             order=order,
+            sets=WHEELS_TIGHT if sy > 0 else WHEELS_LOOSE,
+            leaves=WHEELS_TURN if sy > 0 else WHEELS_RISE,
             fan=2,
             bench=True,
             at=BESIDE,
@@ -143,6 +152,7 @@ def place_cart(b: Builder, rig: CartLayout, roll: float) -> str:
         "Hose fitting",
         (0, -40, 45),
         "Screw the hose fitting in by hand and a quarter turn more; its washer seals.",
+        sets=(f"{fitting} in {body}: all, by its thread",),
         bench=True,
         at=BESIDE,
     )
@@ -209,9 +219,19 @@ def place_sample(
     return object_
 
 
-def boards_on_bench(b: Builder, bench: Bench) -> None:
-    """The step that brings the boards, on their plates: bench equipment beside the base plate."""
+def boards_on_bench(b: Builder, rig: StandLayout, bench: Bench, turned: float = 1.0) -> None:
+    """The step that brings the boards, on their plates: bench equipment beside the base plate. `turned`: 1.0,
+    or -1.0 if the array's y runs against the scene's."""
     on = f"blocks {bench.block:g} mm high" if bench.block else "the bench"
+    near = rig.base_length / 2 + BOARDS_OFF
+    far = near + PLATE_AHEAD + BOARD_OUTLINE.connector[1] + EDGE
+    top = bench.block + BOARD_PLATE + STAND_OFF + BOARD_OUTLINE.thickness + BOARD_OUTLINE.highest - BASE[1]
+    half, order = BOARD_OUTLINE.width / 2 + EDGE, []
+    for n, stand in enumerate(stands(rig.array), start=1):
+        y, (low, high) = turned * stand.y, sorted((stand.side * near, stand.side * far))
+        name = f"board A{n} on its plate" + (f" and a block of {bench.block:g} mm" if bench.block else "")
+        board = b.aid(name, (low, y - half, -BASE[1]), (high, y + half, top))
+        order.append(Move((board,), (0.0, 0.0, 2 * APPROACH), (STILL,)))
     b.step(
         "Boards on the bench",
         (0, 0, 0),
@@ -219,6 +239,7 @@ def boards_on_bench(b: Builder, bench: Bench) -> None:
         "plate, row 1's at +x, lead clamps towards the array. Clamp each bundle as there, then, supplies "
         "off, plug its socket. The leads reach wherever the array is moved: they hang loose and pull at "
         "nothing.",
+        order=order,
         leaves=("boards: along x and y, by the leads' slack", "sockets: up, by hand"),
         needs=(Need(("CA1", STAND), "its leads reach boards beside the base plate"),),
     )

@@ -33,7 +33,9 @@ from .occt import as_edge, as_face, as_vertex, subshapes
 MANY_FACES = 200
 
 
-def triangles(shape: TopoDS_Shape, linear: float, angular: float) -> tuple[np.ndarray, np.ndarray]:
+def triangles(
+    shape: TopoDS_Shape, linear: float, angular: float, many: int = MANY_FACES
+) -> tuple[np.ndarray, np.ndarray]:
     """A triangle mesh of a shape, facing outwards.
 
     Parameters
@@ -44,6 +46,8 @@ def triangles(shape: TopoDS_Shape, linear: float, angular: float) -> tuple[np.nd
         Largest chord error, mm.
     angular
         Largest turn between facets, radians, which usually governs.
+    many
+        From so many faces on by the kernel's other method.
 
     Returns
     -------
@@ -57,17 +61,19 @@ def triangles(shape: TopoDS_Shape, linear: float, angular: float) -> tuple[np.nd
     ValueError
         If the kernel cannot mesh a face.
     """
-    meshed = [face_triangles(face) for face in tessellated(shape, linear, angular)]
+    meshed = [face_triangles(face) for face in tessellated(shape, linear, angular, many)]
     starts = np.cumsum([0, *(len(points) for points, _ in meshed)])
     faces = [corners + start for (_, corners), start in zip(meshed, starts)]
     return _merged(np.concatenate([points for points, _ in meshed]), np.concatenate(faces))
 
 
-def tessellated(shape: TopoDS_Shape, linear: float, angular: float) -> list[TopoDS_Face]:
+def tessellated(
+    shape: TopoDS_Shape, linear: float, angular: float, many: int = MANY_FACES
+) -> list[TopoDS_Face]:
     """The faces of a shape, meshed anew within these errors, as of `triangles`."""
     BRepTools.Clean_s(shape)
     faces = [as_face(face) for face in subshapes(shape, TopAbs_FACE)]
-    if len(faces) < MANY_FACES:
+    if len(faces) < many:
         BRepMesh_IncrementalMesh(shape, linear, False, angular, False)
     else:
         asked = IMeshTools_Parameters()

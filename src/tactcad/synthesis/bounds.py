@@ -233,7 +233,7 @@ def base_breaks(target: Target) -> list[str]:
     """Why the unchanged base design misses the target: room, forces, half-width, and every broken rule."""
     base, room, layout = target.base, target.room, Layout(target.base)
     made, wanted = MadeSensor(target, base), target.target.half_width
-    broken = [f"rule {f.check}: {f.broken}" for f in broken_rules(base)]
+    broken = [f"rule {f.check}: {f.broken}" for f in broken_rules(base, every=True)]
     sizes = {name: size(layout) for name, size in SIZES.items()}
     for name, is_ in sizes.items():
         most = getattr(room, name)

@@ -38,6 +38,7 @@ body{font:15px/1.5 system-ui,sans-serif;margin:2em auto;max-width:62em;padding:0
 table{border-collapse:collapse;margin:.5em 0 1.2em}
 th,td{text-align:left;padding:.25em .8em .25em 0;border-bottom:1px solid #d8dee4}
 td.n,th.n{text-align:right;font-variant-numeric:tabular-nums}svg{max-width:100%;height:auto}
+@media(max-width:700px){table{display:block;overflow-x:auto}}
 .answer{font-size:1.25em;border-left:5px solid #31618f;padding-left:.8em}
 .no{border-color:#b3372b}small{color:#4a5866}
 """
@@ -275,6 +276,7 @@ def page(title: str, parts: Sequence[str]) -> bytes:
     body = "\n".join(parts)
     return (
         f'<!doctype html>\n<html lang="en"><head><meta charset="utf-8"><title>{escape(title)}</title>'
+        '<meta name="viewport" content="width=device-width,initial-scale=1">'
         f"<style>{STYLE}</style></head>\n<body>\n{body}\n</body></html>\n"
     ).encode()
 
@@ -296,7 +298,7 @@ def bounds_part(r: dict[str, Any]) -> str:
     if not r["bounds"]:
         return ""
     rows = [(b["field"], value(b["value"]), b["whose"], value(b["beyond"]), beyond(b)) for b in r["bounds"]]
-    heads = ("field", "value", "whose", "one step beyond", "half-width there")
+    heads = ("field", "value", "whose", "one step beyond", "half-width there, as drawn")
     text = "<h2>Bounds that the answer lies on</h2>" + table(heads, rows)
     return text + "".join(f"<p>{escape(field)}: {escape(by)}.</p>" for field, by in r["room"].items())
 
@@ -310,14 +312,14 @@ def bound_line(b: dict[str, Any]) -> str:
     """A bound in one line, for the terminal."""
     return (
         f"bound: {b['field']} {said(b['value'])} ({b['whose']}); one step beyond, {said(b['beyond'])}: "
-        f"half-width {beyond(b)}"
+        f"{beyond(b) if b['half_width'] is None else f'half-width as drawn {beyond(b)}'}"
     )
 
 
 def limit_line(limit: dict[str, Any]) -> str:
     """A field that limits the answer in one line, for the terminal."""
     return (
-        f"{limit['field']}: {said(limit['value'])} eased to {said(limit['eased'])}: half-width "
+        f"{limit['field']}: {said(limit['value'])} eased to {said(limit['eased'])}: half-width as drawn "
         f"{100 * limit['half_width']:.3g} % ({-100 * limit['gain']:.2g} %)"
     )
 

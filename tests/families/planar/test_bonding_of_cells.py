@@ -82,7 +82,10 @@ def test_the_guide_tells_the_order_and_brings_everything_to_its_place(lay):
     order = ["Bed", "Magnets", "Foil", "Foot plates", "Posts", "Guide and weight", "Cure", "Out of the jig"]
     assert [t for t in titles if t in order] == order
     moved = {m["designator"]: m for step in told["steps"] for m in step["moves"]}
-    assert set(moved) == {p.designator for p in scene.placements}
+    assert set(moved) == {p.designator for p in scene.placements} | {"AID1"}
+    off = {m["designator"] for m in told["steps"][-1]["moves"]}
+    assert told["steps"][-1]["apart"] and {"AID1", "BG1", "SP1", "F1", "M1"} <= off
+    moved = {m["designator"]: m for step in told["steps"][:-1] for m in step["moves"]}
     assert all(m["path"][-1] == [0, 0, 0] for m in moved.values())
     (beside, there) = moved["F1"]["path"]  # lowered beside the pins, then pushed against them
     assert min(beside[:2]) > 0 and beside[2] == 0 == max(there)

@@ -122,7 +122,7 @@ def test_a_target_that_cannot_be_met_writes_nothing_but_on_demand(file, tmp_path
     path = tmp_path / "hard.toml"
     path.write_text(TEXT.replace("half_width = 5.0", "half_width = 0.5"))
     assert main(["design", str(path), "--out", str(tmp_path / "out")]) == 1
-    assert capsys.readouterr().out.startswith("Impossible as asked, the best there is: a pair feels")
+    assert capsys.readouterr().out.startswith("Impossible as asked; the best candidate: a pair feels")
     assert not (tmp_path / "out").exists()
     assert main(["design", str(path), "--out", str(tmp_path / "out"), "--best"]) == 1
     assert (tmp_path / "out" / "design.toml").exists()

@@ -8,7 +8,9 @@ its final place is allowed on the way.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping, Sequence
+from itertools import product
 from math import ceil, pi
 from typing import Any
 
@@ -20,8 +22,9 @@ from tactcad.parts.array.layout import LEVER
 from tactcad.parts.language.description import Vector
 from tactcad.parts.language.finding import Finding
 from tactcad.parts.language.metric import METRIC
-from tactcad.scenes.moves import Moment, entering, moments
+from tactcad.scenes.moves import FINGERTIP, PRESS, TWEEZED, Moment, entering, moments
 from tactcad.scenes.scene import FREEDOMS, HAND, STILL, Held, Placement, Scene, Step
+from tactcad.solids.build import build
 from tactcad.solids.changed import closed
 from tactcad.solids.triangles import triangles
 from tactcad.stacks.mechanic import TAKEN_AS_SET
@@ -30,14 +33,20 @@ from ..check import Check
 
 PLACES = 9  # on a leg, at least, from the first to the last contact of a pair's boxes; chosen
 FILM = 0.05  # mm3: what chords of two curved faces, 0.002 mm off, may share over a pin's length
-CHORD, TURN = 0.02, 0.1  # mm, rad: of the meshes
+CHORD, TURN = 0.02, 0.2  # mm, rad: of the meshes; the kernel's facets turn by half as much
 AROUND = 0.1  # mm around a body's path on a leg: only this much of a large part is cut each time
 REACH = 0.03  # mm that a body is shifted to find its contacts
 SLIP = 0.1  # mm, in a hole that slips over a pin: 0.075 is the play to one side that rules leave a dowel
 PATCH = 1e-3  # mm3 of overlap that shows a contact: 0.03 mm2
-# Two fingertips that hold a pin: thickness and width of each, and length of the pin's end that they cover
-# (mm). Chosen: half of an adult's fingertip of 16 to 20 mm, which is soft.
-THICK, WIDE, GRIP = 10.0, 12.0, 4.0
+WIDE, THICK = FINGERTIP
+GRIP = 4.0  # mm of a pin's end that two fingertips cover
+FINGER = 40.0  # mm of a finger behind its tip; chosen: two of its joints
+TWEEZERS, TWEEZERS_LONG = (1.0, 1.0), 20.0  # mm: the tip of plastic ones, and behind it; chosen
+# Chosen, in mm: an arbor press's ram over a pin, and the wall of the sleeve that is its stop; an open-ended
+# spanner of a usual kind: its head over the flats, its handle's length from the nut, its thickness.
+RAM, SLEEVE = (20.0, 30.0), 2.0
+HEAD, HANDLE, FLAT = (2.0, 4.0), 60.0, 5.0
+SWING = 30.0  # degrees between two grips of an open-ended spanner that is turned over
 WAYS = {f: f"along {f}" if len(f) == 1 else f"to turn about {f[1]}" for f in FREEDOMS}
 
 
@@ -53,7 +62,8 @@ def check_steps(
 class Trial:
     def __init__(self, scene: Scene, shapes: Mapping[str, TopoDS_Shape], known: dict[tuple, Any]) -> None:
         self.scene, self.shapes, self.known = scene, shapes, known
-        self.placed = {p.designator: p for p in scene.placements}
+        self.placed = {p.designator: p for p in (*scene.placements, *scene.aids)}
+        self.aids = {p.designator for p in scene.aids}
         self.kind = {frozenset((c.first, c.second)): c.kind for c in scene.contacts}
         self.goes_into: dict[str, list[str]] = {}
         for name, host in entering(scene):
@@ -63,7 +73,7 @@ class Trial:
     def findings(self) -> Iterator[Finding]:
         at: dict[str, Vector] = {}
         there: set[str] = set()
-        done = 0
+        done, off = 0, set(self.aids)
         for moment in moments(self.scene):
             while done < moment.step:
                 yield from self._needed(done, there)
@@ -79,11 +89,18 @@ class Trial:
             yield from self._moved(step, moment)
             if move.by == HAND and len(move.designators) == 1 and move.designators[0] in at:
                 yield from self._finger_room(step, moment)
+            elif move.by in (HAND, TWEEZED):
+                yield from self._touched(step, moment)
+            elif move.by == PRESS:
+                yield from self._press_room(step, moment)
+            elif move.by.startswith("spanner"):
+                yield from self._spanner_room(step, moment)
             at |= dict.fromkeys(move.designators, move.path[-1])
+            (off.update if step.apart else off.difference_update)(set(move.designators) - self.aids)
         for n in range(done, len(self.scene.steps)):
             yield from self._needed(n, there)
         for name, offset in at.items():
-            if offset != STILL:
+            if offset != STILL and name not in off:
                 yield from _order(self.scene.steps[-1], name, f"is left {np.linalg.norm(offset):.3g} mm off")
 
     def freedoms(self) -> Iterator[Finding]:
@@ -170,7 +187,9 @@ class Trial:
         key = ("steps", p.part.part_no)
         if (*key, p.rotation) not in self.known:
             if key not in self.known:
-                self.known[key] = closed(triangles(self.shapes[p.part.part_no], CHORD, TURN))
+                shape = build(p.part) if p.designator in self.aids else self.shapes[p.part.part_no]
+                # always by the quicker method: no file holds this mesh
+                self.known[key] = closed(triangles(shape, CHORD, TURN, many=0))
             turn = np.column_stack([np.array(p.rotation), np.zeros(3)])
             self.known[*key, p.rotation] = self.known[key].transform(turn)
         return self.known[*key, p.rotation]
@@ -190,6 +209,8 @@ class Trial:
         for name in moment.move.designators:
             own = self._box(self.placed[name])
             for start, end in legs:
+                if start == end:
+                    continue
                 a, b = np.array(start), np.array(end)
                 low, high = own[0] + np.minimum(a, b), own[1] + np.maximum(a, b)
                 near = np.all((low < boxes[:, 1] - FILM) & (high > boxes[:, 0] + FILM), axis=1)
@@ -262,18 +283,14 @@ class Trial:
         if max(side for i, side in enumerate(box[1] - box[0]) if i != k) > THICK:
             return  # no pin: held by its faces
         end, sign = (box[1][k], 1.0) if pulled[k] > 0 else (box[0][k], -1.0)
-        along = sorted((end - sign * (GRIP - FILM), end + sign * 2 * THICK))
-        names = [n for n in moment.standing if n != name]
+        middle, half = box.mean(axis=0), (box[1] - box[0]) / 2
         for first, second in ((THICK, WIDE / 2), (WIDE / 2, THICK)):
-            middle, half = box.mean(axis=0), (box[1] - box[0]) / 2
-            sides = [i for i in range(3) if i != k]
-            low, high = middle.copy(), middle.copy()
-            for i, room in zip(sides, (first, second)):
-                wide = half[i] + room if room == THICK else room
-                low[i], high[i] = middle[i] - wide, middle[i] + wide
-            low[k], high[k] = along
-            hand = manifold3d.Manifold.cube(list(high - low)).translate(list(low))
-            if not any(self._meets(hand, low, high, n, moment.standing[n]) for n in names):
+            wide = np.empty(3)
+            wide[[i for i in range(3) if i != k]] = first, second
+            wide += np.where(wide == THICK, half, 0.0)
+            hand = np.array([middle - wide, middle + wide])
+            hand[:, k] = sorted((end - sign * (GRIP - FILM), end + sign * 2 * THICK))
+            if self._free(hand, moment, self._standing(moment)):
                 return
         message = (
             f"step '{step.title}': {name}: no room for fingertips, {2 * THICK:g} mm across and {WIDE:g} "
@@ -281,15 +298,98 @@ class Trial:
         )
         yield Finding("fingers", "fail", name, (), 0.0, GRIP, message)
 
-    def _meets(
-        self, hand: manifold3d.Manifold, low: np.ndarray, high: np.ndarray, name: str, at: Vector
-    ) -> bool:
-        p = self.placed[name]
-        box = self._box(p) + at
-        if np.any(low >= box[1]) or np.any(high <= box[0]):
+    def _touched(self, step: Step, moment: Moment) -> Iterator[Finding]:
+        """A fingertip, or tweezers, come at the part in place from some side but ahead, somewhere along its
+        face."""
+        ends = [moment.move.start, *moment.move.path]
+        way = np.subtract(ends[-1], ends[-2])
+        tip, long = (TWEEZERS, TWEEZERS_LONG) if moment.move.by == TWEEZED else ((WIDE, THICK), FINGER)
+        boxes = self._standing(moment)
+        for name in moment.move.designators:
+            part = self._box(self.placed[name]) + ends[-1]
+            for k, side in product((2, 1, 0), (1, 0)):
+                if way[k] * (2 * side - 1) > 0:
+                    continue  # ahead
+                across = [i for i in range(3) if i != k]
+                for low, wide in product(product(range(5), repeat=2), (tip, tip[::-1])):
+                    room = np.empty((2, 3))
+                    room[:, k] = sorted((part[side][k], part[side][k] + (2 * side - 1) * long))
+                    for i, at, w in zip(across, low, wide):
+                        (a, b), grip = part[:, i], min(GRIP, part[1, i] - part[0, i])
+                        starts = (a + b - w) / 2, b - grip, a + grip - w, a, b - w
+                        room[:, i] = starts[at], starts[at] + w
+                    if self._free(room, moment, boxes):
+                        return
+        name = moment.move.designators[0]
+        what = "tweezers" if moment.move.by == TWEEZED else "fingertip"
+        message = f"step '{step.title}': {name}: no {what}, {tip[0]:g} x {tip[1]:g} mm, reaches it in place"
+        yield Finding("fingers", "fail", name, (), 0.0, tip[1], message)
+
+    def _press_room(self, step: Step, moment: Moment) -> Iterator[Finding]:
+        """Over a pressed pin there is room for the press's ram, and around it for the sleeve: beyond the part
+        that the pin is in."""
+        (name,) = moment.move.designators
+        way = np.subtract(moment.move.start, moment.move.path[-1])
+        pin = self._box(self.placed[name]) + moment.move.path[-1]
+        hosts = self.goes_into.get(name, ())
+        k = int(np.argmax(np.abs(way)))
+        end, sign = (pin[1][k], 1.0) if way[k] > 0 else (pin[0][k], -1.0)
+        faces = [sign * self._box(self.placed[host])[1 if sign > 0 else 0][k] for host in hosts]
+        foot = sign * max(faces, default=sign * end)
+        radius = float(np.delete(pin[1] - pin[0], k).min()) / 2
+        for what, half, start, stop, without in (
+            ("ram", RAM[0] / 2, end + sign * FILM, end + sign * RAM[1], ()),
+            ("sleeve", radius + SLEEVE, foot, end, hosts),
+        ):
+            middle = pin.mean(axis=0)
+            room = np.array([middle - half, middle + half])
+            room[:, k] = sorted((start, stop))
+            if sign * (stop - start) > FILM and not self._free(room, moment, self._standing(moment, without)):
+                message = (
+                    f"step '{step.title}': {name}: no room for the press's {what}, {2 * half:.3g} mm wide"
+                )
+                yield Finding("tool-room", "fail", name, (), 0.0, 2 * half, message)
+
+    def _spanner_room(self, step: Step, moment: Moment) -> Iterator[Finding]:
+        """An open-ended spanner goes on in two places next to each other, with its lower or its upper face
+        flush with the nut's."""
+        (name,) = moment.move.designators
+        flats, thick = [*map(float, re.findall(r"([\d.]+) mm", moment.move.by)), FLAT][:2]
+        p, at = self.placed[name], np.array(moment.move.path[-1])
+        radius, high = (HEAD[0] * flats + HEAD[1]) / 2, p.part.body.box[1][2]
+        spanner = manifold3d.Manifold.cylinder(thick, radius)
+        spanner += manifold3d.Manifold.cube([HANDLE, flats, thick]).translate([0.0, -flats / 2, 0.0])
+        jaw = [radius + flats / 2, flats, thick]
+        spanner -= manifold3d.Manifold.cube(jaw).translate([-radius, -flats / 2, 0.0])
+        for z in (0.0, high - thick):
+            fits = []
+            for n in range(round(360 / SWING)):
+                turned = spanner.rotate([0.0, 0.0, n * SWING]).translate([0.0, 0.0, z])
+                turned = turned.transform(np.column_stack([p.rotation, np.add(p.origin, at)]))
+                fits.append(not any(self._meets(turned, other, moment) for other in moment.standing))
+            if any(a and b for a, b in zip(fits, fits[1:] + fits[:1])):
+                return
+        message = f"step '{step.title}': {name}: no spanner of {flats:g} mm turns by {SWING:g} degrees on it"
+        yield Finding("tool-room", "fail", name, (), 0.0, SWING, message)
+
+    def _standing(self, moment: Moment, without: Sequence[str] = ()) -> dict[str, np.ndarray]:
+        """Boxes of what stands there."""
+        return {n: self._box(self.placed[n]) + at for n, at in moment.standing.items() if n not in without}
+
+    def _free(self, room: np.ndarray, moment: Moment, boxes: Mapping[str, np.ndarray]) -> bool:
+        """Whether nothing of what has these boxes reaches into a box, by its corners."""
+        near = [n for n, b in boxes.items() if np.all(room[0] < b[1]) and np.all(room[1] > b[0])]
+        if not near:
+            return True
+        hand = manifold3d.Manifold.cube(list(room[1] - room[0])).translate(list(room[0]))
+        return not any(self._meets(hand, n, moment) for n in near)
+
+    def _meets(self, hand: manifold3d.Manifold, name: str, moment: Moment) -> bool:
+        p, at = self.placed[name], moment.standing[name]
+        room, box = np.reshape(hand.bounding_box(), (2, 3)), self._box(p) + at
+        if np.any(room[0] >= box[1]) or np.any(room[1] <= box[0]):
             return False
-        there = self._mesh(p).translate(list(np.array(p.origin) + at))
-        return (hand ^ there).volume() > FILM
+        return (hand ^ self._mesh(p).translate(list(np.array(p.origin) + at))).volume() > FILM
 
 
 def _order(step: Step, part: str, what: str) -> Iterator[Finding]:

@@ -37,7 +37,8 @@ Known = Callable[[str], tuple[Faces, list[list[float]]]]
 
 def check_tools(scene: Scene, shapes: Mapping[str, TopoDS_Shape]) -> list[Finding]:
     """Findings on every screw and nut that a step of the scene puts in; shapes by part number."""
-    placed = {p.designator: p for p in scene.placements}
+    placed = {p.designator: p for p in (*scene.placements, *scene.aids)}
+    shapes = {**shapes, **{p.part.part_no: build(p.part) for p in scene.aids}}
     known = cache(lambda number: (Faces(shapes[number]), bounding_box(shapes[number])))
     findings: list[Finding] = []
     for moment in moments(scene):

@@ -220,8 +220,8 @@ def _cell(x: float, y: float, w: float, h: float, heading: str, value: str | tup
     ]
     given = [line for line in ((value,) if isinstance(value, str) else value) if line]
     room, high = w - 2.0, h - LABEL - 2.4
-    # the largest size at which all fits; broken only if it has to be
-    for size, whole in ((3.5, True), (2.5, True), (1.8, True), (2.5, False), (1.8, False)):
+    # the largest size at which all fits, broken rather than in the headings' letters
+    for size, whole in ((3.5, True), (2.5, True), (2.5, False), (1.8, True), (1.8, False)):
         lines = given if whole else [piece for line in given for piece in wrapped(line, size, room)]
         high_enough = size * (1.6 * len(lines) - 0.3) <= high
         if high_enough and all(width(line, size) <= room for line in lines):

@@ -73,10 +73,12 @@ ABOVE = Viewpoint("above", (1.0, -1.4, 1.0), (0.0, 0.0, 1.0))
 BELOW = Viewpoint("below", (1.0, -1.4, -1.0), (0.0, 0.0, 1.0))
 FRONT = Viewpoint("front", (0.0, -1.0, 0.0), (0.0, 0.0, 1.0))
 BOTTOM = Viewpoint("bottom", (0.0, 0.0, -1.0), (0.0, 1.0, 0.0))
+# as ABOVE, of an array that stands on an end plate, its pads to the front
+ON_END = Viewpoint("on end", (1.0, -1.0, -1.4), (0.0, -1.0, 0.0))
 # a part's own frame: contour in x, y, thickness along z
 SIDE = Viewpoint("side", (0.0, 0.0, 1.0), (0.0, 1.0, 0.0))
 OBLIQUE = Viewpoint("oblique", (0.7, 0.5, 1.4), (0.0, 1.0, 0.0))
-VIEWS = {view.name: view for view in (ABOVE, BELOW, FRONT, BOTTOM, SIDE, OBLIQUE)}
+VIEWS = {view.name: view for view in (ABOVE, BELOW, FRONT, BOTTOM, ON_END, SIDE, OBLIQUE)}
 
 
 @dataclass(frozen=True)

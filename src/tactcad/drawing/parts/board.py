@@ -2,12 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from math import cos, hypot, radians, sin
 
 import numpy as np
 
-from ..engine.boxes import Box, Chord, Point, Quad, bounds, chord_meets, corners, grown, overlap, quads_meet
+from ..engine.boxes import (
+    Box,
+    Chord,
+    Point,
+    Quad,
+    bounds,
+    bounds_of,
+    chord_meets,
+    corners,
+    grown,
+    overlap,
+    quads_meet,
+    shifted,
+)
 from ..engine.ink import (
     LETTERS,
     THIN,
@@ -50,6 +63,7 @@ NEAR, PARALLEL = 0.7, 0.03  # mm between such lines, and the sine of the angle b
 FORBIDDEN = 80.0  # of the costs above: lines that a datum's stem never crosses
 AROUND_LETTER = 3.2  # mm kept free from the middle of a datum's letter, each way
 RING, RINGED, RING_GAP = 1.75, 1.8, 0.9  # radius around a letter, its height, and white around the ring, mm
+ROUNDING = 1e-6  # mm: more than sums of places on paper are off
 AROUND = 0.9  # white kept around a callout's texts beyond what the check asks, mm
 
 
@@ -66,6 +80,7 @@ class Board:
         self._boxes: list[Quad] = []  # around texts and letters in frames, and what bounds each
         self._bounds: list[Box] = []
         self._array: np.ndarray | None = None
+        self._bounds_array: np.ndarray | None = None
 
     def add(self, items: Iterable[Item]) -> None:
         for item in items:
@@ -82,11 +97,13 @@ class Board:
     def _keep_clear(self, quad: Quad) -> None:
         self._boxes.append(quad)
         self._bounds.append(bounds(quad))
+        self._bounds_array = None
 
     def _texts_meeting(self, box: Box) -> list[Quad]:
         """Texts and framed letters whose bounds meet the box."""
-        b = np.array(self._bounds).reshape(-1, 4)
-        x0, y0, x1, y1 = box
+        if self._bounds_array is None:
+            self._bounds_array = np.array(self._bounds).reshape(-1, 4)
+        b, (x0, y0, x1, y1) = self._bounds_array, box
         return [
             self._boxes[i]
             for i in np.flatnonzero((b[:, 2] >= x0) & (b[:, 0] <= x1) & (b[:, 3] >= y0) & (b[:, 1] <= y1))
@@ -99,13 +116,14 @@ class Board:
         """
         best: tuple[float, list[Item]] | None = None
         ways = [way for n in range(min(len(c.targets), MOST_TARGETS)) for way in _ways(c, n, scale, origin)]
+        extent = {t: grown(bounds_of(_quads(*_block(c, (0.0, 0.0), t))), -ROUNDING) for t in (1.0, -1.0)}
         for reach in REACHES:
             if best and reach >= best[0]:
                 break
             for tip, angle, extra in ways:
                 if best and reach + extra >= best[0]:
                     continue
-                items, cost = self._tried(c, tip, angle, reach)
+                items, cost = self._tried(c, tip, angle, reach, extent)
                 cost += extra
                 if items and (best is None or cost < best[0] - 1e-9):
                     best = (cost, items)
@@ -140,16 +158,18 @@ class Board:
                     return True
         return False
 
-    def _tried(self, c: Callout, tip: Point, angle: float, reach: float) -> tuple[list[Item], float]:
-        """The callout's items with a leader of this direction and length, and their cost; or none."""
+    def _tried(
+        self, c: Callout, tip: Point, angle: float, reach: float, extent: Mapping[float, Box]
+    ) -> tuple[list[Item], float]:
+        """The callout's items with a leader of this direction and length, and their cost; or none. `extent`:
+        of its texts about the shelf's end, by the shelf's direction."""
         elbow = polar(tip, reach, angle)
         towards = 1.0 if cos(radians(angle)) >= -1e-9 else -1.0
         start = (elbow[0] + towards * SHELF, elbow[1])
+        if not self._inside(shifted(extent[towards], start)):
+            return [], 0.0
         texts, extras = _block(c, start, towards)
-        quads = [t.corners(AROUND) for t in texts]
-        if extras:
-            quads.append(corners(grown(bounds_of_items(extras), PAD / 2)))
-        if not self.free(quads):
+        if not self.free(_quads(texts, extras)):
             return [], 0.0
         tried = [self.passed(leg) for leg in ((tip, elbow), (elbow, start))]
         passed = [cost for cost in tried if cost is not None]
@@ -161,11 +181,15 @@ class Board:
 
     def free(self, quads: Sequence[Quad]) -> bool:
         """Whether texts fit there: inside the area, outside every view, over nothing."""
-        x0, y0, x1, y1 = box = bounds([p for quad in quads for p in quad])
-        ax0, ay0, ax1, ay1 = self.area
+        box = bounds_of(quads)
+        return self._inside(box) and not self.hit(quads, box)
+
+    def _inside(self, box: Box) -> bool:
+        """Whether it is inside the area and outside every view."""
+        (x0, y0, x1, y1), (ax0, ay0, ax1, ay1) = box, self.area
         if x0 < ax0 + 2 or y0 < ay0 + 2 or x1 > ax1 - 2 or y1 > ay1 - 2:
             return False
-        return not any(overlap(box, kept) for kept in self.kept) and not self.hit(quads, box)
+        return not any(overlap(box, kept) for kept in self.kept)
 
     def passed(self, leg: Chord) -> float | None:
         """Cost of a line's crossings; None if it would run through a text."""
@@ -235,6 +259,12 @@ def _ways(c: Callout, n: int, scale: float, origin: Point) -> list[tuple[Point, 
     return [
         (polar(centre, radius * scale, a), a + turn, cost) for a, cost in normals for turn in (180.0, 0.0)
     ]
+
+
+def _quads(texts: Sequence[Text], extras: Sequence[Item]) -> list[Quad]:
+    """What a callout keeps clear."""
+    framed = [corners(grown(bounds_of_items(extras), PAD / 2))] if extras else []
+    return [*(text.corners(AROUND) for text in texts), *framed]
 
 
 def _block(c: Callout, start: Point, towards: float) -> tuple[list[Text], list[Item]]:

@@ -281,7 +281,7 @@ def answer(r: dict[str, Any]) -> str:
         none = "None found in this time" if r["left_out"] else "Impossible as asked"
         return f"{none}: no design keeps every rule; {r['refused']}"
     c = r["choice"]
-    first = {True: "", None: "Best to be had: ", False: "Impossible as asked, the best there is: "}[r["met"]]
+    first = {True: "", None: "Best to be had: ", False: "Impossible as asked; the best candidate: "}[r["met"]]
     than = f"within {page.percent(base['half_width'])}" if base["half_width"] else "not at all"
     if base["breaks"]:
         than = f"does not meet the target: {'; '.join(base['breaks'])}"

@@ -50,7 +50,7 @@ def scene(design: PlanarDesign, _pose: object = None) -> Scene:
             "look alike and have different addresses: put each at its own designator. Solder the connector "
             "J1 on the tongue."
         )
-    b.step("Chips", (0, 0, -35), soldered)
+    b.step("Chips", (0, 0, -35), soldered, sets=("chips on the board: all, by solder",))
     frame = b.place("FR", parts.frame(layout), (0, 0, layout.board_z))
     b.meet(frame, board)
     b.step("Frame", (0, 0, -25), "Lay the frame on the board, around the chips.")
@@ -64,20 +64,26 @@ def scene(design: PlanarDesign, _pose: object = None) -> Scene:
     for pin in pins:
         b.meet(pin, base, "press")
         b.meet(pin, frame)
-    first, tool = "Press the two dowels into the base, flush with its lower face.", PRESS
+    first = "Press the two dowels into the base, flush with its lower face."
+    tools: tuple[str, ...] = (PRESS, "a flat plate under the base as stop")
     if not layout.screwed:
-        first = "Bond every layer on the one below, flush at its edges, between two straight edges."
-        tool = "two straight edges"
-    b.step("Base", (0, 0, -15), first, tools=(tool,))
+        out = ", the board's tongue past one of them" if cell_board.tongue(layout) else ""
+        first = f"Bond every layer on the one below, flush at its edges between two straight edges{out}."
+        tools = ("two straight edges",)
+    b.step("Base", (0, 0, -15), first, tools=tools, sets=_laid(layout, base, frame))
     lower = b.place("SP", parts.lower_spacer(layout), (0, 0, layout.base_z))
     b.meet(lower, base)
     b.step(
-        "Lower spacer", (0, 0, -6), "Lay the lower spacer on the base: its thickness is the islands' travel."
+        "Lower spacer",
+        (0, 0, -6),
+        "Lay the lower spacer on the base: its thickness is the islands' travel.",
+        sets=_laid(layout, lower, base),
     )
     foil = b.place("F", parts.foil(layout), (0, 0, 0))
     b.meet(foil, lower)
     feet = {kind.name: parts.foot(layout, kind) for kind in layout.used}
     post, magnet = parts.post(layout), parts.magnet(layout)
+    bonded = [foil]
     for e in layout.elements:
         plate = b.place("FP", feet[e.kind.name], (e.x, e.y, t))
         top = b.place("P", post, (e.x, e.y, t + design.post.foot))
@@ -85,11 +91,14 @@ def scene(design: PlanarDesign, _pose: object = None) -> Scene:
         b.meet(plate, foil)
         b.meet(top, plate)
         b.meet(below, foil)
+        bonded += [plate, top, below]
     b.step(
         "Foil with posts and magnets",
         (0, 0, 8),
         "Take the foil with its foot plates, posts and magnets from the bonding jig (scene bonding).",
         bench=True,
+        order=[bonded],
+        sets=("foil, foot plates, posts and magnets: all, bonded in the jig",),
     )
     upper = b.place("SP", parts.upper_spacer(layout), (0, 0, t))
     b.meet(upper, foil)
@@ -98,11 +107,12 @@ def scene(design: PlanarDesign, _pose: object = None) -> Scene:
         (0, 0, 14),
         f"Lay the foil {'over the dowels' if layout.screwed else 'on the lower spacer'}, magnets down into "
         "their wells, and the upper spacer on it.",
+        sets=(*_laid(layout, foil, lower), *_laid(layout, upper, foil)),
     )
     cover = b.place("C", parts.cover(layout), (0, 0, layout.cover_z))
     b.meet(cover, upper)
     over = "dowels and posts" if layout.screwed else "the posts"
-    b.step("Cover", (0, 0, 26), f"Lower the cover over {over}.")
+    b.step("Cover", (0, 0, 26), f"Lower the cover over {over}.", sets=_laid(layout, cover, upper))
     if layout.screwed:
         length = parts.screw_length(layout) or 0.0
         for x, y in parts.screw_places(layout):
@@ -117,6 +127,13 @@ def scene(design: PlanarDesign, _pose: object = None) -> Scene:
         b.supplies.append(ADHESIVE)
     b.supplies += cell_board.supplies(layout)
     return b.scene(ARRAY, cover=(cover,))
+
+
+def _laid(layout: PlanarLayout, name: str, on: str) -> tuple[str, ...]:
+    """What fixes a layer on the one below."""
+    if not layout.screwed:
+        return (f"{name} on {on}: all, by adhesive, its edges flush",)
+    return (f"{name} on {on}: along z", f"{name} by DP1 DP2: along x and y, turn about z")
 
 
 SPIGOT, PLACES = "spigot diameter", "places of dowel holes"

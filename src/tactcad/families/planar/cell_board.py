@@ -421,7 +421,11 @@ def board(layout: PlanarLayout) -> Part:
         body=Extrusion(rectangle(-x, -y - tongue(layout), x, y), t),
         features=holes,
         colour="#3f6b4b",
-        purchase=Purchase(f"board of {d.name}, {len(layout.elements)} x {layout.chip.name}"),
+        purchase=Purchase(
+            f"board of {d.name}, {len(layout.elements)} x {layout.chip.name}"
+            if why_none(layout)
+            else f"bare board and its parts are ordered by their own lines, {BOARD} and those after it"
+        ),
     )
 
 
@@ -445,8 +449,10 @@ def chip(layout: PlanarLayout, order: str) -> Part:
         material=PACKAGE,
         body=Extrusion(rectangle(-c.length / 2, -c.width / 2, c.length / 2, c.width / 2), c.height),
         colour="#2b2d31",
-        purchase=Purchase(f"three-axis Hall chip {order}", manufacturer=c.maker, mpn=order),
-        spares=max(1, len(layout.elements) // 10),
+        purchase=Purchase(f"three-axis Hall chip {order}", manufacturer=c.maker, mpn=order)
+        if why_none(layout)
+        else Purchase(f"on the fitted board: the chip is ordered by the line {order}"),
+        spares=max(1, len(layout.elements) // 10) if why_none(layout) else 0,
     )
 
 

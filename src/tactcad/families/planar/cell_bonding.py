@@ -18,14 +18,15 @@ from tactcad.contour import rectangle
 from tactcad.parts.array.clamp import PRESS_FIT, pressed
 from tactcad.parts.bought.electronic_parts import MECHANICAL, Supply
 from tactcad.parts.bought.standard_parts import LEAST_PLAY, dowel, dowel_diameter, dowel_lengths
-from tactcad.parts.language.description import Extrusion, Hole, Part
+from tactcad.parts.language.description import Extrusion, Hole, Part, Vector
 from tactcad.parts.language.finding import Finding
 from tactcad.parts.language.limits import Characteristic
 from tactcad.parts.rules.rule import at_least, at_most, fits
 from tactcad.scenes.builder import Builder
+from tactcad.scenes.moves import PRESS, TWEEZED
 from tactcad.scenes.requirement import Built, DimensionLimits, Requirement, variable
 from tactcad.scenes.rig import Rig, none
-from tactcad.scenes.scene import Move, Scene
+from tactcad.scenes.scene import STILL, Move, Scene
 
 from . import parts
 from .cell_array import ADHESIVE, MAGNET_BOND, MAGNET_PLACE, nothing_bends
@@ -45,6 +46,10 @@ FILM, DEPTH = (
 PIN_PLAY = 0.01  # mm between a pin's middle size and the foil's edge: its largest radius is less
 INSET, SHORT = 0.5, 0.3  # mm: guide inside the foil's edge, clear of the pins; posts over the guide
 SLID = 0.3  # mm that the foil is laid beside its pins, and pushed; chosen
+FOAM, BRASS = 5.0, 8.4e-3  # mm of foam under the weight; g/mm3
+LIFTED = 40.0  # mm that what the jig holds is lifted off; chosen: clear of its pins
+OVER: Vector = (0.0, 0.0, LIFTED)
+ASIDE: Vector = (-200.0, 0.0, LIFTED)
 WEIGHT = 10.0  # g on every post; chosen: presses its shoulder flat, bends nothing on the bed
 RELEASE = Supply(
     "RELEASE-wax",
@@ -142,7 +147,7 @@ def scene(design: PlanarDesign, _pose: object = None) -> Scene:
         "Press the three pins in, flush with the bed's lower face. Wax bed, pins, guide and bores thinly, "
         "and polish: what squeezes out must not stick. Lay the bed on the sheet of steel, which holds the "
         "magnets down. Degrease foil, foot plates, posts and magnets, and touch them with tweezers only.",
-        tools=TOOLS,
+        tools=(*TOOLS, PRESS, "a flat plate under the bed as stop"),
     )
     below = -design.magnet.height - FILM
     magnets = [b.place("M", parts.magnet(layout), (e.x, e.y, below)) for e in layout.elements]
@@ -155,6 +160,9 @@ def scene(design: PlanarDesign, _pose: object = None) -> Scene:
         "end by a compass, whose south-seeking end it draws, and mark the upper face of each magnet before "
         "it leaves the rod. Slide one into every bore, mark up, to the floor. Check: a spare magnet held "
         f"with its mark down is pushed away over every one of the {n}; where it is drawn, turn that magnet.",
+        by=TWEEZED,
+        sets=("magnets in their bores: along x and y; along z, by the steel",),
+        leaves=("magnets: turn about z",),
     )
     foil = b.place("F", parts.foil(layout), (0, 0, 0))
     b.meet(foil, under)
@@ -178,6 +186,8 @@ def scene(design: PlanarDesign, _pose: object = None) -> Scene:
         (0, 0, 26),
         "Lay the array's upper spacer on the foil, dry, against the same pins: it holds the foil down, and "
         "carries the guide.",
+        sets=(f"{upper} on {foil}: along z", f"{upper} against DP1 DP2 DP3: along x and y, turn about z"),
+        leaves=(f"{upper}: away from the pins",),
     )
     plates = [b.place("FP", feet[e.kind.name], (e.x, e.y, t)) for e in layout.elements]
     for plate in plates:
@@ -187,6 +197,9 @@ def scene(design: PlanarDesign, _pose: object = None) -> Scene:
         (0, 0, 32),
         "Wet every island thinly around its hole, keep the beams dry, and lay the foot plate of its kind on "
         "it, hole over hole, edges along the island's.",
+        by=TWEEZED,
+        sets=("foot plates on their islands: along z, turn about x and y",),
+        leaves=("foot plates: along x and y, until the posts are in; turn about z, by eye",),
     )
     above = round(t + design.post.foot, 9)
     posts = [b.place("P", post, (e.x, e.y, above)) for e in layout.elements]
@@ -196,22 +209,32 @@ def scene(design: PlanarDesign, _pose: object = None) -> Scene:
         "Posts",
         (0, 0, 42),
         "Wet spigot and shoulder of every post, and set it through foot plate and foil down on its shoulder.",
+        by=TWEEZED,
+        sets=("posts through foot plates and foil: along x and y; along z, by their shoulders",),
+        leaves=("posts: lean, until the guide holds them",),
     )
-    b.meet(b.place("BG", guide(layout), (0, 0, layout.cover_z)), upper)
+    floating = b.place("BG", guide(layout), (0, 0, layout.cover_z))
+    b.meet(floating, upper)
+    (hx, hy), top = layout.half, layout.pad_z
+    tall = FOAM + WEIGHT * n / (4.0 * hx * hy * BRASS)
+    weight = b.aid("foam and weight of brass", (-hx, -hy, top), (hx, hy, top + tall))
     b.step(
         "Guide and weight",
         (0, 0, 60),
         "Lower the guide over the posts on the spacer; it floats, and must go down by its own weight. No "
         f"post leans by more than {leans(layout):.0f} mrad in it; its shoulder, pressed on the foot plate, "
-        f"sets it square. Lay 5 mm of soft foam and {WEIGHT * n:g} g of brass, no larger than "
+        f"sets it square. Lay {FOAM:g} mm of soft foam and {WEIGHT * n:g} g of brass, no larger than "
         f"the foil, on the posts, which stand {SHORT:g} mm over the guide.",
-        tools=("soft foam, 5 mm", f"flat weight of brass, {WEIGHT * n:g} g"),
+        tools=(f"soft foam, {FOAM:g} mm", f"flat weight of brass, {WEIGHT * n:g} g"),
+        order=[(floating,), Move((weight,), OVER, (STILL,))],
+        sets=("posts in the guide: turn about x and y", "all in the jig: along z, by the weight"),
     )
     b.supplies += [ADHESIVE, RELEASE]
     b.step(
         "Cure",
         (0, 0, 0),
         "Leave it until the adhesive has cured by its own sheet, cold: heat takes magnets' field.",
+        sets=("foil, foot plates, posts and magnets: all, by adhesive",),
     )
     b.step(
         "Out of the jig",
@@ -221,6 +244,12 @@ def scene(design: PlanarDesign, _pose: object = None) -> Scene:
         "by a hair through its hole, from the middle outwards, and go round until all are free; never peel "
         "the foil by its edge. Check the poles again with the spare magnet. Push at each post with a "
         "fingernail, sideways: a bond that gives is to be done anew.",
+        order=[
+            Move((weight,), STILL, (OVER, ASIDE)),
+            *(Move((name,), STILL, (OVER, ASIDE)) for name in (floating, upper)),
+            Move((foil, *plates, *posts, *magnets), STILL, (OVER,)),
+        ],
+        apart=True,
     )
     return b.scene(NAME)
 

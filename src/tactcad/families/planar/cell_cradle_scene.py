@@ -11,6 +11,7 @@ from tactcad.parts.bought.standard_parts import dowel
 from tactcad.parts.language.metric import METRIC
 from tactcad.parts.rigs.frame import STANDARD_GRAVITY
 from tactcad.scenes.builder import Builder
+from tactcad.scenes.moves import PRESS, TWEEZED
 from tactcad.scenes.rig import Rig, none
 from tactcad.scenes.scene import AGAINST_Y, DOWN, REST, STILL, UPRIGHT, Move, Pose, Rotation, Scene
 
@@ -67,7 +68,12 @@ def _mounted(rig: CradleLayout) -> Builder:
     for pin in pins:
         b.meet(pin, block, "press")
     out = rig.height - cradle.PIN_SHORT
-    b.step("Pins", (0, 0, 20), f"Press the three pins in until {out:.3g} mm stand out.")
+    b.step(
+        "Pins",
+        (0, 0, 20),
+        f"Press the three pins in until {out:.3g} mm stand out.",
+        tools=(PRESS, f"a sleeve {out:.3g} mm long as stop"),
+    )
     own = [b.place("AR", cradle.array(rig), (0.0, 0.0, rig.layout.pad_z), DOWN)]
     b.meet(own[0], block)
     if rig.tongue:
@@ -146,6 +152,9 @@ def _hung(b: Builder, rig: CradleLayout, along: Axis, cell: CellPlace) -> None:
         (0, 0, 20) if along == "z" else (0, -20, 0),
         f"Read the chip first, the pad bare. Then push the cap on the pad of {cell.designator}, down to its "
         "floor, without tilting it; tweezers of plastic, for the magnets draw steel.",
+        by=TWEEZED,
+        sets=(f"{cap} on the pad: along z; along x and y, turn about x and y by its bore",),
+        leaves=(f"{cap}: turns about the post",),
     )
     if along == "z":
         hung = b.place("HA", cradle.hanger(rig), (x - cradle.SHEET / 2.0, y, rig.tip), ACROSS)

@@ -33,7 +33,7 @@ from tactcad.parts.language.description import (
 )
 from tactcad.parts.language.limits import FACES, Characteristic, Geometric, within
 from tactcad.parts.language.metric import METRIC, tapped_through
-from tactcad.parts.language.stock import BREAK_EDGES, FRAME, FRAME_DATUMS, PLACE, plate_material
+from tactcad.parts.language.stock import ANODISED, BREAK_EDGES, FRAME, FRAME_DATUMS, PLACE, plate_material
 
 from .cell_layout import Kind, PlanarLayout
 from .cell_tables import FoilProcess
@@ -359,7 +359,7 @@ def milled(
         body=body,
         features=tuple(features),
         colour="#7c8794",
-        finish="Ra 1.6, clear anodised after machining" + ("; dowel holes masked" if layout.screwed else ""),
+        finish=ANODISED + ("; dowel holes masked" if layout.screwed else ""),
         notes=(BREAK_EDGES, *notes),
         characteristics=(within("thickness", body.thickness, 0.02, between=FACES), *_stated(layout, *bores)),
         **marks,

@@ -267,19 +267,12 @@ def sheet_material(design: CommonTables) -> Material:
 
 
 def material_notes(design: Design) -> tuple[str, ...]:
-    """Notes that the material requires: from its data, and on values in which the design differs from
-    them.
-    """
+    """Notes that the material requires."""
     bare = ("bare sheet, not clad",) if family(design.material.density) == "aluminium" else ()
     magnetic = ("demagnetise after cutting",) if design.material.magnetic == "yes" else ()
     # fatigue: sheet is stronger along its grain than across, and the hinge bends along the arm
     rolled = "rolling direction along the arm, across the hinge"
-    return (
-        *bare,
-        rolled,
-        *magnetic,
-        *(f"designed with other data than its material's: {d}" for d in design.differences),
-    )
+    return (*bare, rolled, *magnetic)
 
 
 def shortest(value: float) -> str:

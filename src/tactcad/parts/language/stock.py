@@ -24,8 +24,8 @@ PLAIN_STEEL = Material("S235JR steel", 7850, standard="EN 10025-2", magnetic="ye
 RUBBER = Material("rubber", 1200)
 STAINLESS = Material("X5CrNi18-10 (1.4301)", 7900, standard="EN 10088-3", magnetic="weakly")  # bar
 STAINLESS_PLATE = replace(STAINLESS, standard="EN 10088-2")
-# Martensitic: a magnetic chuck holds it for grinding. Density after EN 10088-1.
-MAGNETIC_STAINLESS = Material("X46Cr13 (1.4034)", 7700, "annealed (+A)", "EN 10088-2", magnetic="yes")
+# Martensitic, annealed: a magnetic chuck holds it for grinding. Density after EN 10088-1.
+MAGNETIC_STAINLESS = Material("X46Cr13 (1.4034)", 7700, "+A", "EN 10088-2", magnetic="yes")
 # Plate is stretched after quenching, so that it stays flat when one side is milled off (EN 515).
 STRETCHED = {"-T6": "-T651", "-T3": "-T351"}
 

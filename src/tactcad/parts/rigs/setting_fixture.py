@@ -167,7 +167,8 @@ def setting_fixture(rig: SettingLayout) -> Part:
         finish="Ra 0.4 on floor and steps",
         notes=(
             BREAK_EDGES + ", but not the floor's",
-            "floor and steps wire-cut in one contour; hardened",
+            # chosen: harder than what is set in it; the steel reaches a little more
+            "hardened to 50 HRC or more, then floor and steps wire-cut in one contour",
             f"pins {size} m6 are pressed in from above, {rig.pin_length - PIN_OUT:g} deep: {PIN_OUT:g} out",
         ),
         characteristics=(

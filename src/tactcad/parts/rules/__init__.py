@@ -9,12 +9,13 @@ folder; `@fits` marks one that an array must keep to fit a rig, whose declaratio
 from __future__ import annotations
 
 import pkgutil
+from contextlib import suppress
 from importlib import import_module
 from pathlib import Path
 
 from tactcad.design.family import family_of
 from tactcad.design.load import read
-from tactcad.design.messages import InputError
+from tactcad.design.messages import CheckFailure, InputError
 from tactcad.design.tree import CommonTables
 
 from ..language.finding import Finding
@@ -41,8 +42,11 @@ def design_rules() -> dict[str, Rule]:
     return {r.name: r for r in every if not r.fit}
 
 
-def broken_rules(design: CommonTables) -> list[Finding]:
-    """The first finding of every rule of its family that the design breaks, in the order of the rules."""
+def broken_rules(design: CommonTables, every: bool = False) -> list[Finding]:
+    """The first finding of every rule of its family that the design breaks, in the order of the rules.
+
+    With `every`, rules that follow a broken one are tried too; those that it makes incomputable are left out.
+    """
     family = family_of(design)
     layout = family.layout(design)
     broken: list[Finding] = []
@@ -50,6 +54,9 @@ def broken_rules(design: CommonTables) -> list[Finding]:
     for name, rule in family.rules().items():
         if kept.get(rule.after, True):
             broken += rule(layout)
+        elif every:
+            with suppress(CheckFailure, ArithmeticError, LookupError, ValueError):
+                broken += rule(layout)
         kept[name] = not broken
     return broken
 

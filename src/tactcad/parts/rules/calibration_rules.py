@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from math import hypot
+from dataclasses import replace
+from math import ceil, hypot
 
 from tactcad.design.fields import present
 
@@ -103,14 +104,23 @@ def mount_clears_carrier(layout: Layout) -> Iterator[Finding]:
     if not faults_of(calibration_stage(layout), layout):
         return
     reaching = [s for s in STAGES if far(layout) <= min(s.travel, most_before_post(s))]
-    most = max(map(most_carrier, reaching or STAGES))
-    yield from at_most(
-        "array.row_arms",
-        "the array's carrier covers the screws of the calibration mount on every stage that reaches its pads",
-        min(layout.carrier_size) / 2,
-        most,
-        f"at most {most:g} mm from the middle, along or across: fewer elements a row, or a thinner sheet",
+    most = 2 * max(map(most_carrier, reaching or STAGES))
+    over = layout.carrier_width - most
+    if min(layout.carrier_size) <= most + SAME:
+        return
+    design = layout.design
+    what = (
+        f"the array's carrier, {layout.carrier_width:g} mm wide, covers the screws of the calibration mount"
     )
+    what += " on every stage that reaches its pads"
+    pattern = design.clamp.mount_pitch_y
+    narrower = replace(design, clamp=replace(design.clamp, mount_pitch_y=pattern - over))
+    if Layout(narrower).carrier_width <= layout.carrier_width - over + SAME:
+        yield wrong("clamp.mount_pitch_y", what, pattern, f"at most {pattern - over:g} mm")
+    else:
+        longest = max(map(len, design.array.row_arms))
+        fewer = longest - ceil(over / design.array.pitch - SAME)
+        yield wrong("array.row_arms", what, longest, f"at most {fewer} elements a row, or a smaller pitch")
 
 
 @fits

@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from math import floor
 from types import MappingProxyType
+from typing import Any
 
 from tactcad.design.fields import present
 from tactcad.design.tree import Design
@@ -36,7 +37,7 @@ from tactcad.parts.rules.calibration_rules import FITS as CALIBRATION_FITS
 from tactcad.parts.rules.rule import misfit
 
 from ..builder import Builder
-from ..moves import PRESS
+from ..moves import FINGERTIP, PRESS, TWEEZED
 from ..rig import ARRAY, Rig, none
 from ..scene import AGAINST_Y, ALONG_Y, DOWN, UPRIGHT, Held, Placement, Scene, Step
 
@@ -224,13 +225,13 @@ def array_steps(layout: Layout, placed: Mapping[str, Sequence[Placement]]) -> tu
         fan: int = 0,
         elements: bool = False,
         limit: str = "",
-        held: tuple[Held, ...] = (),
+        **more: Any,
     ) -> Step:
         names = tuple(p.designator for p in placed.get(title, ()))
-        return Step(
-            title, names, explode, text, fan=fan, tools=tools, elements=elements, limit=limit, held=held
-        )
+        return Step(title, names, explode, text, fan=fan, tools=tools, elements=elements, limit=limit, **more)
 
+    pins = " ".join(p.designator for p in placed[FIRST_PLATE] if p.part.bought)
+    other = placed[OTHER_PLATE][0].designator
     on_ledge = [p.designator for p in placed[STACK] if p.part.part_no != spacer(layout).part_no]
     ledges = tuple(sorted(on_ledge, key=lambda name: (len(name), name)))
 
@@ -247,9 +248,26 @@ def array_steps(layout: Layout, placed: Mapping[str, Sequence[Placement]]) -> tu
             (0, 0.6 * width, 0),
             _first_plate(layout, c, placed[FIRST_PLATE][0]),
             (PRESS, f"a sleeve {round(c.dowel - dowel_depth(layout), 9):g} mm long as stop"),
+            view="on end",
         ),
-        step(STACK, (0, -way, 0), _stacking(layout, placed[STACK]), fan=ABREAST, elements=True),
-        step(OTHER_PLATE, (0, -way - width, 0), _other_plate(c, placed[OTHER_PLATE][0])),
+        step(
+            STACK,
+            (0, -way, 0),
+            _stacking(layout, placed[STACK]),
+            fan=ABREAST,
+            elements=True,
+            view="on end",
+            sets=(f"all on {pins}: along x and z, to the play of their holes", "each on the last: along y"),
+            leaves=("each: turn about its dowel, along y away from the last",),
+        ),
+        step(
+            OTHER_PLATE,
+            (0, -way - width, 0),
+            _other_plate(c, placed[OTHER_PLATE][0]),
+            view="on end",
+            sets=(f"{other} on {pins}: along x and z, turn about y", f"{other} on the stack: along y"),
+            leaves=(f"{other}: along y, away from the stack",),
+        ),
         step(
             COPLANAR,
             (0, -way - 20.0 - 1.6 * width, 0),
@@ -258,7 +276,14 @@ def array_steps(layout: Layout, placed: Mapping[str, Sequence[Placement]]) -> tu
             elements=True,
             limit=f"All pads in one plane within {2 * d.tolerance.pad_height:g} mm",
         ),
-        step(STOP_PLATE, (0, 0, 0.8 * width), _laying_stop_plate(layout), held=level(STOP_PLATE, ledges)),
+        step(
+            STOP_PLATE,
+            (0, 0, 0.8 * width),
+            _laying_stop_plate(layout),
+            (TWEEZED,) if narrow(layout) else (),
+            by=TWEEZED if narrow(layout) else "",
+            held=level(STOP_PLATE, ledges),
+        ),
         step(
             CARRIER,
             (0, 0, 1.4 * width),
@@ -418,6 +443,11 @@ def is_calibrated(layout: Layout) -> bool:
     return layout.design.calibration is not None and misfit(layout, CALIBRATION_FITS) is None
 
 
+def narrow(layout: Layout) -> bool:
+    """Whether no fingertip enters between the end plates."""
+    return layout.stack < min(FINGERTIP)
+
+
 def _laying_stop_plate(layout: Layout) -> str:
     calibrated = (
         "If the array is still to be calibrated, first fit its carrier, wire it (scene wiring) and calibrate "
@@ -427,7 +457,9 @@ def _laying_stop_plate(layout: Layout) -> str:
     )
     return (
         (calibrated if is_calibrated(layout) else "")
-        + "Wipe ledges and plate. Lay the stop plate on the ledges; both faces are ground, so either may "
+        + "Wipe ledges and plate. Lay the stop plate on the ledges"
+        + (", with tweezers between the end plates" if narrow(layout) else "")
+        + "; both faces are ground, so either may "
         "face down."
     )
 

@@ -25,12 +25,15 @@ from ..builder import Builder
 from ..moves import PRESS
 from ..rig import Rig, none
 from ..rig_requirements import bonding_requirements
-from ..scene import AGAINST_Y, REST, UPRIGHT, Placement, Pose, Rotation, Scene
+from ..scene import AGAINST_Y, REST, STILL, UPRIGHT, Move, Placement, Pose, Rotation, Scene, Vector
 from .array import laying_leads
 
 FACE_UP: Rotation = ((1, 0, 0), (0, 0, 1), (0, -1, 0))  # local y runs along -z, the thickness along +y
 BETWEEN = 20.0  # mm between the fixtures of several kinds of hinge; chosen: a hand's room
 LIFTED = 40.0  # exploded view: what comes from above
+OVER: Vector = (0.0, 0.0, LIFTED)  # the clamp bar over its pins
+ASIDE: Vector = (-120.0, 0.0, LIFTED)  # and beside the nest
+FINGER = 20.0  # mm of a fingertip's length; chosen: to its first joint
 
 
 def bonding(design: Design, pose: Pose = REST) -> Scene:
@@ -48,18 +51,63 @@ def bonding(design: Design, pose: Pose = REST) -> Scene:
             for side in (-1, 1):
                 at = (x, y + side * rig.pin_y, -rig.rest - rig.pin_depth)
                 b.meet(b.place("DW", pin, at, UPRIGHT), nest, "press")
-    b.step("Fixture", (0, 0, 0), fixture(stations), tools=FIXTURE_TOOLS)
+    stop = stations[0].pin_length - stations[0].pin_depth
+    b.step("Fixture", (0, 0, 0), fixture(stations), tools=(PRESS, f"a sleeve {stop:g} mm long as stop"))
+    pads = [_pad(b, rig, y) for rig, y in zip(stations, middles)]
+    bars = []
+    for rig, y, pad in zip(stations, middles, pads):
+        bars.append(b.place("CB", rigs.bonding_clamp(rig), (0, y + rig.width / 2, rig.nose), AGAINST_Y))
+        b.meet(pad, bars[-1])
+    clamps = [*zip(pads, bars)]
+    b.step(
+        "Clamp bar",
+        (0, 0, 2 * LIFTED),
+        clamp_bar(stations[0]),
+        fan=len(stations),
+        order=[m for pair in clamps for m in (Move(pair, OVER, (STILL,)), Move(pair, STILL, (OVER, ASIDE)))],
+        tools=("balance, 1 g",),
+        sets=tuple(f"{pad} on {bar}: all, by adhesive" for pad, bar in clamps),
+        leaves=tuple(f"{bar}: slides along z" for bar in bars),
+    )
     b.step("Surface", (0, 0, 0), surface(stations[0]), tools=SURFACE_TOOLS)
     for n, (rig, y) in enumerate(zip(stations, middles), start=1):
         _element(b, rig, y, n)
-    b.step("Element on the tongue", (0, 0, LIFTED), element_in(stations[0]))
-    b.step("Gauge", (0, 0, 0), gauge(stations), tools=GAUGE_TOOLS)
-    pads = [_pad(b, rig, y) for rig, y in zip(stations, middles)]
-    for rig, y, pad in zip(stations, middles, pads):
-        b.meet(pad, b.place("CB", rigs.bonding_clamp(rig), (0, y + rig.width / 2, rig.nose), AGAINST_Y))
-    b.step("Clamp and cure", (0, 0, 2 * LIFTED), clamp(stations), fan=len(stations))
+    elements = tuple(_first(rig).designator for rig in stations)
+    b.step(
+        "Element on the tongue",
+        (0, 0, LIFTED),
+        element_in(stations[0]),
+        sets=tuple(f"{e} on its tongue: along z, turn about x and y; by pins along y" for e in elements),
+        leaves=tuple(f"{e}: along x, by {rig.play:g} mm of play" for e, rig in zip(elements, stations)),
+    )
+    fingers = [_finger(b, rig, y) for rig, y in zip(stations, middles)]
+    b.step(
+        "Gauge",
+        (0, 0, 0),
+        gauge(stations),
+        tools=GAUGE_TOOLS,
+        order=[Move((finger,), OVER, (STILL, OVER)) for finger in fingers],
+        sets=("gauge on its hinge: along x and y, by eye; along z",),
+    )
+    b.step(
+        "Clamp and cure",
+        (0, 0, 0),
+        clamp(stations),
+        order=[
+            m for pair in clamps for m in (Move(pair, ASIDE, (OVER, STILL)), Move(pair, STILL, (OVER, ASIDE)))
+        ],
+        sets=("gauge on its hinge: all, by adhesive",),
+        apart=True,
+    )
     first = stations[0]
-    b.step("Trim and terminals", (0, 0, 0), terminals(first), tools=TRIM_TOOLS)
+    b.step(
+        "Trim and terminals",
+        (0, 0, 0),
+        terminals(first),
+        tools=TRIM_TOOLS,
+        order=[Move((e,), STILL, (OVER,)) for e in elements],
+        apart=True,
+    )
     b.step("Solder", (0, 0, 0), solder(first), tools=SOLDER_TOOLS)
     b.step("Check resistance and insulation", (0, 0, 0), resistance(first), tools=OHMS_TOOLS)
     b.step("Coat", (0, 0, 0), coat(first))
@@ -79,6 +127,13 @@ def _first(rig: BondingLayout) -> ElementPlace:
     return next(p for p in rig.array.elements if p.hinge == rig.hinge)
 
 
+def _finger(b: Builder, rig: BondingLayout, y: float) -> str:
+    """A fingertip with gauge, tape and film under it."""
+    (before, behind), half = rig.pad_x, rig.pad_width / 2
+    low = (before, y - half, rig.gauge_face)
+    return b.aid("fingertip on the gauge", low, (behind, y + half, rig.gauge_face + FINGER))
+
+
 def _pad(b: Builder, rig: BondingLayout, y: float) -> str:
     pad = b.place("RP", rigs.bonding_pad(rig), (0, y, rig.gauge_face), UPRIGHT)
     b.meet(pad, _first(rig).designator)
@@ -86,7 +141,6 @@ def _pad(b: Builder, rig: BondingLayout, y: float) -> str:
 
 
 LOUPE = "stereo microscope or loupe, 20x"
-FIXTURE_TOOLS = (PRESS, "balance, 1 g")
 SURFACE_TOOLS = ("nitrile gloves",)
 GAUGE_TOOLS = (LOUPE, "tweezers", "clear tape for gauges")
 TRIM_TOOLS = ("scalpel",)
@@ -97,7 +151,7 @@ THUMB = 20.0  # N; chosen: a thumb that presses hard
 
 
 def fixture(rigs: Sequence[BondingLayout]) -> str:
-    """Assembly of the nest and its clamp."""
+    """Assembly of the nest."""
     rig = rigs[0]
     kinds = (
         f" There are {len(rigs)} nests: each is for the elements with its own hinge, as its number says."
@@ -106,11 +160,17 @@ def fixture(rigs: Sequence[BondingLayout]) -> str:
     )
     return (
         f"Press the pins square into the nest from above, {rig.pin_depth:g} mm deep: "
-        f"{rig.pin_length - rig.pin_depth:g} mm stand out. Stick the rubber under the clamp bar's nose, "
-        f"edges flush, with silicone adhesive; weigh the bar: {rig.bar_mass:.3g} g within 5 %, which press "
-        f"{rig.bar_pressure:.2g} MPa on the gauge. It must slide down on the pins by its own weight, either "
-        "way round. Hold the nest in a vice by its foot, level. The tongue's ends stand out at both sides "
-        f"of an element: they are the marks that the gauge is set by, so do not break their edges.{kinds}"
+        f"{rig.pin_length - rig.pin_depth:g} mm stand out. Hold the nest in a vice by its foot, level. The "
+        "tongue's ends stand out at both sides of an element: they are the marks that the gauge is set by, "
+        f"so do not break their edges.{kinds}"
+    )
+
+
+def clamp_bar(rig: BondingLayout) -> str:
+    return (
+        "Stick the rubber under the clamp bar's nose, edges flush, with silicone adhesive; weigh the bar: "
+        f"{rig.bar_mass:.3g} g within 5 %, which press {rig.bar_pressure:.2g} MPa on the gauge. It must "
+        "slide down on the pins by its own weight, either way round. Take it off again."
     )
 
 
@@ -166,8 +226,8 @@ def clamp(rigs: Sequence[BondingLayout]) -> str:
         "Lay release film on the gauge and at once lower the clamp bar on the pins, rubber on the gauge. "
         f"Leave it for {rig.table.cure:g} min, or as long as the adhesive's own sheet asks, at 20 to 30 "
         "degrees C and 30 to 65 % relative humidity for cyanoacrylates. It presses "
-        f"{rig.bar_pressure:.2g} MPa; {_bears(rigs)} Lift the bar straight up; peel film and tape back over "
-        "themselves."
+        f"{rig.bar_pressure:.2g} MPa; {_bears(rigs)} Lift the bar straight up, off the pins; peel film and "
+        "tape back over themselves."
     )
 
 
@@ -215,8 +275,9 @@ def _stress(
 
 def terminals(rig: BondingLayout) -> str:
     return (
-        "Cut away adhesive that came out beside the leaf, with the scalpel along the face, never across "
-        f"the hinge: both slots must be free. Bond the solder terminals, {rig.table.terminal_length:g} x "
+        "Lift the element out by its rear body. Cut away adhesive that came out beside the leaf, with the "
+        "scalpel along the face, never across the hinge: both slots must be free. "
+        f"Bond the solder terminals, {rig.table.terminal_length:g} x "
         f"{rig.terminal_width:g} mm, on the floor of the wire recess, their front end {AHEAD_OF_LEADS:g} mm "
         "behind its wall: there nothing bends, and leads and solder stay "
         f"{rig.design.element.recess_depth:g} mm below the face."

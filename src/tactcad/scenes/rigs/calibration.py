@@ -24,9 +24,24 @@ from tactcad.parts.rigs.stiffness import calibration_lines, calibration_loads, s
 from tactcad.parts.rules.calibration_rules import FITS
 
 from ..builder import Builder
+from ..moves import APPROACH, driver
 from ..rig import Rig
 from ..rig_requirements import roller
-from ..scene import AGAINST_Y, DOWN, REST, STILL, Motion, Move, Need, Pose, Rotation, Scene, Vector, whole_um
+from ..scene import (
+    AGAINST_Y,
+    DOWN,
+    REST,
+    STILL,
+    Motion,
+    Move,
+    Need,
+    Placement,
+    Pose,
+    Rotation,
+    Scene,
+    Vector,
+    whole_um,
+)
 from ..shared_rigs import (
     AXIS_LIFT,
     BESIDE,
@@ -47,11 +62,11 @@ from ..shared_rigs import (
 from .array import array, carrier_tools, flatness_tools
 
 BACK_DOWN: Rotation = DOWN  # half a turn about x: pads up
-IN_FRONT: Vector = (
-    0.0,
-    -250.0,
-    RAISED / 2,
-)  # place of the mount during its assembly, mm from its final place
+FRONT = -250.0  # mm along y, where the mount is assembled
+IN_FRONT: Vector = (0.0, FRONT, RAISED / 2)  # from its final place
+BLOCK = (35.0, 9.0)  # mm: section of gauge blocks over 10 mm (ISO 3650)
+Names = tuple[str, ...]
+Mounted = tuple[Names, str, Names, Names]  # array, mount, screws into the carrier and into the stage
 OUT_OF_X: Rotation = ((0, 0, -1), (0, 1, 0), (1, 0, 0))  # local z runs along -x
 
 
@@ -73,46 +88,61 @@ def calibration(design: Design, pose: Pose = REST) -> Scene:
     post = place_stand(b, rig, stages=True)
     under = _stages(b, rig, dx, dy)
     contact, tip = place_force_axis(b, rig, post, rig.pads_up, pose.height - pose.deflection, roller=True)
-    c = present(design.calibration)
+    c, tall = present(design.calibration), rig.pads_up - 2 * rig.stage.height
+    low = (-BLOCK[0] / 2, -BLOCK[1] / 2, 2 * rig.stage.height)
+    block = b.aid(f"steel block of {tall:g} mm", low, (-low[0], -low[1], rig.pads_up))
     b.meet(contact, "TI1", "press")
     b.step(
         "Roller tip",
         (0, -130, AXIS_LIFT - 40),
         "Bond the roller in the tip's seat, in the middle of its width and of its length within 0.15 mm. "
-        "Screw the tip on the gauge's shaft, roller along y: lay a flat parallel on the upper stage and "
-        "drive the roller down on it, which must show an even line of light; the jam nut against the tip "
-        "holds it so.",
-        order=tip,
-        tools=(JAM_SPANNER, "flat parallel", "epoxy adhesive, two parts"),
-        leaves=("RO1 in TI1: turn about z, until the jam nut is tight",),
+        f"Screw the tip on the gauge's shaft, roller along y. Drive the axis up by {RAISED:g} mm, set a "
+        f"steel block of {tall:g} mm (gauge blocks) on the upper stage, and drive the roller down on it: "
+        "it must show an even line of light. Tighten the jam nut against the tip; that holds it so.",
+        order=[
+            *tip,
+            raised(b),
+            Move((block,), (0.0, -150.0, RAISED / 2), ((0.0, 0.0, RAISED / 2), STILL)),
+            raised(b, down=True),
+            Move(("JN1",), STILL, (STILL,), JAM_SPANNER),
+        ],
+        tools=(JAM_SPANNER, "gauge blocks, steel", "epoxy adhesive, two parts"),
+        needs=(Need(("CA1",), "the block is where the array will be", away=True),),
+        sets=(f"{contact} in TI1: all, by adhesive", "TI1 to FG1: all, by JN1"),
     )
-    block = rig.pads_up - 2 * rig.stage.height
     b.step(
         "Stiffness of gauge and stand",
         (0, 0, 0),
-        f"Set a steel block of {block:.0f} mm (gauge blocks) on the upper stage under the roller and "
-        f"measure the gauge in its stand on it. {_series(design)} Take the block away.",
-        tools=("gauge blocks, steel",),
+        f"Measure the gauge in its stand on the block under the roller. {_series(design)} Drive the "
+        f"roller up by {RAISED:g} mm and take the block away.",
+        order=[raised(b), Move((block,), STILL, ((0.0, 0.0, RAISED / 2), (0.0, -150.0, RAISED / 2)))],
         needs=(
             Need((contact, under), "the roller presses a block on the upper stage"),
             Need(("CA1",), "the block is where the array will be", away=True),
         ),
     )
-    _mounted_array(b, rig, under, contact, dx, dy, pose)
-    boards_on_bench(b, calibration_bench(rig.array))
+    mounted = _mounted_array(b, rig, under, contact, dx, dy, pose)
+    boards_on_bench(b, rig, calibration_bench(rig.array), -1.0)
     b.step(
-        "Calibrate, then fit the stop plate",
+        "Calibrate",
         (0, 0, 0),
         f"Above a pad, set x by the edge of the pad to {c.load_point:g} mm; {c.step * 1e3:g} um steps to "
-        f"{c.travel * 1e3:g} um. {_limits(design)} Afterwards drive the roller up, pull "
-        "the sockets off, free the leads, take the mount off the stages and the array off the mount. Set "
-        "it in the setting fixture as in the step Coplanar pads of the array's own guide, still clamped, "
-        "and take the carrier off it there (hex key of its screws). Read the pads' heights on the "
-        "surface plate again and go on in that guide with the step Stop plate. Zero every signal anew.",
-        tools=(*flatness_tools(rig.array), *carrier_tools(design)),
+        f"{c.travel * 1e3:g} um. {_limits(design)}",
         elements=True,
         order=[raised(b, down=True)],
         needs=(Need((contact, "E1"), "the roller presses its pads"),),
+    )
+    b.step(
+        "Take the array off, then fit the stop plate",
+        (0, 0, 0),
+        f"Drive the roller up by {RAISED:g} mm, pull the sockets off, free the leads, take the mount off the "
+        "stages and the array off the mount. Set it in the setting fixture as in the step Coplanar pads of "
+        "the array's own guide, still clamped, and take the carrier off it there (hex key of its screws). "
+        "Read the pads' heights on the surface plate again and go on in that guide with the step Stop plate. "
+        "Zero every signal anew.",
+        tools=(*flatness_tools(rig.array), *carrier_tools(design)),
+        order=[raised(b), *_off(b.placements, mounted)],
+        apart=True,
     )
     if pose.height == 0:
         b.meet(contact, f"E{pose.element}")
@@ -197,7 +227,7 @@ def _stages(b: Builder, rig: StandLayout, dx: float, dy: float) -> str:
 
 def _mounted_array(
     b: Builder, rig: StandLayout, under: str, roller: str, dx: float, dy: float, pose: Pose
-) -> None:
+) -> Mounted:
     """The array on its mount, pads up, on the upper stage."""
     z = 2 * rig.stage.height
     b.group("stage-y")
@@ -231,23 +261,43 @@ def _mounted_array(
         bench=True,
         at=IN_FRONT,
     )
+    fixings = []
     for sx, sy in CORNERS:
         at = (dx + sx * rig.stage.hole, dy + sy * rig.stage.hole, z + UNDER)
-        b.screw(THREAD, LENGTH, at, (0, 0, -1), mount, under)
+        fixings.append(b.screw(THREAD, LENGTH, at, (0, 0, -1), mount, under))
     high = (0.0, 0.0, RAISED / 2)
     b.step(
         "Mount on the stages",
         (0, 0, 145),
-        f"Drive the roller up by {RAISED:g} mm, bring the mount in from the front under it and fix it on "
-        "the upper stage, its longer side along x and its mark at +x: the rows then run along y. The "
-        "stage's four threads fit a quarter turn off too: look at the mark. A pad's edge must stay under "
-        "the roller within 0.02 mm over the whole y travel; turn the mount in its holes' play before the "
-        "last turn of its screws.",
-        order=[raised(b), Move((*ready, mount, *screws), IN_FRONT, (high, STILL))],
+        "Bring the mount in from the front under the raised roller and fix it on the upper stage, its longer "
+        "side along x and its mark at +x: the rows then run along y. The stage's four threads fit a quarter "
+        "turn off too: look at the mark. A pad's edge must stay under the roller within 0.02 mm over the "
+        "whole y travel; turn the mount in its holes' play before the last turn of its screws.",
+        order=[Move((*ready, mount, *screws), IN_FRONT, (high, STILL))],
         needs=(Need((roller,), "a pad's edge is aligned with it"),),
         leaves=("AM1 on SM2: turn about z, to its holes' play, until its screws are tight",),
     )
     b.group(None)
+    return ready, mount, tuple(screws), tuple(fixings)
+
+
+def _off(placements: Iterable[Placement], mounted: Mounted) -> list[Move]:
+    """The mount's screws out, it and the array off to the front, and the array off the mount."""
+    array, mount, screws, fixings = mounted
+    placed = {p.designator: p for p in placements}
+
+    def out(names: Iterable[str], at: Vector, away: float) -> Iterator[Move]:
+        x, y, z = at
+        for name in names:
+            yield Move((name,), at, ((x, y, z + away), (x, 2 * FRONT, z + away)), driver(placed[name].part))
+
+    high = (0.0, 0.0, RAISED / 2)
+    return [
+        *out(fixings, STILL, 2 * APPROACH),
+        Move((*array, mount, *screws), STILL, (high, IN_FRONT)),
+        *out(screws, IN_FRONT, -2 * APPROACH),
+        Move(array, IN_FRONT, ((0.0, FRONT, IN_FRONT[2] + APPROACH),)),
+    ]
 
 
 def _series(design: Design) -> str:

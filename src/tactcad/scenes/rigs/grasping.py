@@ -18,6 +18,7 @@ from tactcad.parts.array.layout import Layout
 from tactcad.parts.array.supplies import supplies
 from tactcad.parts.bought.screws import cap_screw
 from tactcad.parts.bought.standard_parts import dowel, dowel_diameter
+from tactcad.parts.language.description import vector
 from tactcad.parts.language.finding import Finding
 from tactcad.parts.rigs.frame import (
     BAR_FRONT,
@@ -64,6 +65,7 @@ from tactcad.parts.rules.grasping_rules import FITS
 from tactcad.parts.rules.rule import fits, wrong
 
 from ..builder import Builder
+from ..moves import APPROACH, PRESS
 from ..rig import Rig, none
 from ..rig_requirements import LEVELLED, LEVELLING_PLATE, SAMPLE, parallel, wheels
 from ..scene import (
@@ -113,11 +115,14 @@ def grasping(design: Design, pose: Pose = REST) -> Scene:
     lift = pose.height - pose.deflection
     below, z = place_axis(b, rig, rail, lift)
     b.group(None)
-    boards_on_bench(b, grasping_bench(rig.array))
     up, lid_text = (0.0, 0.0, g.lift), "The array hangs on the latch over it."
     cart_on_base(b, text=lid_text)
+    boards_on_bench(b, StandLayout(design), grasping_bench(rig.array))
     axis = tuple(b.groups["axis"])
     b.unit("vertical axis")
+    side, top = rig.cart.sample.side / 2, rig.cart.sample_top
+    flat = b.aid("flat plate", (-side, -side, rig.cart.lid_top), (side, side, top))
+    in_front, over = (0.0, -200.0, g.lift / 2), (0.0, 0.0, g.lift / 2)
     b.step(
         "Pads level with the lid",
         (0, 0, 0),
@@ -128,7 +133,15 @@ def grasping(design: Design, pose: Pose = REST) -> Scene:
         f"parallel to the sample within {design.tolerance.tilt:g} degree if the sample's edges are equally "
         f"thick within {1e3 * tan(radians(SAMPLE * design.tolerance.tilt)) * rig.cart.sample.side:.0f} um.",
         tools=(f"flat plate, as thick as the sample, parallel within {LEVELLING_PLATE * 1e3:g} um", SHIMS),
-        order=[*_latched(False), Move(axis, up, (STILL,)), Move(axis, STILL, (up,)), *_latched(True)],
+        order=[
+            Move((flat,), in_front, (over, STILL)),
+            *_latched(False),
+            Move(axis, up, (STILL,)),
+            Move(axis, STILL, (up,)),
+            *_latched(True),
+            Move((flat,), STILL, (over, in_front)),
+        ],
+        sets=("CA1: parallel to the lid, by shims under the foot",),
         needs=(
             Need((lid, "CA1"), "the array is lowered on the lid"),
             Need(("SA1",), "a plate lies there", away=True),
@@ -153,6 +166,8 @@ def grasping(design: Design, pose: Pose = REST) -> Scene:
         f"{one_by_one if weights else 'The'} grasping force is the moving weight: {g.moving_weight:g} N.",
         order=[*_latched(False), Move(axis, up, (STILL,))],
         needs=(Need((sample,), "the array is lowered on it"),),
+        sets=("pads on the sample: along z", *(("discs: along x and y by the pin",) if discs else ())),
+        leaves=("vertical axis: slides along z", *(("discs: up the pin, turn about z",) if discs else ())),
     )
     if pose.height == 0:
         for place in rig.array.elements:
@@ -203,6 +218,17 @@ def _guide(b: Builder, rig: GuideLayout, post: str, latched: bool) -> str:
     length = rig.grasping.rail_length
     riser = b.place("RI", rigs.riser(rig), (0, front, z), ALONG_Y)
     b.meet(post, riser)
+    y = front + STOP_DEPTH - STOP_LENGTH
+    stop = b.place("ES", dowel(STOP_PIN, STOP_LENGTH), (0, y, z - stop_below(rig)), ALONG_Y)
+    b.meet(stop, riser, "press")
+    b.step(
+        "End stop",
+        (0, -50, 110),
+        f"Press the end stop's pin into the riser, below the rail's place, {STOP_DEPTH:g} mm deep: it keeps "
+        "the carriage on its rail.",
+        bench=True,
+        tools=(PRESS, f"a sleeve {STOP_LENGTH - STOP_DEPTH:g} mm long as stop"),
+    )
     for sx, sy in CORNERS:
         at = (sx * STAGE_HOLE, front + rig.riser_depth - RISER_UNDER_HEAD, z + sy * RISER_PITCH)
         b.screw("M4", RISER_SCREW, at, (0, 1, 0), riser, post)
@@ -219,29 +245,21 @@ def _guide(b: Builder, rig: GuideLayout, post: str, latched: bool) -> str:
     rail_screws = [
         b.screw("M3", 8.0, (0, front - 3.0, z + dz), (0, 1, 0), rail, riser) for dz in rail_holes(length)
     ]
-    y = front + STOP_DEPTH - STOP_LENGTH
-    stop = b.place("ES", dowel(STOP_PIN, STOP_LENGTH), (0, y, z - stop_below(rig)), ALONG_Y)
     hole, y = -LATCH if latched else -LATCH_KEPT, front + LATCH_DEPTH - LATCH_LENGTH
     latch = b.place(
         "LP", dowel(STOP_PIN, LATCH_LENGTH), (hole, y, z + latch_above(rig) - latch_lies()), ALONG_Y
     )
-    b.meet(stop, riser, "press")
     b.meet(riser, latch)
     b.step(
         "Guide rail",
         (0, -85, 110),
         "Lay the rail against a parallel set upright on the base plate; tighten its screws from the "
-        f"middle outwards. Press the end stop's pin in below the rail, {STOP_DEPTH:g} mm deep: it keeps the "
-        "carriage on its rail. Put the latch, the pin that slides, by hand in the outer of the two holes "
+        "middle outwards. Put the latch, the pin that slides, by hand in the outer of the two holes "
         "beside the rail, where it is out of the way; in the inner one it holds the lifted carriage up.",
-        tools=(
-            "parallel, as long as the rail",
-            f"vice, and a sleeve {STOP_LENGTH - STOP_DEPTH:g} mm long as stop",
-        ),
+        tools=("parallel, as long as the rail",),
         order=[
             (rail,),
             *((name,) for name in rail_screws),
-            (stop,),
             Move((latch,), (0.0, -2 * LATCH_LENGTH, 0.0), (STILL,)),
         ],
         leaves=("LP1: slides along y, by hand",),
@@ -326,10 +344,13 @@ def place_axis(b: Builder, rig: GuideLayout, rail: str, lift: float) -> tuple[st
             (name,),
             Move(("LP1",), INNER, (aside,)),
             Move(axis, up, (off,)),
+            Move((name,), off, (vector((0.0, 0.0, off[2] + 2 * APPROACH)), off)),
             Move(axis, off, (up,)),
             Move(("LP1",), aside, (INNER,)),
         ],
         at=up,
+        sets=(f"{name} on {platform}: along z", f"{name}: along x and y, by the pin"),
+        leaves=(f"{name}: up the pin, turn about z",),
     )
     return name, z + disc.extrusion.thickness
 

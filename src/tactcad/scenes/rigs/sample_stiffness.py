@@ -12,7 +12,7 @@ from tactcad.parts.rules.grasping_rules import SAMPLE_FITS
 from ..builder import Builder
 from ..rig import Rig, none
 from ..rig_requirements import wheels
-from ..scene import REST, Motion, Need, Pose, Scene
+from ..scene import REST, STILL, Motion, Move, Need, Pose, Scene
 from ..shared_rigs import (
     AXIS_LIFT,
     JAM_SPANNER,
@@ -44,8 +44,9 @@ def sample_stiffness(design: Design, pose: Pose = REST) -> Scene:
         (0, -130, AXIS_LIFT - 40),
         "Screw the flat tip on the gauge's shaft by hand, its long side along y; the jam nut against it "
         "holds it so.",
-        order=tip,
+        order=[*tip, Move(("JN1",), STILL, (STILL,), JAM_SPANNER)],
         tools=(JAM_SPANNER,),
+        sets=("TI1 to FG1: all, by JN1",),
     )
     cart_on_base(b, [raised(b)])
     sample = place_sample(b, cart, pose.cart, lid, dents, pose.deflection, RAISED)
@@ -54,7 +55,7 @@ def sample_stiffness(design: Design, pose: Pose = REST) -> Scene:
         (0, 0, 0),
         f"Lower the tip until the gauge reads 0.01 N: that is zero. Then {s.step * 1e3:g} um steps to "
         f"{s.travel * 1e3:g} um, three times; subtract the gauge's own {gauge.load_cell_stiffness:g} N/mm.",
-        order=[raised(b, down=True)],
+        order=[raised(b, down=True), raised(b), raised(b, down=True)],
         needs=(Need((sample, contact), "the tip presses the sample"),),
     )
     if pose.height == 0:

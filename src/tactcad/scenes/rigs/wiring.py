@@ -15,6 +15,7 @@ from tactcad.parts.array.board_plate import (
     INSULATOR,
     PLATE,
     STAND_OFF,
+    STUD,
     THREAD,
     UNPLUGGED,
     board_plate,
@@ -33,6 +34,7 @@ from tactcad.parts.rules.bonding_rules import FITS as BONDING_FITS
 from tactcad.parts.rules.rule import misfit
 
 from ..builder import Builder
+from ..moves import APPROACH
 from ..rig import Rig, none
 from ..scene import DOWN, REST, STILL, Move, Need, Pose, Rotation, Scene
 from .array import array, is_calibrated
@@ -50,6 +52,7 @@ PARKED = (
     14.0  # mm before its header a socket lies on the plate while its leads are soldered: clear of the clamp
 )
 LIFTED = 40.0  # mm that what comes from above starts over its place; chosen: fingers
+SPANNER = f"spanner {FLATS:g} mm"
 SOLDERING = "soldering iron with a 0.4 mm tip, temperature controlled"
 
 
@@ -77,6 +80,8 @@ def wiring(design: Design, pose: Pose = REST) -> Scene:
         (0, 0, 0),
         "Lay a board plate on the bench for each board, at the side of the row that it reads, its edge "
         f"with the lead clamp's two threads towards the array's place.{_in_order(layout)}",
+        sets=("board plates on the bench: along z, turn about x and y",),
+        leaves=("board plates: along x and y, turn about z",),
     )
     screws: list[tuple[BoardStand, str, Vector]] = []
     for stand, plate in zip(stood, plates):
@@ -90,7 +95,9 @@ def wiring(design: Design, pose: Pose = REST) -> Scene:
         (0, 0, 30),
         f"Turn four stand-offs into each plate until they lie on it, and a little further by a {FLATS:g} mm "
         "spanner.",
-        tools=(f"spanner {FLATS:g} mm",),
+        order=[Move((name,), (0.0, 0.0, APPROACH + STUD), (STILL,), SPANNER) for _, name, _ in screws],
+        tools=(SPANNER,),
+        sets=("stand-offs in their plates: all, by their studs",),
     )
     fitted = [b.place("A", fitted_board(design, outline), corner(s, level), BOARD[s.side]) for s in stood]
     names = dict(zip(stood, fitted))
