@@ -11,14 +11,14 @@ from built import shapes_of
 from test_tools import block
 
 from tactcad.checks.on_solids.steps import Trial, check_steps
-from tactcad.parts.bought.screws import cap_screw, jam_nut
+from tactcad.parts.bought.screws import cap_screw, jam_nut, nut
 from tactcad.parts.bought.standard_parts import STAGES, dowel
 from tactcad.parts.language.description import Hole
 from tactcad.parts.rigs import stand
 from tactcad.parts.rules import load
 from tactcad.scenes import make_scene, scene_names
 from tactcad.scenes.builder import Builder
-from tactcad.scenes.moves import guide_json, settles, step_moves
+from tactcad.scenes.moves import driver, guide_json, settles, step_moves
 from tactcad.scenes.scene import DOWN, STILL, Contact, Held, Move, Need, Placement, Scene, Step
 
 pytestmark = pytest.mark.cad
@@ -278,3 +278,8 @@ def test_every_stage_sold_can_be_screwed_down(monkeypatch, stage):
     met = tuple(c for c in made.contacts if {c.first, c.second} <= names)
     stands = replace(made, placements=placed, contacts=met, steps=steps, groups=(), motions=(), ready=())
     assert found(stands) == []
+
+
+def test_small_nuts_are_turned_by_a_nut_driver():
+    """Rods of M2 stand 7 mm apart: a spanner's head meets the next nut (6 mm and half a nut's corners)."""
+    assert [driver(nut(thread)) for thread in ("M2", "M3")] == ["nut driver 4 mm", "spanner 5.5 mm"]

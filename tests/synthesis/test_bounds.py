@@ -211,4 +211,4 @@ def test_a_newcomers_box_is_met_by_two_commands(tmp_path, capsys):
     assert design.material.alloy == "1.4310-C1300" and design.clamp.screw == "M2"
     assert max(overall_size(design)[:2]) <= 40.0 + 1e-6
     assert "with M3 nothing fits the room" in capsys.readouterr().out
-    assert main(["check", str(out / "design.toml"), "--scene", "array"]) == 0
+    assert main(["check", str(out / "design.toml")]) == 0
