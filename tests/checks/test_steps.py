@@ -9,16 +9,17 @@ from dataclasses import replace
 import pytest
 from built import shapes_of
 from test_tools import block
+from variants import variant
 
 from tactcad.checks.on_solids.steps import Trial, check_steps
-from tactcad.parts.bought.screws import cap_screw, jam_nut, nut
+from tactcad.parts.bought.screws import cap_screw, jam_nut
 from tactcad.parts.bought.standard_parts import STAGES, dowel
 from tactcad.parts.language.description import Hole
 from tactcad.parts.rigs import stand
 from tactcad.parts.rules import load
 from tactcad.scenes import make_scene, scene_names
 from tactcad.scenes.builder import Builder
-from tactcad.scenes.moves import driver, guide_json, settles, step_moves
+from tactcad.scenes.moves import guide_json, settles, step_moves
 from tactcad.scenes.scene import DOWN, STILL, Contact, Held, Move, Need, Placement, Scene, Step
 
 pytestmark = pytest.mark.cad
@@ -226,6 +227,19 @@ def test_a_drill_point_is_told_from_a_thread():
     assert found(one) == [] and [f.check for f in found(stuck)] == ["insertion"]
 
 
+@pytest.mark.parametrize("rows", [[[6.0]], [[4.0, 7, 6, 8] * 3, [8.0, 5, 4, 7] * 3]], ids=["one", "tie rods"])
+def test_hands_get_into_small_and_long_arrays(rows):
+    """One element's strip is laid by tweezers; a long array's nuts, low over the fixture, want nut drivers:
+    an open spanner has no room there."""
+    made = make_scene(variant({"array.row_arms": rows}), "setting")
+    assert found(made) == []
+    (nuts,) = (s for s in made.steps if s.title == "Coplanar pads")
+    spanner = Move(("NU1",), (0, -30.0, 0), (STILL,), "spanner 5.5 mm")
+    if "NU1" in nuts.designators:
+        other = replace(made, steps=(*made.steps[:-1], replace(nuts, order=(spanner,))))
+        assert ("tool-room", "NU1") in {(f.check, f.part) for f in found(other)}
+
+
 @pytest.mark.parametrize("name", ["macro-array", "soft-tissue"])
 def test_the_shipped_array_goes_together(name):
     assert found(make_scene(load(name), "array")) == []
@@ -278,8 +292,3 @@ def test_every_stage_sold_can_be_screwed_down(monkeypatch, stage):
     met = tuple(c for c in made.contacts if {c.first, c.second} <= names)
     stands = replace(made, placements=placed, contacts=met, steps=steps, groups=(), motions=(), ready=())
     assert found(stands) == []
-
-
-def test_small_nuts_are_turned_by_a_nut_driver():
-    """Rods of M2 stand 7 mm apart: a spanner's head meets the next nut (6 mm and half a nut's corners)."""
-    assert [driver(nut(thread)) for thread in ("M2", "M3")] == ["nut driver 4 mm", "spanner 5.5 mm"]

@@ -21,6 +21,7 @@ from built import shapes_of
 from OCP.BRep import BRep_Tool
 from OCP.BRepMesh import BRepMesh_IncrementalMesh
 from OCP.IFSelect import IFSelect_RetDone
+from OCP.IMeshTools import IMeshTools_MeshAlgoType, IMeshTools_Parameters
 from OCP.STEPCAFControl import STEPCAFControl_Reader
 from OCP.TCollection import TCollection_ExtendedString
 from OCP.TDataStd import TDataStd_Name
@@ -89,7 +90,10 @@ def solids(path: Path) -> dict[str, manifold3d.Manifold]:
 
 
 def closed(shape) -> manifold3d.Manifold:
-    BRepMesh_IncrementalMesh(shape, 0.02, False, 0.1, False)
+    asked = IMeshTools_Parameters()
+    asked.Deflection, asked.Angle = 0.02, 0.1
+    asked.MeshAlgo = IMeshTools_MeshAlgoType.IMeshTools_MeshAlgoType_Delabella
+    BRepMesh_IncrementalMesh(shape, asked)
     points, corners, faces = [], [], TopExp_Explorer(shape, TopAbs_FACE)
     while faces.More():
         face, where = TopoDS.Face_s(faces.Current()), TopLoc_Location()
@@ -227,7 +231,7 @@ def table(found: dict[str, dict[str, Tried]]) -> str:
 def shown() -> dict[str, dict[str, str]]:
     """The page's table, by design and scene."""
     text = re.search(r"<!-- table assembly -->\n(.*?)\n<!-- end -->", STACK.read_text("utf-8"), re.S)[1]
-    head, _, *rows = ([cell for cell in line.strip("|").split("|")] for line in text.splitlines())
+    head, _, *rows = (line[1:-1].split("|") for line in text.splitlines())
     return {d: {row[0]: row[n] for row in rows if row[n]} for n, d in enumerate(head) if n}
 
 

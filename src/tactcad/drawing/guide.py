@@ -20,7 +20,7 @@ from tactcad.design.tree import CommonTables
 from tactcad.parts.array import seating
 from tactcad.parts.language.description import Part, Vector, vector
 from tactcad.parts.language.metric import METRIC
-from tactcad.scenes.moves import Moment, nut_tool, settles
+from tactcad.scenes.moves import Moment, settles
 from tactcad.scenes.scene import Placement, Scene, Step
 
 from .engine.boxes import Box, bounds, bounds_of, box_of, corners, moved_by, placed
@@ -128,7 +128,7 @@ def tools(design: CommonTables, scene: Scene) -> list[str]:
     for part in {p.part.part_no: p.part for p in scene.placements if p.designator not in ready}.values():
         if part.thread:
             m = METRIC[part.thread]
-            sizes = {"set screw": ("hex key", m.set_key), "nut": (f"two {nut_tool(m.nut)}s", m.nut)}
+            sizes = {"set screw": ("hex key", m.set_key), "nut": ("two nut drivers", m.nut)}
             driver, turned = sizes.get(part.kind, ("hex key", m.key)), f"{part.thread} {part.kind}s"
             if turned not in drivers.setdefault(driver, []):
                 drivers[driver].append(turned)

@@ -23,7 +23,6 @@ APPROACH = 20.0
 # mm between bench and assembly; chosen: two hands' width
 BENCH = 100.0
 SAME = 1e-6  # mm: boxes that touch
-SMALL_NUT = 4.0  # mm over flats, M2: up to here a nut driver turns it (check `tools` tries it); chosen
 FASTENERS = ("cap screw", "set screw", "nut")
 TWEEZED = "tweezers"
 # mm: width and thickness of a fingertip. Chosen: half of an adult's 16 to 20 mm, which is soft (often quoted
@@ -203,18 +202,14 @@ class _Assembly:
 
 
 def driver(part: Part) -> str:
-    """The driver of a screw or nut; "" for other parts."""
+    """The driver of a screw or nut; "" for other parts. Nuts stand too near each other, or too low over the
+    setting fixture, for spanners."""
     if part.kind not in FASTENERS:
         return ""
     m = METRIC[part.thread]
     if part.kind == "nut":
-        return f"{nut_tool(m.nut)} {m.nut:g} mm"
+        return f"nut driver {m.nut:g} mm"
     return f"hex key {m.set_key if part.kind == 'set screw' else m.key:g} mm"
-
-
-def nut_tool(flats: float) -> str:
-    """What turns a nut of that width over flats (mm): small nuts stand too near each other for spanners."""
-    return "spanner" if flats > SMALL_NUT else "nut driver"
 
 
 def _names(item: Move | tuple[str, ...]) -> tuple[str, ...]:

@@ -11,10 +11,10 @@ from tactcad.parts.bought.standard_parts import dowel
 from tactcad.parts.rigs.setting_fixture import BASE, PIN_OUT, SettingLayout
 
 from ..builder import Builder
-from ..moves import PRESS
+from ..moves import PRESS, TWEEZED
 from ..rig import Rig, none
 from ..scene import REST, STILL, UPRIGHT, Contact, Held, Move, Pose, Rotation, Scene
-from .array import COPLANAR, STACKED, array, flatness_tools, setting_words, wedge
+from .array import COPLANAR, STACKED, array, flatness_tools, narrow, setting_words, wedge
 
 ALONG_X: Rotation = ((0, 0, 1), (1, 0, 0), (0, 1, 0))  # local x runs along y, y along z, z along x
 
@@ -52,6 +52,8 @@ def setting(design: Design, pose: Pose = REST) -> Scene:
             "Strip under the blanks",
             (0, 0, 20),
             "Lay the strip on the floor where the blanks' fronts will stand.",
+            tools=(TWEEZED,) if narrow(layout) else (),
+            by=TWEEZED if narrow(layout) else "",
         )
     stacked = {d for s in whole.steps if s.title in STACKED for d in s.designators}
     loose = replace(
