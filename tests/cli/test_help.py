@@ -24,7 +24,7 @@ def listed(command: str) -> list[str]:
     ]
 
 
-@pytest.mark.parametrize("words", [[], ["help"], ["--help"], ["help", "help"], ["help", "--help"]])
+@pytest.mark.parametrize("words", [[], ["help"], ["--help"], ["help", "help"], ["help", "--help"], ["-q"]])
 def test_without_a_command_the_help_is_printed_by_task(words, capsys):
     assert main(words) == 0
     said = capsys.readouterr().out

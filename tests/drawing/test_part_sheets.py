@@ -27,6 +27,7 @@ from tactcad.drawing.engine.ink import DrawnArc, Stroke, Text
 from tactcad.drawing.engine.layout_check import layout_faults
 from tactcad.drawing.engine.paper import A3, A4, SERIES
 from tactcad.drawing.engine.sheet_files import pdf_bytes, pdf_runs
+from tactcad.drawing.parts import board
 from tactcad.drawing.parts import part_sheet as sheets
 from tactcad.drawing.parts.compose import compose
 from tactcad.drawing.parts.part_sheet import (
@@ -111,6 +112,13 @@ def test_the_stated_scale_is_preferred_and_is_the_one_drawn(finished, orders):
         lines = [c for i in sheet.items if isinstance(i, Stroke) and i.role == "outline" for c in i.chords()]
         lengths = {round(max(abs(b[0] - a[0]), abs(b[1] - a[1])), 3) for a, b in lines}
         assert round((x1 - x0) * up / down, 3) in lengths and round((y1 - y0) * up / down, 3) in lengths
+
+
+def test_a_place_without_room_for_a_text_s_box_is_none_for_the_text(finished, orders, monkeypatch):
+    """Where no box is looked at first, the sheets are the same."""
+    monkeypatch.setattr(board, "ROUNDING", 1e3)  # boxes turned inside out, which fit anywhere
+    for number in ("macro-array-carrier", ELEMENT):
+        assert part_sheet(orders[number]) == finished[number]
 
 
 def test_the_hinge_is_shown_at_ten_to_one_or_larger(finished):

@@ -27,6 +27,7 @@ K = 1 / PADS.compliance[:, 0, 0]
 MOVE = PADS.compliance[:, :, 0] * K[:, None]
 ARRAY = labs.Array(NUMBER[READ], PADS.x, PADS.y, 2.0, 3.0, 1 / MOVE[:, 1], K, K_V)
 NU = 0.49
+SPREAD = layer_fit.UNREAD * 3**0.5  # of ln K of the pad that is not read, either way: as the fit states
 
 
 @lru_cache(maxsize=5)
@@ -45,6 +46,7 @@ def held(h: float, E: float, angle: float, presses: int, each: int, seed: int) -
         turn = rng.uniform(0, 2 * np.pi)
         slope = np.tan(np.radians(angle * np.array([np.cos(turn), np.sin(turn)])))
         true_K, true_v = (v * np.exp(rng.uniform(-0.1, 0.1, len(K))) for v in (K, K_V))
+        true_K[~READ] = K[~READ] * np.exp(rng.uniform(-SPREAD, SPREAD))
         height = rng.uniform(0, 2 * DESIGN.tolerance.pad_height, len(K))
         i = rng.integers(len(benches))
         sink = benches[i].sinks(E, true_K, height, slope, labs.LOAD)
@@ -84,7 +86,7 @@ def least(h: float, E: float, angle: float, load_known: bool = False) -> float:
     slope = np.tan(np.radians(angle * np.array([0.6, 0.8])))
     thickness = 0.05 if h < inf else 0.0
     height = DESIGN.tolerance.pad_height
-    return labs.least_half_width(of, h, E, K, K_V, READ, height, slope, 0.1, thickness, load_known)
+    return labs.least_half_width(of, h, E, K, K_V, READ, height, slope, SPREAD, thickness, load_known)
 
 
 @pytest.mark.slow
@@ -108,7 +110,7 @@ def test_coverage_of_every_cell(h, E, angle):
         f"median half-width {np.median(half):.3f}"
     )
     # labs on one press share its heights and thickness: a share is known to 0.5 %, by the presses' scatter
-    assert 0.93 < right[:, 0].mean() < 0.975 and 0.93 < np.nanmean(right[:, 1:]) < 0.975
+    assert 0.93 < right[:, 0].mean() < 0.97 and 0.93 < np.nanmean(right[:, 1:]) < 0.97
     assert np.median(half) < min(0.12, 1.3 * least(h, E, angle))
 
 
@@ -142,20 +144,20 @@ def test_a_fit_ends_where_the_truth_costs_no_less():
         assert found.modulus[0, 1] < 0.3 < found.modulus[0, 2]
 
 
-def test_signals_without_noise_leave_less_than_the_least_noise(monkeypatch):
-    """By single patches, 3 mm and 1 MPa, inclined by 5 degrees: nearly as much where a whole row lifts, less
-    than a third of it else."""
-    least, rng, left = layer_fit.SHAPE, np.random.default_rng(3), []
-    monkeypatch.setattr(layer_fit, "SHAPE", 1e-9)
+def test_signals_without_noise_are_the_law_s(monkeypatch):
+    """By single patches, 3 mm and 1 MPa, inclined by 5 degrees: where a whole row lifts the law leaves up to
+    0.023 % of the largest change (0.03 to 0.04 with half of its table's knots), else about what is stated."""
+    law, rng, left = layer_fit.SHAPE, np.random.default_rng(3), []
+    monkeypatch.setattr(layer_fit, "SHAPE", 1e-5)
     at = layer(NUMBER, PADS, DESIGN.tolerance.pad_height, NU, 3.0, 0.15)
-    for turn in np.radians([0.0, 22.5, 90.0]):
+    for turn in np.radians([0.0, 22.5, 90.0, 180.0]):
         slope = np.tan(np.radians(5.0)) * np.array([np.cos(turn), np.sin(turn)])
         height = rng.uniform(0, 0.02, len(K))
         signal = K_V[READ, None] * bench(3.0).sinks(1.0, K, height, slope, labs.LOAD)[READ]
         known = labs.calibration(ARRAY, K[READ], K_V[READ], rng, each=1e-5)
         found = fit(at, NUMBER[READ], labs.LOAD, signal[None], known)
         left.append(found.noise[0] / np.ptp(signal, axis=1).max())
-    assert 0.5 * least < left[0] < least and max(left[1:]) < least / 3
+    assert max(left[0], left[3]) < 5 * law and max(left[1:3]) < 1.5 * law
 
 
 def one_lab(slope=(0.0, 0.0), E=0.5, seed=1):

@@ -210,7 +210,7 @@ def _dispatch(argv: list[str]) -> int:
     if argv[:1] == ["help"] and len(argv) == 2 and argv[1] in COMMANDS:
         parser_of(argv[1]).print_help()
         return DONE
-    if argv in ([], ["help"], ["-h"], ["--help"], ["help", "help"], ["help", "-h"], ["help", "--help"]):
+    if not argv or argv in LOUDNESS or (len(argv) < 3 and set(argv) <= {"help", "-h", "--help"}):
         print(overview())
         return DONE
     if argv == ["--version"]:
@@ -218,5 +218,5 @@ def _dispatch(argv: list[str]) -> int:
         return DONE
     word = argv[1] if argv[0] == "help" else argv[0]
     Parser(prog="tactcad").error(
-        str(InputError("COMMAND", "unknown", value=word, legal=one_of(word, COMMANDS)))
+        str(InputError("COMMAND", "unknown", value=word, legal=one_of(word, (*COMMANDS, "help"))))
     )

@@ -42,6 +42,7 @@ def page(old: Side, new: Side, changes: Sequence[Change], first: Iterable[str] =
     ]
     text = (
         '<!doctype html>\n<html lang="en"><head><meta charset="utf-8">'
+        '<meta name="viewport" content="width=device-width,initial-scale=1">'
         f"<title>{escape(new.design)}: {escape(old.revision)} to {escape(new.revision)}</title>"
         f"<style>{style}</style></head><body><main>\n" + "\n".join(body) + "\n</main></body></html>\n"
     )
