@@ -240,6 +240,13 @@ def test_hands_get_into_small_and_long_arrays(rows):
         assert ("tool-room", "NU1") in {(f.check, f.part) for f in found(other)}
 
 
+@pytest.mark.slow
+def test_a_long_array_comes_past_the_guide():
+    """Slid up and off to be weighed, its end plate met the heads of the rail's screws."""
+    long = variant({"array.row_arms": [[4.0, 7, 6, 8] * 3, [8.0, 5, 4, 7] * 3]})
+    assert found(make_scene(long, "grasping")) == []
+
+
 @pytest.mark.parametrize("name", ["macro-array", "soft-tissue"])
 def test_the_shipped_array_goes_together(name):
     assert found(make_scene(load(name), "array")) == []

@@ -18,7 +18,7 @@ from tactcad.parts.array.layout import Layout
 from tactcad.parts.array.supplies import supplies
 from tactcad.parts.bought.screws import cap_screw
 from tactcad.parts.bought.standard_parts import dowel, dowel_diameter
-from tactcad.parts.language.description import vector
+from tactcad.parts.language.description import Vector
 from tactcad.parts.language.finding import Finding
 from tactcad.parts.rigs.frame import (
     BAR_FRONT,
@@ -65,7 +65,7 @@ from tactcad.parts.rules.grasping_rules import FITS
 from tactcad.parts.rules.rule import fits, wrong
 
 from ..builder import Builder
-from ..moves import APPROACH, PRESS
+from ..moves import PRESS
 from ..rig import Rig, none
 from ..rig_requirements import LEVELLED, LEVELLING_PLATE, SAMPLE, parallel, wheels
 from ..scene import (
@@ -289,6 +289,7 @@ def _poses(design: Design) -> Iterator[Pose]:
 
 ALONG_RAIL: Rotation = ((-1, 0, 0), (0, -1, 0), (0, 0, 1))  # carriage: local y out of the rail, z along it
 PIN_SCREW = ("M4", 10.0)
+CARRIAGE_SCREW = ("M3", 6.0)  # four of them
 NEWTON = STANDARD_GRAVITY * 1e-3  # N, weight of a gram
 # A thinner disc is not turned flat (chosen); a longer pin, in steps of 5 mm, bends under the tool: 12
 # diameters.
@@ -316,43 +317,47 @@ def place_axis(b: Builder, rig: GuideLayout, rail: str, lift: float) -> tuple[st
     Returns the designator of what the weights lie on, and the z of its surface (mm).
     """
     before = len(b.placements)
-    platform = _place_carried(b, rig, rail, lift, array(rig.design))
-    thick, ballast = _trim(rig, sum(p.part.mass for p in b.placements[before:]))
+    carriage, bar, platform = _place_carried(b, rig, rail, lift, array(rig.design))
+    thick, ballast = _trim(rig, sum(p.part.mass for p in b.placements[before:]) + _carriage_screws_mass())
     z = rig.platform_top + lift
     pin = b.place("PN", rigs.pin(rig, thick), (0, 0, z))
     b.meet(platform, pin)
     b.screw(*PIN_SCREW, (0, 0, z - PLATFORM_UNDER_HEAD), (0, 0, 1), platform, pin)
-    up = (0.0, 0.0, rig.grasping.lift)
-    b.step("Pin", (0, 0, 280), "Screw the pin on the platform from below.", at=up)
-    if ballast <= 0:
-        return platform, z
-    disc = rigs.ballast(rig, ballast)
-    name = b.place("BA", disc, (0, 0, z))
-    b.meet(platform, name)
-    axis, off = tuple(b.groups["axis"]), (0.0, 0.0, 2 * rig.grasping.rail_length)
-    aside = (INNER[0], -off[2], 0.0)
+    b.step("Pin", (0, 0, 280), "Screw the pin on the platform from below.", bench=True)
+    below = platform
+    if ballast > 0:
+        disc = rigs.ballast(rig, ballast)
+        below = b.place("BA", disc, (0, 0, z))
+        b.meet(platform, below)
+        z += disc.extrusion.thickness
+        b.step(
+            "Ballast",
+            (0, 0, 305),
+            "Lay the ballast on the platform. Weigh the bar with all it carries, leads held up, and the four "
+            "screws of the next step. With the carriage (above) they must be "
+            f"{rig.grasping.moving_weight:g} N, {rig.grasping.moving_weight / NEWTON:.1f} g. Turn the "
+            "ballast thinner until they are.",
+            tools=("balance, 0.1 g",),
+            bench=True,
+            sets=(f"{below} on {platform}: along z", f"{below}: along x and y, by the pin"),
+            leaves=(f"{below}: up the pin, turn about z",),
+        )
+    front, up = BAR_FRONT + rig.bar, (0.0, 0.0, rig.grasping.lift)
+    for sx in (-1, 1):
+        for sy in (-1, 1):
+            at = (sx * 7.5, front - BAR_UNDER_HEAD, rig.bar_bottom + lift + rig.carriage_on_bar + sy * 5.0)
+            b.screw(*CARRIAGE_SCREW, at, (0, 1, 0), bar, carriage)
+    b.meet(bar, carriage)
     b.step(
-        "Ballast",
-        (0, 0, 305),
-        "Lay the ballast on the platform. Hold the bar, take the latch out, and slide all that "
-        "moves up off the guide on the carriage's transport rail. Weigh it without that rail, leads held up: "
-        f"with the ballast it must be {rig.grasping.moving_weight:g} N, "
-        f"{rig.grasping.moving_weight / NEWTON:.1f} g. Turn the ballast thinner until it is. Slide it back, "
-        "and set the latch under the carriage again, in the inner of its holes.",
-        tools=("balance, 0.1 g",),
-        order=[
-            (name,),
-            Move(("LP1",), INNER, (aside,)),
-            Move(axis, up, (off,)),
-            Move((name,), off, (vector((0.0, 0.0, off[2] + 2 * APPROACH)), off)),
-            Move(axis, off, (up,)),
-            Move(("LP1",), aside, (INNER,)),
-        ],
+        "Bar on the carriage",
+        (0, -160, 0),
+        "Lift the carriage and set the latch under it, in the inner of its holes. Bring the bar over the "
+        "latch, which passes its hole, and screw it on the carriage. It stays on the latch until the "
+        "pads are levelled.",
+        order=[Move((carriage,), _fallen(rig), (up,)), *_latched(True), ()],
         at=up,
-        sets=(f"{name} on {platform}: along z", f"{name}: along x and y, by the pin"),
-        leaves=(f"{name}: up the pin, turn about z",),
     )
-    return name, z + disc.extrusion.thickness
+    return below, z
 
 
 def _trim(rig: GuideLayout, mass: float) -> tuple[float, float]:
@@ -375,7 +380,8 @@ def ballast_range(rig: GuideLayout) -> tuple[float, float]:
     layout, d = rig.array, rig.design
     b = Builder()
     _place_carried(b, rig, "RL1", 0.0, without_gaps(d))
-    heavy = sum(p.part.mass for p in b.placements) + rigs.pin(rig).mass + cap_screw(*PIN_SCREW).mass
+    heavy = sum(p.part.mass for p in b.placements) + rigs.pin(rig).mass
+    heavy += cap_screw(*PIN_SCREW).mass + _carriage_screws_mass()
     over = max(layout.ledge_of(p.hinge) - p.hinge.h for p in layout.elements)
     land = over * (d.stop.land_length + over) * d.sheet.thickness * d.material.density * 1e-6
     light = heavy - land * len(layout.elements)
@@ -404,8 +410,20 @@ def ballast_trims_moving_weight(layout: Layout) -> Iterator[Finding]:
     yield wrong("grasping.moving_weight", what, wanted, legal)
 
 
-def _place_carried(b: Builder, rig: GuideLayout, rail: str, lift: float, standing: Scene) -> str:
-    """Place the load of the guide, from the carriage to the platform, with that array; returns the
+def _carriage_screws_mass() -> float:
+    return 4 * cap_screw(*CARRIAGE_SCREW).mass
+
+
+def _fallen(rig: GuideLayout) -> Vector:
+    """From the carriage on the sample's top to the carriage on the end stop."""
+    lowest = rig.riser_middle - stop_below(rig) + dowel_diameter(STOP_PIN) / 2
+    return 0.0, 0.0, round(lowest - (rig.carriage_middle - CARRIAGE_LENGTH / 2), 6)
+
+
+def _place_carried(
+    b: Builder, rig: GuideLayout, rail: str, lift: float, standing: Scene
+) -> tuple[str, str, str]:
+    """Place the load of the guide, with that array, but for pin and ballast; returns carriage, bar and
     platform."""
     design = rig.design
     b.group("axis")
@@ -414,19 +432,18 @@ def _place_carried(b: Builder, rig: GuideLayout, rail: str, lift: float, standin
     zc = rig.carriage_middle + lift
     carriage = b.place("CG", rigs.carriage(), (0, front + RAIL_HEIGHT, zc - CARRIAGE_LENGTH / 2), ALONG_RAIL)
     b.meet(rail, carriage)
-    lowest = rig.riser_middle - stop_below(rig) + dowel_diameter(STOP_PIN) / 2
-    fallen = (0.0, 0.0, round(lowest - (rig.carriage_middle - CARRIAGE_LENGTH / 2), 6))
+    fallen = _fallen(rig)
     b.step(
         "Carriage",
         (0, -85, 200),
         "Slide the carriage from its transport rail on the guide, from above, seals taken off, one drop of "
-        "thin oil, and let it down on the end stop. Keep the transport rail.",
+        "thin oil, and let it down on the end stop. Weigh it before, on its transport rail, and then the "
+        "rail alone.",
         order=[Move((carriage,), (0.0, 0.0, 2 * rig.grasping.rail_length), (fallen,))],
         at=fallen,
         leaves=(f"{carriage} on {rail}: slides along z",),
         sets=(f"{carriage} on {rail}: all but z",),
     )
-    up = (0.0, 0.0, rig.grasping.lift)
     foot = b.place("FO", rigs.foot(rig), (0, 0, rig.foot_bottom + lift))
     bar = b.place("BR", rigs.bar(rig), (0, BAR_FRONT, rig.bar_bottom + lift), ALONG_Y)
     b.meet(foot, bar)
@@ -452,21 +469,6 @@ def _place_carried(b: Builder, rig: GuideLayout, rail: str, lift: float, standin
         elements=True,
         bench=True,
     )
-    for sx in (-1, 1):
-        for sy in (-1, 1):
-            at = (sx * 7.5, front - BAR_UNDER_HEAD, rig.bar_bottom + lift + rig.carriage_on_bar + sy * 5.0)
-            b.screw("M3", 6.0, at, (0, 1, 0), bar, carriage)
-    b.meet(bar, carriage)
-    b.step(
-        "Bar on the carriage",
-        (0, -160, 0),
-        "Lift the carriage and set the latch under it, in the inner of its holes. Bring the bar over the "
-        "latch, which passes its hole, and screw it on the carriage. It stays on the latch until the "
-        "pads are levelled.",
-        order=[Move((carriage,), fallen, (up,)), *_latched(True), ()],
-        at=up,
-    )
-    b.unit("platform with weights")
     under = PLATFORM_UNDER_HEAD
     z = rig.platform_top + lift
     platform = b.place("PF", rigs.platform(rig), (0, 0, z - PLATFORM))
@@ -475,8 +477,8 @@ def _place_carried(b: Builder, rig: GuideLayout, rail: str, lift: float, standin
         b.screw(
             "M4", 10.0, (sx * BAR_SCREW_X, rig.bar_middle, z - PLATFORM + under), (0, 0, -1), platform, bar
         )
-    b.step("Platform", (0, 0, 250), "Screw the platform on the bar, heads sunk.", at=up)
-    return platform
+    b.step("Platform", (0, 0, 250), "Screw the platform on the bar, heads sunk.", bench=True)
+    return carriage, bar, platform
 
 
 RIG = Rig(
