@@ -13,10 +13,10 @@ from variants import variant
 from tactcad.drawing import guide
 from tactcad.drawing.engine.boxes import box_corners, part_box, placed
 from tactcad.drawing.engine.layout_check import layout_faults
-from tactcad.drawing.engine.picture import VIEWS
 from tactcad.drawing.guide import face_map
 from tactcad.parts.language.metric import METRIC
 from tactcad.scenes import make_scene, scene_names
+from tactcad.scenes.moves import moments
 from tactcad.scenes.scene import Placement, Scene
 
 DESIGNS = {
@@ -230,8 +230,11 @@ def test_nothing_on_the_map_covers_its_texts(length):
     assert [fault for fault in layout_faults(face_map(scene, "x")) if " over " in fault] == []
 
 
+@pytest.mark.cad
 def test_the_pictures_show_the_stack_as_it_stands(case):
     """EP2 at the bottom, row 1 to the right, pads towards the eye; from the clamping on, pads down."""
+    from tactcad.drawing.engine.picture import VIEWS
+
     _, scene, _ = case
     for step in scene.steps:
         view = VIEWS[step.view]
@@ -240,6 +243,19 @@ def test_the_pictures_show_the_stack_as_it_stands(case):
             assert up[1] == -1 and right[0] > 0.5 and eye[2] < 0
         else:
             assert up[2] == 1 and right[0] > 0.5
+
+
+def test_what_was_taken_away_is_in_no_later_picture():
+    """The gauge block comes in the step Roller tip, goes in the next, and boards stay."""
+    scene = make_scene(variant(), "calibration")
+    shown = {
+        step.title: {p.designator for some in guide.at_step(scene, moments(scene), n) for p in some}
+        for n, step in enumerate(scene.steps, start=1)
+        if guide.pictured(step)
+    }
+    with_block = [title for title, names in shown.items() if "AID1" in names]
+    assert with_block == ["Roller tip", "Stiffness of gauge and stand"]
+    assert {"AID2", "AID3"} <= shown["Calibrate"] and "AID2" not in shown["Mount on the stages"]
 
 
 def test_an_exploded_stack_lies_open(case):

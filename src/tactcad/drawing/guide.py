@@ -94,7 +94,8 @@ def at_step(
         there = {name: at for name, at in there.items() if name in own}
     else:
         there = {name: at for name, at in there.items() if name not in benched}
-    standing = tuple(moved_by(placed[d], at) for d, at in there.items() if d not in coming)
+    away = {p.designator for p in scene.aids if any(there.get(p.designator, ()))}
+    standing = tuple(moved_by(placed[d], at) for d, at in there.items() if d not in coming and d not in away)
     return standing, tuple(moved_by(placed[d], at) for d, at in coming.items())
 
 

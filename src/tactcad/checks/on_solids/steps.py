@@ -269,7 +269,7 @@ class Trial:
         worst = (0.0, 0.0)
         for t in np.linspace(t0, t1, max(PLACES, 1 + ceil(3 * length * (t1 - t0) / reach))):
             cut = (moving.translate(list(apart + start + t * way)) ^ standing).volume()
-            if cut - allowed > worst[0]:
+            if cut - allowed > worst[0] + 1e-6:  # the first of equal ones
                 worst = (cut - allowed, length * (1.0 - float(t)))
         return worst if worst[0] > 0.0 else None
 
