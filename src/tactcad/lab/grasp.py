@@ -48,6 +48,7 @@ FEW = 6
 REVERSED = 0.1  # of the middle element's force, from which on one that falls is refused; chosen
 SURELY = 3.0  # standard errors below zero from which an element's force is reported to fall; chosen
 TOUCHES = 1e-3  # of the largest force on a pad, from which a pad counts as touching
+BEARS = 0.02  # likewise, from which it tells the face's angle: four cells hold as stated where three do so
 ROUNDED = 1e-9  # below which a singular value of unit columns is nought but rounding
 # An element is at its stop where its deflection is at least NEAR_STOP of the nominal one there (the gap's
 # tolerance and seat are up to 0.2 of it), grows with the load by less than SLOWED of what it did before, and
@@ -89,7 +90,7 @@ class Grasp:
     loads: int  # number used
     dropped_loads: int
     notes: tuple[str, ...]
-    warnings: tuple[str, ...]  # of columns that may be in another unit
+    warnings: tuple[str, ...]  # of columns that may be in another unit, of intervals that do not hold
     layer: OnLayer | None = None  # if the object was taken as a layer
 
 
@@ -329,7 +330,7 @@ def on_layers(
     known = calibration.of(number)
     reference = grasp.pairs[0].reference
     where = f"{readings.path}: sample {readings.sample}"
-    explained, one = [], len(layers) == 1
+    explained, one, lean = [], len(layers) == 1, False
     time = readings.time
     if time is not None and drift_terms(readings.load, time) is None:
         time = None  # as noted
@@ -341,9 +342,11 @@ def on_layers(
             read = sorted(set(touching) & set(number.tolist()))
             if one and len(read) < 2:
                 raise InputError(where, "too few pads touch that are read", value=read, legal="two at least")
+            bearing = (found.force[0] > BEARS * found.force[0].max()) & np.isin(at.number, number)
             sound = np.isfinite(found.dof[0]) and found.widened[0] < WILD
             if sound and len(read) > 1:  # layers that contradict the readings do not count
                 explained.append((found, touching))
+                lean = one and bearing.sum() < 3 <= len(number)
     if not explained and one:
         raise InputError(
             where,
@@ -383,8 +386,13 @@ def on_layers(
         tuple(float(f([g.angle[0, k, e] for g in fits])) for e, f in ((0, np.mean), (1, np.min), (2, np.max)))
         for k in (0, 1)
     )
+    leaning = (
+        "fewer than three pads that are read bear: the face's angle stays open, and intervals hold less "
+        "often than stated; incline it less, or load it more"
+    )
     return replace(
         grasp,
+        warnings=(*grasp.warnings, leaning) if lean else grasp.warnings,
         pairs=pairs,
         combined=combined,
         combined_by_noise=over([f.object_by_noise[0] for f in fits]) if one else grasp.combined_by_noise,
