@@ -58,7 +58,7 @@ def test_bad_shapes_are_seen(shape):
     assert "shell-closed" in [f.check for f in check_brep(BLOCK, opened.wrapped)]
 
 
-def test_a_part_of_many_faces_is_meshed_by_the_other_method_on_the_same_points(monkeypatch):
+def test_a_part_of_many_faces_is_meshed_by_the_other_method_on_the_same_points():
     """A plate with 60 square openings: its volume by hand, and the usual method's vertices."""
     openings = tuple(rectangle(x, y, x + 0.5, y + 0.4) for x in range(1, 11) for y in range(1, 7))
     part = replace(BLOCK, body=Extrusion(rectangle(0, 0, 12, 8), 0.1, (*openings, circle((11.5, 7.5), 0.6))))
@@ -69,8 +69,7 @@ def test_a_part_of_many_faces_is_meshed_by_the_other_method_on_the_same_points(m
     hole = np.count_nonzero(np.linalg.norm(points[:, :2] - (11.5, 7.5), axis=1) < 0.31) / 2  # of a polygon
     area = 12 * 8 - 60 * 0.2 - hole / 2 * np.sin(2 * np.pi / hole) * 0.09
     assert mesh.is_watertight and mesh.volume == pytest.approx(0.1 * area, rel=1e-9)
-    monkeypatch.setattr("tactcad.solids.triangles.MANY_FACES", 10**6)
-    usual, others = triangles(solid, 0.05, 0.2)
+    usual, others = triangles(solid, 0.05, 0.2, many=10**6)
     assert len(others) == len(faces) and usual == pytest.approx(points)
     assert not np.array_equal(others, faces)
 

@@ -14,7 +14,6 @@ from tactcad.contact.rigid_pads import press_many
 from tactcad.design.messages import CheckFailure, InputError
 
 MODULI = [1e-3, 0.3, 100.0, 1e4]  # MPa: 1 kPa to 10 GPa
-UNSOLVED = 1e4, 0.7, (0.0, 3.0)  # by the law of whole pads, whose corners touch: said, no number given
 THICKNESSES = [0.7, 6.0, inf]  # mm; the thinnest that a pad of 2 x 3 mm takes, 0.61, to a half-space
 
 
@@ -34,6 +33,12 @@ def both(pads: Pads, body: Body, load: float, angle=(0.0, 0.0)):
     return PadsOnBody(pads, body).press(load=load, angle=angle), press_many(pads, body, load, angle)
 
 
+def test_where_no_rest_is_found_it_is_said():
+    """Corners of four pads touch a face a thousand times stiffer than their springs: no number is given."""
+    with pytest.raises(CheckFailure, match="finds no rest of 4 pads"):
+        press_many(rows(2), Body(1e4, 0.49, 0.7), 2.0, (0.0, 3.0))
+
+
 @pytest.mark.parametrize("E", MODULI)
 @pytest.mark.parametrize("thickness", THICKNESSES)
 def test_forces_are_whole_and_finite(E, thickness):
@@ -41,10 +46,6 @@ def test_forces_are_whole_and_finite(E, thickness):
     their springs'."""
     pads, body = rows(3), Body(E, 0.49, thickness)
     for angle in ((0.0, 0.0), (0.0, 3.0), (30.0, 0.0), (-20.0, 30.0)):
-        if (E, thickness, angle) == UNSOLVED:
-            with pytest.raises(CheckFailure, match="finds no rest of 6 pads"):
-                press_many(pads, body, 2.0, angle)
-            continue
         for pressed in both(pads, body, 2.0, angle):
             assert pressed.force.sum() == pytest.approx(2.0, rel=1e-6)
             assert (pressed.force >= -1e-9).all() and np.isfinite(pressed.approach)
