@@ -123,7 +123,7 @@ def test_a_plateau_ends_where_the_next_run_or_element_begins(tmp_path):
 def test_the_mean_is_over_whole_periods_of_the_mains(tmp_path):
     """10 mV of hum at 50 Hz in steps of 0.507 s: over 0.5 s nothing of it is left."""
     t = np.arange(4056) / 1000.0
-    load = np.minimum(t // 0.507, 7)
+    load = 1 + np.minimum(t // 0.507, 7)
     hum = 0.01 * np.sin(2 * np.pi * 50 * t)
     log = LabLog(
         "log", {"Time": t, "load": load, "ai1": hum + load, "ai2": hum - 2 * load}, None, np.arange(len(t))
@@ -132,9 +132,9 @@ def test_the_mean_is_over_whole_periods_of_the_mains(tmp_path):
     text += '[steps]\nby = "marks"\n'
     (tmp_path / "m.toml").write_text(text + 'column = "load"\n[load]\ncolumn = "load"\n')
     taken = log_readings.take(log, read_map(tmp_path / "m.toml"))
-    assert [s.samples for s in taken.steps] == [500] * 7
+    assert [s.samples for s in taken.steps] == [500] * 8
     read = rows_of(taken.table)[:, 2].reshape(-1, 2)
-    assert read == pytest.approx(np.arange(1, 8)[:, None] * [1, -2], abs=1e-9)
+    assert read == pytest.approx(np.arange(1, 9)[:, None] * [1, -2], abs=1e-9)
 
 
 def test_ten_samples_a_state_are_no_error(tmp_path, capsys):
@@ -312,6 +312,56 @@ def test_channels_without_noise_are_not_saturated(tmp_path):
     assert not log_readings.take(in_memory(still), mapped(tmp_path, lab, "grasp")).left_out
 
 
+@pytest.mark.parametrize("first", [9, 18])
+def test_a_channel_that_freezes_is_left_out(first, tmp_path):
+    """From the middle of a step on; in whole millivolts, as noise of three of them, too."""
+    lab = labs.grasp(np.random.default_rng(6))
+    since = int(np.flatnonzero(lab.step == first - 1)[30])
+    for digits in (9, 3):
+        v = np.round(
+            lab.columns["ai6"] + 3e-3 * np.random.default_rng(6).standard_normal(len(lab.time)), digits
+        )
+        assert not log_readings.take(in_memory(broken(lab, ai6=v)), mapped(tmp_path, lab, "grasp")).left_out
+        frozen = np.where(np.arange(len(v)) < since, v, v[since])
+        taken = log_readings.take(in_memory(broken(lab, ai6=frozen)), mapped(tmp_path, lab, "grasp"))
+        assert taken.left_out == {6: f"frozen: at {v[since]:g} V in {19 - first} of 19 steps"}
+
+
+@pytest.mark.parametrize(
+    "kind, column, limit, noise",
+    [("grasp", "load", 7.5, 0.0), ("calibration", "force", 1.0, 0.0), ("calibration", "force", 1.0, 2e-3)],
+)
+def test_a_force_sensor_at_its_limit_is_refused(kind, column, limit, noise, tmp_path):
+    """Clipped behind its noise, or, by its amplifier, before it."""
+    rng = np.random.default_rng(6)
+    lab = (labs.grasp if kind == "grasp" else labs.calibration)(rng)
+    v = lab.columns[column]
+    clipped = np.where(v > limit, limit + noise * rng.standard_normal(len(v)), v)
+    with pytest.raises(
+        log_readings.InputError, match=f"{column}: the {column} is saturated: at {limit:g} in"
+    ):
+        log_readings.take(in_memory(broken(lab, **{column: clipped})), mapped(tmp_path, lab, kind))
+
+
+def test_a_scale_without_noise_is_not_at_its_limit(tmp_path):
+    lab = labs.grasp(np.random.default_rng(6))
+    plain = np.where(lab.step >= 0, np.round(labs.UP_AND_DOWN[lab.step], 2), lab.columns["load"])
+    taken = log_readings.take(in_memory(broken(lab, load=plain)), mapped(tmp_path, lab, "grasp"))
+    assert len(taken.steps) == 19
+
+
+def test_pauses_between_long_bursts_are_no_missing_rows(tmp_path):
+    """A hundred samples a burst, two bursts a step, a second between: pauses are 1 % of the intervals."""
+    start = np.arange(8)[:, None] + 1e-3 * np.arange(100)
+    load = np.repeat([1.0, 2.0, 3.0, 4.0], 200)
+    noise = 1e-3 * np.random.default_rng(2).standard_normal((2, 800))
+    columns = {"Time": start.ravel(), "load": load, "ai1": load + noise[0], "ai2": noise[1] - 2 * load}
+    text = '[log]\nkind = "grasp"\ntime = "Time"\n[channels]\nai1 = 1\nai2 = 2\n[steps]\nby = "marks"\n'
+    (tmp_path / "m.toml").write_text(text + 'column = "load"\n[load]\ncolumn = "load"\n')
+    taken = log_readings.take(LabLog("log", columns, None, np.arange(800)), read_map(tmp_path / "m.toml"))
+    assert [s.samples for s in taken.steps] == [200] * 4
+
+
 @pytest.mark.parametrize("kind", ["grasp", "calibration"])
 @pytest.mark.parametrize("sign", [1, -1])
 def test_two_channels_on_one_bridge_are_one_though_each_has_noise(kind, sign, tmp_path):
@@ -329,6 +379,8 @@ def _refused(lab, kind="grasp"):
     late = np.where(np.arange(n) > 305, lab.time + 30.0, lab.time)
     yield "gap", replace(lab, time=late), "missing within a step"
     yield "back", replace(lab, time=np.where(np.arange(n) == 500, 0.0, lab.time)), "time goes back"
+    yield "seconds", replace(lab, time=np.floor(lab.time / 8)), "log.rate"
+    yield "negative", broken(lab, load=-v["load"]), "load: load out of range"
     yield "hole", broken(lab, ai3=np.where(np.arange(n) == 321, np.nan, v["ai3"])), "no number"
     yield "infinite", broken(lab, ai3=np.where(np.arange(n) == 321, np.inf, v["ai3"])), "323: ai3: no number"
     yield "doubled", broken(lab, ai3=v["ai2"]), "same samples as ai2"
@@ -373,6 +425,29 @@ def test_a_cell_without_a_number_is_named_by_its_line(name, tmp_path, capsys):
         assert int(line) == 322
     else:
         assert "nan" in (tmp_path / name).read_text("latin-1").splitlines()[int(line) - 1].lower()
+
+
+def test_a_plot_does_not_take_the_readings_name(tmp_path, capsys):
+    log, out = EXAMPLES / "grasp-log.csv", tmp_path / "out.svg"
+    assert main(["readings", str(log), "--map", str(EXAMPLES / "grasp-map.toml"), "--out", str(out)]) == 2
+    assert "the plot would overwrite the readings" in capsys.readouterr().err and not out.exists()
+
+
+@pytest.mark.parametrize(
+    "change, words",
+    [
+        (('"element"', "[1, 2, 3]\neach = 39"), "element.values: 117 steps by its values, and 351 found"),
+        (('"mark"', '"counter"'), "counter: 0 is no mark, but here is as long as a step"),
+    ],
+)
+def test_steps_that_would_go_to_others_are_refused(change, words, tmp_path):
+    """A list of elements that is too short, and a loop counter that begins at 0."""
+    lab = labs.calibration(np.random.default_rng(8))
+    text = labs.map_text(lab, "calibration", "Time").replace(f"column = {change[0]}", f"values = {change[1]}")
+    (tmp_path / "m.toml").write_text(text.replace('values = "', 'column = "'))
+    counter = np.cumsum(np.diff(np.maximum(lab.step, -1), prepend=0) > 0) // 2 * 1.0
+    with pytest.raises(log_readings.InputError, match=words):
+        log_readings.take(in_memory(broken(lab, counter=counter)), read_map(tmp_path / "m.toml"))
 
 
 def test_swapped_channels_of_a_calibration_are_refused(tmp_path):

@@ -30,7 +30,8 @@ MAP (TOML) assigns columns to elements, with their units, and defines the steps:
   "Dev1/ai0" = 1              # column = element
   "Dev1/ai1" = { element = 2, factor = -1.0 }
   [steps]
-  by = "plateau"              # or "marks" of a column, or "times" = [[0, 9.5], [11, 20]]
+  by = "plateau"              # or "marks" of a column, or "times" = [[0, 9.5], [11, 20]]; a mark of 0, - or
+                              # nothing is none
   column = "Fz"
   apart = 0.3                 # least step of that column
   hold = 4.0                  # s, shortest plateau
@@ -40,7 +41,7 @@ MAP (TOML) assigns columns to elements, with their units, and defines the steps:
   unit = "N"
   least = 0.05                # less than that is no load
 
-OUT.svg shows how columns and steps were read. A channel that is dead or saturated is named and its
+OUT.svg shows how columns and steps were read. A channel that is dead, frozen or saturated is named and its
 element left out."""
 
 
@@ -59,10 +60,13 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     from tactcad.design.files import refuse_overwriting, write_whole
+    from tactcad.design.messages import InputError
     from tactcad.lab import log_plot, log_readings
 
     refuse_overwriting(args.out, args.file, args.map)
     plot = Path(args.out).with_suffix(".svg")
+    if Path(args.out).suffix.lower() == ".svg":
+        raise InputError("--out", "the plot would overwrite the readings", value=args.out, legal="a .csv")
     refuse_overwriting(plot, args.file, args.map, args.out)
     taken = from_log(args.file, args.map)
     (log_readings.calibration if taken.kind == "calibration" else log_readings.grasps)(taken)  # they read it

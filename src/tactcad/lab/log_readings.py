@@ -25,15 +25,13 @@ from tactcad.report.report import plain
 from .log_files import LabLog
 from .log_map import NEEDED, SECONDS, LogMap, MappedQuantity
 
-GAP = 3.0  # times the longest usual interval from which on rows are missing; chosen
-USUAL = 0.98  # share of the intervals that are usual: bursts of up to fifty samples have one pause each
+GAP = 3.0  # times the longest interval of the middle step from which on rows are missing; chosen
 FROM_MIDDLE = (
     4.0  # standard deviations of a plateau's middle half from which on a row belongs to the way there
 )
-STUCK = 8  # samples in whole steps at a channel's own limit from which it counts as saturated; chosen
-APART = (
-    0.1  # of all loads, by which those at a limit differ where a channel without noise is saturated; chosen
-)
+STUCK = 8  # samples in whole steps at one value from which a channel or sensor may be saturated; chosen
+COARSE = 2.0  # of its smallest changes from row to row, from which on no step is still by chance; chosen
+APART = 0.1  # of its range, by which what drives a saturated channel or sensor without noise goes on; chosen
 # Two channels are one where their means agree within ALIKE of their noise, though signal and first zero are
 # FAR times it: no two bridges are out of balance alike. Chosen.
 ALIKE, FAR = 3.0, 100.0
@@ -101,7 +99,7 @@ def take(log: LabLog, by: LogMap) -> Taken:
     ------
     InputError
         A column that the log lacks; no steps; rows missing within one; a channel twice; a driving column that
-        does not change; channels that are swapped; too few elements left.
+        does not change; a force or load at its limit; channels that are swapped; too few elements left.
     """
     time = _time(log, by)
     drive = _numbers(log, by.steps.column, by) if by.steps.column and by.steps.by == "plateau" else None
@@ -135,6 +133,7 @@ def take(log: LabLog, by: LogMap) -> Taken:
         _refuse_swapped(log, steps, kept, columns)
     left_out |= _unmoved(by.log.kind, steps, kept)
     kept = {n: v for n, v in kept.items() if n not in left_out}
+    _refuse_limited(log, by, steps, kept)
     least = 1 if by.log.kind == "calibration" else 2
     if len(kept) < least:
         why = "; ".join(f"{n}: {w}" for n, w in left_out.items())
@@ -173,6 +172,9 @@ def _time(log: LabLog, by: LogMap) -> np.ndarray:
         raise InputError(
             log.where(int(back[0]) + 1), "time goes back, or is no number", legal="rows in their order"
         )
+    if len(time) > 2 and not np.median(np.diff(time)) and not (time % 1).any():
+        what = "a clock in whole seconds: most rows have the time of the one before"
+        raise InputError(f"{by.path}: log.time", what, legal="log.rate (Hz) in its place")
     return time - time[0]
 
 
@@ -215,7 +217,8 @@ def _spans(log: LabLog, by: LogMap, time: np.ndarray, drive: np.ndarray | None) 
                 legal=f"{rule.apart:g} at least",
             )
     interval = np.diff(time)
-    usual = float(np.quantile(interval, USUAL)) if len(interval) else 0.0
+    longest = sorted(float(interval[a:b].max()) for a, b in found if b > a)  # bursts: pauses in every step
+    usual = longest[(len(longest) - 1) // 2] if longest else 0.0
     kept = []
     for a, b in found:
         gaps = np.flatnonzero(interval[a:b] > GAP * usual)
@@ -279,6 +282,12 @@ def _marked(log: LabLog, column: str, by: LogMap) -> list[tuple[int, int]]:
     found = [(int(a), int(b) - 1) for a, b in zip(edges[:-1], edges[1:]) if texts[a].lower() not in NO_MARK]
     if not found:
         raise InputError(f"{log.path}: {column}", "no mark in it", legal="a mark in every row of a step")
+    least = min(b - a for a, b in found)
+    meets = any(b + 1 == a for (_, b), (a, _) in zip(found, found[1:]))
+    for a, b in zip(edges[:-1], edges[1:]):
+        if meets and texts[a] == "0" and b - 1 - a >= least:
+            what = "0 is no mark, but here is as long as a step, and other steps meet without it"
+            raise InputError(log.where(int(a), column), what, legal="steps from 1 on; no mark between steps")
     return found
 
 
@@ -288,9 +297,11 @@ def _values(
     scale = q.scale(name, by.path)
     if q.values is not None:
         cycle = np.repeat(np.array(q.values), q.each)
-        if len(spans) % len(cycle) and name not in STATES or len(cycle) > len(spans):
+        once = name in ("element", "sample") and len(q.values) > 1  # the next one is another
+        if len(spans) % len(cycle) or once and len(cycle) < len(spans):
             what = f"{len(cycle)} steps by its values, and {len(spans)} found in the log"
-            raise InputError(f"{by.path}: {name}.values", what, legal="as many, or the same again and again")
+            legal = "as many" if once else "as many, or the same again and again"
+            raise InputError(f"{by.path}: {name}.values", what, legal=legal)
         return _scaled(np.resize(cycle, len(spans)), q, scale)
     column = _numbers(log, str(q.column), by)
     found = np.array([column[a : b + 1].mean() for a, b in spans])
@@ -302,7 +313,13 @@ def _values(
     if name in ("displacement", "force", "load"):
         if len(spans) > 1 and not np.ptp(_scaled(found, q, scale)):
             raise InputError(f"{log.path}: {q.column}", "never changes", value=float(found[0]))
-        return _scaled(found, q, scale)
+        own, (_, unit, most) = _scaled(found, q, scale), readings.UNITS[name]
+        least = 0.0 if name == "load" else -most
+        for i in np.flatnonzero((own < least) | (own > most))[:1]:
+            legal = f"{least:g} to {most:g} {unit}: see {name}.unit, .factor and .offset in {by.path}"
+            where = log.where(spans[i][0], str(q.column))
+            raise InputError(where, f"{name} out of range", value=f"{own[i]:.6g} {unit}", legal=legal)
+        return own
     whole = np.round(found)
     if (np.abs(found - whole) > 1e-6).any():
         row = spans[int(np.argmax(np.abs(found - whole)))][0]
@@ -360,13 +377,57 @@ def _silent(v: np.ndarray, steps: tuple[LogStep, ...], by: LogMap) -> str:
         if limit is not None and beyond.any():
             return f"saturated: at {limit:g} V in {int(beyond.sum())} samples"
     driven = np.array([t.values["force" if by.log.kind == "calibration" else "load"] for t in steps])
-    noisy = np.median([np.ptp(v[t.rows]) for t in steps]) > 0
-    for end in (np.nanmax(own), np.nanmin(own)):
-        stuck = np.array([t.samples > 1 and (v[t.rows] == end).all() for t in steps])
-        enough = STUCK <= sum(t.samples for t, at in zip(steps, stuck) if at)
-        if enough and not stuck.all() and (noisy or np.ptp(driven[stuck]) > APART * np.ptp(driven)):
-            return f"saturated: at {end:g} V in {int(stuck.sum())} of {len(steps)} steps"
+    noisy, ends = _noisy(v, steps), (np.nanmax(own), np.nanmin(own))
+    still = np.array([np.nan if t.samples < 2 or np.ptp(v[t.rows]) else v[t.first] for t in steps])
+    for level in np.unique(still[np.isfinite(still)]):
+        stuck = still == level
+        if STUCK > sum(t.samples for t, at in zip(steps, stuck) if at) or stuck.all():
+            continue
+        if noisy or level in ends and np.ptp(driven[stuck]) > APART * np.ptp(driven):
+            what = "saturated" if level in ends else "frozen"
+            return f"{what}: at {level:g} V in {int(stuck.sum())} of {len(steps)} steps"
     return ""
+
+
+def _noisy(v: np.ndarray, steps: tuple[LogStep, ...]) -> bool:
+    """Whether a column's noise is far above its resolution in most of the steps in which it is not still."""
+    changes = [np.median(np.abs(np.diff(v[s.rows]))) for s in steps if s.samples > 1]
+    moves = [change for change in changes if change]
+    levels = np.unique(np.concatenate([v[s.rows] for s in steps]))
+    return bool(moves) and bool(np.median(moves) > COARSE * np.diff(levels).min())
+
+
+def _refuse_limited(
+    log: LabLog, by: LogMap, steps: tuple[LogStep, ...], kept: Mapping[int, np.ndarray]
+) -> None:
+    """Refuse a force or load that stays at its largest value: over whole steps though it has noise elsewhere,
+    or while the stage, of a grasp every channel, goes on."""
+    calibration = by.log.kind == "calibration"
+    name, state = ("force", "element") if calibration else ("load", "sample")
+    q = by.quantities[name]
+    if q.column is None:
+        return
+    v = log.column(q.column) * np.sign(q.scale(name, by.path))
+    means = np.array([v[s.rows].mean() for s in steps])
+    noise = np.array([v[s.rows].std() for s in steps])
+    top = max(v[s.rows].max() for s in steps)
+    at = np.array([s.samples > 1 and (v[s.rows] == top).all() for s in steps])
+    if not (_noisy(v, steps) and STUCK <= sum(s.samples for s, still in zip(steps, at) if still)):
+        near = means >= means.max() - np.clip(ALIKE * noise, 1e-9 * abs(top), APART / 4 * np.ptp(means))
+        stage = [[s.values["displacement"] for s in steps]] if calibration else []
+        driven = np.array(stage or [[u[s.rows].mean() for s in steps] for u in kept.values()])
+        at = np.zeros(len(steps), bool)
+        groups = [(s.values.get(state), s.values.get("run")) for s in steps]
+        for group in set(groups):
+            own = np.array([g == group for g in groups])
+            if near[own].sum() > 1 and len(driven):
+                on = np.ptp(driven[:, own & near], axis=1) > APART * np.ptp(driven[:, own], axis=1)
+                at |= own & near & on.all()
+    if at.any():
+        much = f"{abs(means[at].mean()):.4g} in {int(at.sum())} of {len(steps)} steps"
+        where = log.where(steps[int(np.argmax(at))].first, q.column)
+        legal = "no step in which the sensor is at its limit"
+        raise InputError(where, f"the {name} is saturated: at {much}", legal=legal)
 
 
 def _unmoved(kind: str, steps: tuple[LogStep, ...], kept: Mapping[int, np.ndarray]) -> dict[int, str]:
