@@ -72,7 +72,7 @@ def draw_readout(d: Draw) -> None:
     for path in ("readout.noise", "readout.temperature_span", "readout.force_resolution"):
         if d.once_in(2):
             d.number(path)
-    for path in ("adc_noise", "excitation_drift", "hum", "jitter"):
+    for path in ("adc_noise", "excitation_drift", "hum"):
         if d.once_in(2):
             d.number(f"readout.{path}")
     d.number("readout.reference_mismatch")
@@ -106,8 +106,9 @@ def _times(d: Draw) -> None:
         if "readout.mains" in d.table
         else samples / d.table["readout.sample_rate"]
     )
-    if d.once_in(2) and slowest < on - spread:
-        d.number("readout.instant", slowest, on - spread)
+    late = d.number("readout.jitter", high=(on - slowest - spread) / 2) if d.once_in(2) else 1e-6
+    if d.once_in(2) and slowest + late < on - spread - late:
+        d.number("readout.instant", slowest + late, on - spread - late)
 
 
 def _power(d: Draw) -> float:

@@ -16,12 +16,13 @@ import numpy as np
 import pytest
 from variants import FACING_ROWS, variant
 
+from tactcad.circuit import boards
 from tactcad.circuit.bridges import netlist
 from tactcad.circuit.netlist_files import wiring
 from tactcad.circuit.read_board import board_netlist
 from tactcad.design.load import read
 from tactcad.design.messages import CheckFailure
-from tactcad.export import board_files
+from tactcad.export import board_files, pipeline
 from tactcad.parts.array.layout import Layout
 from tactcad.parts.array.leads import lead_routes
 from tactcad.scenes import make_scene
@@ -264,6 +265,23 @@ def test_the_bill_counts_the_netlist(changes):
         assert bill[name].spares == pytest.approx(fifth * length, abs=0.005)
     assert all(s.spares >= 1 for n, s in bill.items() if n in billed)
     assert bill["STRAIN-GAUGE"].spares == max(1, math.ceil(bill["STRAIN-GAUGE"].qty / 5))
+
+
+@pytest.mark.parametrize("converter", ["card", "AD7124-8"])
+def test_the_bill_names_what_is_on_the_boards(converter, tmp_path):
+    """bom.csv against the table of the board that both rows have, and a gauge an element."""
+    design = variant({"readout.converter": converter})
+    (board,) = boards.laid_out(Layout(design))
+    own = csv.DictReader(io.StringIO(board_files.bill_csv(board, ()).decode()))
+    meant = {"STRAIN-GAUGE": {f"B{n}" for n in range(1, 11)}}
+    for row in own:
+        if row["fitted"] == "yes":
+            names = {f"A{b}-{name}" for b in (1, 2) for name in row["designators"].split()}
+            meant[row["part_no"]] = meant.get(row["part_no"], set()) | names
+    pipeline._write_bills(tmp_path, design, [make_scene(design, "array")], [])
+    bill = csv.DictReader(io.StringIO((tmp_path / "bom.csv").read_text()))
+    told = {row["part_no"]: set(row["designators"].split()) for row in bill}
+    assert {part_no: told[part_no] for part_no in meant} == meant
 
 
 @pytest.mark.parametrize(

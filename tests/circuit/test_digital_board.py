@@ -27,7 +27,7 @@ from tactcad.export.board_files import BILL, bill_csv, nets_in_board
 from tactcad.lab.pads import springs_of
 from tactcad.parts.array.layout import Layout
 from tactcad.parts.array.measurements import gauge_checks, volts
-from tactcad.parts.array.supplies import electronic_supplies
+from tactcad.parts.array.supplies import electronic_supplies, wiring_supplies
 from tactcad.parts.rigs.bonding_fixture import bonding_rigs
 from tactcad.review.effect import signals
 from tactcad.scenes.rigs import bonding
@@ -205,6 +205,12 @@ def test_the_harness_carries_all_bridges():
     )
     lead = next(r for r in rows if r["signal"] == "E1_RED")
     assert float(lead["current_mA"]) == pytest.approx(1090 / 240, rel=1e-2)
+    order = {s.part_no: s for s in wiring_supplies(layout)}
+    for signal, part, of in (("SHIELD", "BRAID", "braid"), ("ARRAY", "ARRAY-WIRE", "AWG 26")):
+        metres = [float(r["length_mm"]) / 1e3 for r in rows if r["signal"] == signal and of in r["wire"]]
+        assert len(metres) == 2 and 0 <= order[part].qty - sum(metres) < 0.1
+    assert "AWG 26" in order["ARRAY-WIRE"].designation and "silver" in order["SILVER-ADHESIVE"].designation
+    assert {"silver" in r["wire"] for r in rows if r["signal"] == "ARRAY"} == {True}
     assert [r["to"] for r in rows if r["signal"] == "ON"] == 2 * [
         "digital output ON, or a jumper to VPOS beside it: high, the bridges are on"
     ]

@@ -15,6 +15,7 @@ from variants import variant
 
 from tactcad.checks.facing_rows.circuit import check_signals
 from tactcad.circuit.bridges import netlist
+from tactcad.circuit.digital_board import digital_netlist
 from tactcad.circuit.digital_readout import digital_readout, registers, settings_header, settings_json
 from tactcad.circuit.element_signals import element_signals
 from tactcad.design.fields import OneOf
@@ -73,7 +74,7 @@ def test_duty_is_in_both_files_and_in_the_rule():
     control = next(r for r in data["chips"][0]["registers"] if r["name"] == "ADC_CONTROL")
     assert control["value"] >> 2 & 15 == 1 and "unread: it takes each channel once" in control["why"]
     always = json.loads(settings_json(Layout(variant()), CHIP))
-    assert always["on"] == "always" and always["chips"][0]["registers"][0]["value"] >> 2 & 15 == 0
+    assert always["on"] == "always" and always["chips"][0]["registers"][-1]["value"] >> 2 & 15 == 0
     (found,) = broken_rules(variant({**DUTY, "readout.period": 0.35}))
     assert found.part == "readout.period" and "0.358 s for warm-up and one result" in found.message
     assert not broken_rules(variant({**DUTY, "readout.period": 0.36}))
@@ -178,6 +179,10 @@ def test_the_registers_say_what_was_meant():
     assert in_header == in_json and all(r["why"] for chip in data["chips"] for r in chip["registers"])
     values = {r["name"]: r["value"] for r in data["chips"][1]["registers"]}
     assert 2 ** (values["CONFIG_0"] & 7) == found.gain and values["CONFIG_0"] >> 11 & 1 == 1
+    # written last, as it starts the channels; a result says which one it is of
+    assert [chip["registers"][-1]["name"] for chip in data["chips"]] == ["ADC_CONTROL"] * 2
+    assert values["ADC_CONTROL"] >> 10 & 1 == 1
+    assert data["result"].startswith("4 bytes: 3 of data, then STATUS") and data["result"] in header
     assert values["CONFIG_0"] >> 3 & 3 == 0  # REFIN1: the bridges' own supply
     assert 614400 / (32 * (values["FILTER_0"] & 0x7FF)) == found.rate and values["FILTER_0"] >> 21 == 2
     assert values["ADC_CONTROL"] >> 6 & 3 == 2
@@ -186,6 +191,21 @@ def test_the_registers_say_what_was_meant():
         channel = values[f"CHANNEL_{k}"]
         assert (channel >> 5 & 31, channel & 31, channel >> 15) == (plus, minus, 1)
         assert number == found.chips[1][k].number
+
+
+@pytest.mark.parametrize("ohm, volts", [(120.0, 1.09), (1000.0, 3.12), (1500.0, 3.28)])
+def test_no_reference_buffer_is_on_next_to_a_supply(ohm, volts):
+    """A buffer is on only where its input lies 0.1 V within the converter's supplies, each 1 % off: REFIN1-
+    is on AVSS itself, and of 1500 ohm REFIN1+ is 40 mV below AVDD."""
+    layout = Layout(variant({"gauge.resistance": ohm}))
+    found = digital_readout(layout, CHIP)
+    (part,) = digital_netlist(layout, found.converter, 8).of_kind("converter")
+    on = {"EXC": volts * 1.01, "GND": 0.0}
+    config = next(r for r in registers(found, 0) if r.name == "CONFIG_0")
+    assert found.excitation == pytest.approx(volts) and "unread" in config.why and "AVSS" in config.why
+    for bit, pin in ((8, "REFIN1+"), (7, "REFIN1-")):
+        inside = min(on[part.net(pin)] - on[part.net("AVSS")], 3.32 * 0.99 - on[part.net(pin)])
+        assert config.value >> bit & 1 == (inside > 0.1), pin
 
 
 @pytest.mark.skipif(shutil.which("cc") is None, reason="no C compiler")

@@ -10,6 +10,7 @@ from variants import BARE_TEXT, variant
 
 from tactcad.cli.main import main
 from tactcad.design.messages import InputError
+from tactcad.parts.array.bridge_figures import instants
 from tactcad.parts.array.layout import Layout
 from tactcad.parts.rules import broken_rules, refuse_broken
 
@@ -155,6 +156,15 @@ def refused(design: str, field: str, value: str, legal: str, tmp_path, capsys) -
         ({"readout.sample_rate": 10.0}, "readout.sample_rate"),
         ({"readout.samples": 10, "readout.on_time": 2e-5}, "readout.on_time"),
         ({"readout.samples": 1000, "readout.on_time": 2e-5}, "readout.on_time"),
+        ({"readout.jitter": 0.0025, "readout.on_time": 0.005}, "readout.on_time"),
+        ({"readout.timing": "software", "readout.instant": 4.9e-3}, "readout.instant"),
+        (
+            {"readout.timing": "software", "readout.on_time": 1.5e-3, "readout.instant": 1.015e-3},
+            "readout.on_time",
+        ),
+        ({"readout.timing": "software", "readout.mains": 50.0, "readout.on_time": 0.0201}, "readout.on_time"),
+        ({"readout.jitter": 2e-3, "readout.samples": 200}, "readout.samples"),
+        ({"readout.jitter": 2e-3, "readout.sample_rate": 5000.0}, "readout.sample_rate"),
         ({"readout.excitation": 18.0}, "readout.excitation"),
         ({"readout.headroom": 5.0}, "readout.headroom"),
         ({"readout.adc_range": 0.1}, "readout.adc_range"),
@@ -181,6 +191,13 @@ def test_what_is_said_to_be_legal_is_accepted(changes, path):
         assert rule_of(said) not in {f.check for f in left}
         said = refusal(changes)
     assert broken_rules(variant({**changes, said.where: nearest(said)})) == []
+
+
+@pytest.mark.parametrize("late", [0.0, 1e-6, 1e-3, 2.4e-3])
+def test_no_sample_falls_after_the_switch_opens(late):
+    """Unless told, the last is so late that its jitter reaches the end of 5 ms, or its spacing."""
+    last = instants(variant({"readout.jitter": late}))[-1]
+    assert last == pytest.approx(5e-3 - max(late, 1e-5))
 
 
 def rule_of(said: InputError) -> str:

@@ -142,7 +142,14 @@ def test_the_files_by_other_readers():
             {"the designators are not those of the scene", "X-a4: quantity 2 with designators 'E1'"},
         ),
         ((replace(ROWS[0], designators="E1 E3"), *ROWS[1:]), {"the designators are not those of the scene"}),
-        ((replace(ROWS[0], has_solid=False), *ROWS[1:]), {"2 solids instead of 4"}),
+        (
+            (replace(ROWS[0], has_solid=False), *ROWS[1:]),
+            {"the designators are not those of the scene", "2 solids instead of 4"},
+        ),
+        (
+            (*ROWS[:-1], replace(ROWS[-1], designators="A1-R1")),
+            {f"{ROWS[-1].part_no}: quantity {ROWS[-1].qty} with designators 'A1-R1'"},
+        ),
         (
             (ROWS[0], replace(ROWS[1], standard_designation=""), *ROWS[2:]),
             {f"{ROWS[1].part_no}: neither a standard designation nor a maker's number"},

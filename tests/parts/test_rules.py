@@ -201,6 +201,8 @@ WITNESSES = {
     "switching_settles": [
         ({"readout.samples": 1000}, "readout.samples"),
         ({"readout.on_time": 1e-5}, "readout.on_time"),
+        ({"readout.jitter": 0.0025}, "readout.on_time"),
+        ({"readout.timing": "software", "readout.instant": 4.9e-3}, "readout.instant"),
     ],
     "converter_takes_field": [
         ({"readout.converter": "AD7124-8", "readout.hum": 0.01}, "readout.hum"),

@@ -21,6 +21,7 @@ from tactcad.parts.array.bridge_figures import COPPER, zero_drift
 from tactcad.parts.array.converter_figures import (
     bridge_supply,
     converter_noise,
+    converter_supply,
     on_time,
     rate,
     settling,
@@ -118,10 +119,17 @@ class Register:
 LINUX = "Linux, drivers/iio/adc/ad7124.c"
 MODES = "Linux, include/linux/iio/adc/ad_sigma_delta.h"
 HEADER = "the maker's ad7124.h"
+DRIVER = "the maker's ad7124.c"
+# V that a reference input with its buffer on must stay within the supplies: from memory of the sheet, unread.
+BUFFER_ROOM = 0.1
+RESULT = (
+    "4 bytes: 3 of data, then STATUS, its low four bits the channel "
+    f"({DRIVER}: with DATA_STATUS set, need to read 4, not 3 bytes; {HEADER}: CH_ACTIVE(x) is x & 0xF)"
+)
 
 
 def registers(found: DigitalReadout, chip: int) -> list[Register]:
-    """Settings of one AD7124-8; for each value the source of its bits, or `unread`."""
+    """Settings of one AD7124-8 in their order; for each value the source of its bits, or `unread`."""
     clock, places = found.converter.clock, found.chips[chip]
     fs = round(clock / (32 * found.rate))
     pga = found.converter.gains.index(found.gain)
@@ -130,18 +138,21 @@ def registers(found: DigitalReadout, chip: int) -> list[Register]:
         "ADC_CONTROL",
         0x01,
         2,
-        2 << 6 | mode << 2,
-        f"{LINUX}: power mode in bits 7 to 6, full power is 2; mode in bits 5 to 2; {MODES}: 0 is "
-        f"continuous, 1 single{said}",
+        1 << 10 | 2 << 6 | mode << 2,
+        f"{LINUX}: status after data bit 10; power mode in bits 7 to 6, full power is 2; mode in bits "
+        f"5 to 2; {MODES}: 0 is continuous, 1 single{said}",
     )
+    # supplies at their worst, 1 %; REFIN1- lies at AVSS
+    above = 1.01 * found.excitation + BUFFER_ROOM < 0.99 * converter_supply()
     config = Register(
         "CONFIG_0",
         0x19,
         2,
-        1 << 11 | 3 << 7 | 3 << 5 | 0 << 3 | pga,
+        1 << 11 | above << 8 | 0 << 7 | 3 << 5 | 0 << 3 | pga,
         f"{LINUX}: bipolar bit 11, input buffers bits 6 to 5, reference bits 4 to 3 (0: REFIN1), "
         "gain 2^n in bits 2 to 0; "
-        f"{HEADER}: reference buffers bits 8 and 7",
+        f"{HEADER}: reference buffers bits 8 (positive) and 7 (negative); unread: a buffered input must stay "
+        f"{BUFFER_ROOM:g} V within the supplies, REFIN1- lies at AVSS",
     )
     filter_ = Register(
         "FILTER_0",
@@ -162,7 +173,7 @@ def registers(found: DigitalReadout, chip: int) -> list[Register]:
         )
         for i, place in enumerate(places)
     ]
-    return [control, config, filter_, *channels]
+    return [config, filter_, *channels, control]
 
 
 def when_on(layout: Layout, found: DigitalReadout) -> str:
@@ -217,6 +228,7 @@ def settings_json(layout: Layout, name: str) -> bytes:
         "on": {"from_ON_to_first_input_s": found.warm_up, "ON_s": found.on, "period_s": d.readout.period}
         if found.on
         else "always",
+        "result": RESULT,
         "noise_nV": round(found.noise * 1e9, 3),
         "drift_nV": round(found.drift * 1e9, 3),
         "pins_from": PINS_FROM,
@@ -237,6 +249,7 @@ def settings_header(layout: Layout, name: str) -> bytes:
         f"/* {layout.design.name}: {found.converter.name}, gain {found.gain:g}, "
         f"{found.rate:g} results a second; EXC {found.excitation:.4g} V. Written by tactcad. */",
         f"/* ON: {when_on(layout, found)}. */",
+        f"/* A result: {RESULT}. */",
         "#ifndef TACTCAD_CONVERTER_H",
         "#define TACTCAD_CONVERTER_H",
         "#include <stdint.h>",

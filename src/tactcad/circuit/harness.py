@@ -55,27 +55,21 @@ def _rows(circuit: Netlist, leads: Sequence[Lead]) -> Iterator[Row]:
         if connector.part_no == TO_CARD:
             yield from _cable(connector, warm[connector.board])
         else:
-            shield, array = connector.pins[-2:]
-            name = connector.designator
-            yield (
-                f"bundle {connector.board}",
-                f"{name}.{shield.number}",
-                "SHIELD",
-                "braid over the leads",
-                0.0,
-                0.0,
-            )
-            yield (
-                "array's metal",
-                f"{name}.{array.number}",
-                "ARRAY",
-                "AWG 26, under a clamp's screw",
-                0.0,
-                0.0,
-            )
+            (shield, array), b, name = connector.pins[-2:], connector.board, connector.designator
+            along = max(lead.length for lead in leads)
+            yield f"bundle {b}", f"{name}.{shield.number}", "SHIELD", "braid over the leads", along, 0.0
+            bonded = "AWG 26, bonded with silver adhesive"
+            yield "array's metal", f"{name}.{array.number}", "ARRAY", bonded, along, 0.0
     for rail, volts in circuit.supplies:
         bridges = sum(warm.values()) if rail == "VPOS" else 0.0
-        yield f"supply {rail}", "all boards", f"{rail} {volts:g} V", "", 0.0, OWN[rail] * len(warm) + bridges
+        yield (
+            f"supply {rail}",
+            "all boards; supplies in any order",
+            f"{rail} {volts:g} V",
+            "",
+            0.0,
+            OWN[rail] * len(warm) + bridges,
+        )
 
 
 def _cable(connector: Component, warm: float) -> Iterator[Row]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import closing
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from importlib import import_module
 from pathlib import Path
@@ -259,12 +259,14 @@ def _write_bills(
     """A bill of materials a scene as CSV and JSON: bom.csv for the array, bom-NAME.csv for other scenes."""
     from tactcad.scenes import bom
 
-    revision = design.design.revision
+    revision, soldered = design.design.revision, _soldered(design)
     ranked = sorted((form for form in part_formats() if form.ordered), key=lambda form: form.ordered)
     files = {r.part_no: (r.path, r.sha256) for form in ranked for r in records if r.kind == form.kind}
     written = []
     for scene in scenes:
         rows = bom.bom_rows(scene, revision, files)
+        if scene.name == "array":
+            rows = tuple(replace(r, designators=soldered.get(r.part_no, r.designators)) for r in rows)
         as_csv, as_json = bom.csv_bytes(rows), bom.json_bytes(rows, design.name, revision, scene.name)
         wrong = bom.check_bom(scene, as_csv, as_json)
         if wrong:
@@ -274,6 +276,16 @@ def _write_bills(
             (folder / path).write_bytes(data)
             written.append(FileRecord(path, "bom", "", revision, manifests.sha256_of(data)))
     return written
+
+
+def _soldered(design: CommonTables) -> dict[str, str]:
+    """Designators of the array's circuit by part number, without its leads, which the bill has in metres."""
+    family = family_of(design)
+    if family.readout is None:
+        return {}
+    circuit = family.must("readout", "export").netlist(family.layout(design))
+    parts = [c for c in circuit.components if c.fitted and c.kind != "lead"]
+    return {p.part_no: " ".join(c.designator for c in parts if c.part_no == p.part_no) for p in parts}
 
 
 def _write_element_tables(folder: Path, design: CommonTables) -> list[FileRecord]:

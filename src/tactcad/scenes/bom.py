@@ -203,12 +203,12 @@ def check_bom(scene: Scene, as_csv: bytes, as_json: bytes) -> list[str]:
         return [f"not readable as a bill of materials: {error}"]
     wrong = [] if rows == same else ["CSV and JSON differ"]
     placed = sorted(p.designator for p in scene.placements)
-    if sorted(d for row in rows for d in row.designators.split()) != placed:
+    if sorted(d for row in rows if row.has_solid for d in row.designators.split()) != placed:
         wrong.append("the designators are not those of the scene")
     wrong += [
         f"{row.part_no}: quantity {row.qty} with designators {row.designators!r}"
         for row in rows
-        if row.has_solid and row.qty != len(row.designators.split())
+        if (row.has_solid or row.designators) and row.qty != len(row.designators.split())
     ]
     solids = sum(row.qty for row in rows if row.has_solid)
     if solids != len(scene.placements):

@@ -159,11 +159,17 @@ def sample_spacing(r: Readout) -> float:
     return 1 / r.sample_rate if r.mains is None else 1 / (r.mains * r.samples)
 
 
+def sampling_time(design: Design) -> float:
+    """First sample to earliest switch-off, s: that is a spacing after the last, or its jitter if longer."""
+    apart = sample_spacing(design.readout)
+    return (design.readout.samples - 1) * apart + max(apart, jitter(design))
+
+
 def instants(design: Design) -> np.ndarray:
     """Instants of a reading's samples after ENABLE, s."""
     r = design.readout
     apart = sample_spacing(r)
-    first = r.on_time - r.samples * apart if r.instant is None else r.instant
+    first = r.on_time - sampling_time(design) if r.instant is None else r.instant
     return first + apart * np.arange(r.samples)
 
 

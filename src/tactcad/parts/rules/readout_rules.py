@@ -11,7 +11,7 @@ from typing import Any
 from tactcad.design.sensing import AMPLIFIERS, MULTIPLEXERS, SWITCHES, WIRES, Readout, StrainGauge, Wiring
 from tactcad.design.tree import Design
 
-from ..array.bridge_figures import bridge_signal, heating, imbalance, sample_spacing, settling_time
+from ..array.bridge_figures import bridge_signal, heating, imbalance, jitter, sampling_time, settling_time
 from ..array.converter_figures import bridge_supply, converter_supply, on_time, rate
 from ..array.hinge_section import design_readout
 from ..array.layout import Layout
@@ -371,29 +371,34 @@ def inputs_within_common_mode(layout: Layout) -> Iterator[Finding]:
 @by_card
 def switching_settles(layout: Layout) -> Iterator[Finding]:
     r = layout.design.readout
-    settling, sampling = settling_time(layout.design), r.samples * sample_spacing(r)
+    late, sampling = jitter(layout.design), sampling_time(layout.design)
+    settling = settling_time(layout.design) + late
     least, left = settling + sampling, r.on_time - settling
     if r.mains is not None and r.samples * r.mains > r.sample_rate:
         what = f"{r.samples} samples in a period of the mains are more than readout.sample_rate gives"
         yield wrong("readout.samples", what, r.samples, f"at most {floor(r.sample_rate / r.mains)}")
-    elif r.instant is not None and not settling - SAME <= r.instant <= r.on_time - sampling + SAME:
+    elif (
+        r.instant is not None
+        and r.on_time >= least
+        and not settling - SAME <= r.instant <= r.on_time - sampling + SAME
+    ):
         span = f"from {settling:.3g} s, when the output has settled, to {r.on_time - sampling:.3g} s"
-        yield wrong(
-            "readout.instant", "the samples are not within the settled, powered time", r.instant, span
-        )
+        what = f"the samples, {late:.3g} s early or late, are not within the settled, powered time"
+        yield wrong("readout.instant", what, r.instant, span)
     elif r.mains is not None and r.on_time < least:
-        what = f"settling takes {settling:.3g} s and a period of the mains {sampling:.3g} s"
+        what = f"settling and jitter take {settling:.3g} s and a period of the mains {sampling:.3g} s"
         yield wrong("readout.on_time", what, r.on_time, f"at least {least * 1.005:.3g} s")
     elif r.on_time < least:
         legal = {"on_time": f"at least {least * 1.005:.3g} s"}
-        if left * r.sample_rate >= 1.0:
-            legal |= {"samples": f"at most {floor(left * r.sample_rate)}"}
-        if left > 0.0:
-            legal |= {"sample_rate": f"at least {_inward(r.samples / left, False)} Hz"}
+        if (most := floor(min(left * r.sample_rate, (left - late) * r.sample_rate + 1))) >= 1:
+            legal |= {"samples": f"at most {most}"}
+        if left > late:
+            fastest = max(r.samples / left, (r.samples - 1) / (left - late))
+            legal |= {"sample_rate": f"at least {_inward(fastest, False)} Hz"}
         name = _set_first(r, *legal)
         yield wrong(
             f"readout.{name}",
-            f"settling takes {settling:.3g} s and {r.samples} samples {sampling:.3g} s, more than "
+            f"settling and jitter take {settling:.3g} s and {r.samples} samples {sampling:.3g} s, more than "
             f"readout.on_time = {r.on_time:g} of each readout.period = {r.period:g}",
             getattr(r, name),
             legal[name],
