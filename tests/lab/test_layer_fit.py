@@ -95,7 +95,7 @@ def test_half_widths_are_near_those_of_a_lab_that_knows_all_variances():
     the fit does not; level on 10 mm even that lab does not keep 10 %."""
     half = np.median(held(6.0, 0.3, 3.0, 4, 2, seed=5)[1])
     assert 0.9 * least(6.0, 0.3, 3.0) < half < 1.3 * least(6.0, 0.3, 3.0, load_known=True)
-    assert 0.1 < least(10.0, 0.3, 0.0) < 0.11
+    assert 0.1 < least(10.0, 0.3, 0.0) < 0.12  # no. 5 as widely as the fit states: 0.111
 
 
 @pytest.mark.nightly
