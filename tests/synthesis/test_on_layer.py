@@ -189,7 +189,7 @@ def test_the_stated_half_width_covers_the_layer(case):
     stated as often as 95 % allow, and their median, the bias of the layer's model, well within."""
     target = target_of(*case)
     (stand,) = stands(target)
-    found = search(stand, goal_of(target), rules=refusals, until=time.perf_counter() + 8.0)
+    found = search(stand, goal_of(target), rules=refusals, until=time.perf_counter() + 16.0)
     assert found.accepted
     made = MadeSensor(target, found.design)
     stated = made.worst()[0]

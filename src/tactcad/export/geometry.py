@@ -125,7 +125,9 @@ def bill(scene: Scene) -> Record:
 
 
 def bill_line(row: Record) -> Record:
-    return {name: value for name, value in row.items() if name not in NOT_COMPARED}
+    """Without the designators of supplies: a circuit's are its netlist's, which only an export writes."""
+    line = {name: value for name, value in row.items() if name not in NOT_COMPARED}
+    return line if row.get("has_solid") else line | {"designators": ""}
 
 
 def _placed(scene: Scene) -> Record:
