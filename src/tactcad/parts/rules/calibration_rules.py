@@ -110,9 +110,9 @@ def mount_clears_carrier(layout: Layout) -> Iterator[Finding]:
         return
     design = layout.design
     what = (
-        f"the array's carrier, {layout.carrier_width:g} mm wide, covers the screws of the calibration mount"
+        f"the array's carrier, {layout.carrier_width:g} mm wide, covers the screws of the calibration mount "
+        "on every stage that reaches its pads"
     )
-    what += " on every stage that reaches its pads"
     pattern = design.clamp.mount_pitch_y
     narrower = replace(design, clamp=replace(design.clamp, mount_pitch_y=pattern - over))
     if Layout(narrower).carrier_width <= layout.carrier_width - over + SAME:

@@ -334,7 +334,7 @@ def place_axis(b: Builder, rig: GuideLayout, rail: str, lift: float) -> tuple[st
             "Ballast",
             (0, 0, 305),
             "Lay the ballast on the platform. Weigh the bar with all it carries, leads held up, and the four "
-            "screws of the next step. With the carriage (above) they must be "
+            "screws of the next step. With the carriage, weighed before, they must be "
             f"{rig.grasping.moving_weight:g} N, {rig.grasping.moving_weight / NEWTON:.1f} g. Turn the "
             "ballast thinner until they are.",
             tools=("balance, 0.1 g",),
@@ -436,9 +436,9 @@ def _place_carried(
     b.step(
         "Carriage",
         (0, -85, 200),
-        "Slide the carriage from its transport rail on the guide, from above, seals taken off, one drop of "
-        "thin oil, and let it down on the end stop. Weigh it before, on its transport rail, and then the "
-        "rail alone.",
+        "Weigh the carriage on its transport rail. Slide it on the guide, from above, seals taken off, one "
+        "drop of thin oil, and let it down on the end stop. Weigh the empty transport rail: the difference "
+        "is the carriage.",
         order=[Move((carriage,), (0.0, 0.0, 2 * rig.grasping.rail_length), (fallen,))],
         at=fallen,
         leaves=(f"{carriage} on {rail}: slides along z",),
