@@ -145,7 +145,7 @@ def test_a_fit_ends_where_the_truth_costs_no_less():
 
 
 def test_signals_without_noise_are_the_law_s(monkeypatch):
-    """By single patches, 3 mm and 1 MPa, inclined by 5 degrees: where a whole row lifts the law leaves up to
+    """By single patches, 3 mm and 1 MPa, inclined by 5 degrees: where a whole row lifts the law leaves
     0.023 % of the largest change (0.03 to 0.04 with half of its table's knots), else about what is stated."""
     law, rng, left = layer_fit.SHAPE, np.random.default_rng(3), []
     monkeypatch.setattr(layer_fit, "SHAPE", 1e-5)
