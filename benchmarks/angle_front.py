@@ -4,10 +4,10 @@ a table of docs/targets.md.
     python benchmarks/angle_front.py docs/targets.md    half an hour of one core; set OMP_NUM_THREADS=1
 
 Three starts differ in number of elements and of kinds, places of the kinds, pitches, pads and force. Each
-goes through the angles from 0 up: its answer at one angle is where it starts at the next. An array for a
-larger angle does for a smaller one too. If a start does not keep every limit, the table names the one that it
-misses most, and by how much. A search is ended by processor time, so that other work on the machine does not
-change it.
+goes through the angles from 0 up and back: its answer at one angle is where it starts at the next. An array
+for a larger angle does for a smaller one too. If a start does not keep every limit, the table names the one
+that it misses most, and by how much. A search is ended by processor time, so that other work on the machine
+does not change it.
 """
 
 from __future__ import annotations
@@ -138,13 +138,14 @@ def front() -> str:
         for field, value in FREE.items():
             target = target.with_(field, value)
         at = [started(target, *start) for start in STARTS]
-        found = []
-        for angle in ANGLES:
-            found.append([answer(*one, float(angle)) for one in at])
-            at = [(one.candidate.stand, one.row) for one in found[-1]]
-            print(stiffness, angle, [said(one) for one in found[-1]], flush=True)
+        found = dict[int, list[Found]]()
+        for angle in (*ANGLES, *ANGLES[-2::-1]):
+            now = [answer(*one, float(angle)) for one in at]
+            at = [(one.candidate.stand, one.row) for one in now]
+            found[angle] = [min(pair, key=worth) for pair in zip(found.get(angle, now), now)]
+            print(stiffness, angle, [said(one) for one in found[angle]], flush=True)
         for n, angle in enumerate(ANGLES):
-            best = [min(later, key=worth) for later in zip(*found[n:])]
+            best = [min(later, key=worth) for later in zip(*(found[a] for a in ANGLES[n:]))]
             rows.append(row_of(stiffness, thickness, angle, best))
     return lines(HEADS, rows)
 

@@ -74,7 +74,7 @@ def test_fresh_corners_of_the_range_hold_their_expected_error():
     seed = int(os.environ.get("CORNER_SEED", date.today().toordinal()))
     print("CORNER_SEED", seed)
     s = section(draw_corners(120, seed))
-    small = [i for i in range(120) if few_elements(s.rows(i))]
+    small = [i for i in range(s.shape[0]) if few_elements(s.rows(i))]  # another rule refuses some
     assert len(small) > 20 and all(holds_its_expected_error(s.rows(i)) for i in small)
 
 

@@ -72,10 +72,11 @@ def rise(layout: Layout, step: float = 2.0) -> float:
         ({**LONG, "clamp.stop_plate_thickness": 2.0}, 1.0, 1.9),
         (WIDE, 1.0, 1.05),
         pytest.param(LONG, 1.0, 1.9, marks=pytest.mark.nightly),
-        pytest.param({**LONG, "clamp.hold_down_pitch": 100.0}, 1.0, 1.3, marks=pytest.mark.nightly),
+        # the plate runs on past the set screws: over two spans 23/1536 P l^3/EI, not 1/48: a ratio of 1.39
+        pytest.param({**LONG, "clamp.hold_down_pitch": 100.0}, 1.0, 1.5, marks=pytest.mark.nightly),
         pytest.param({"clamp.stop_plate_thickness": 2.0}, 1.0, 1.9, marks=pytest.mark.nightly),
         # as thick as half the way between set screws: the land's own dent in the steel is part of it
-        pytest.param({"clamp.stop_plate_thickness": 7.0}, 0.95, 1.1, marks=pytest.mark.nightly),
+        pytest.param({"clamp.stop_plate_thickness": 7.0}, 0.95, 1.15, marks=pytest.mark.nightly),
     ],
 )
 def test_the_beams_err_to_the_soft_side(changes, least, most):
