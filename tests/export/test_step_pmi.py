@@ -128,8 +128,8 @@ class Limits(Text):
 
 
 def lies_on(text: Limits, face: int, part: Part, feature: str) -> bool:
-    """Whether a face lies on a feature of the description: a plane through the ends of an edge, a cylinder
-    about a hole's axis or an arc's centre."""
+    """Whether a face lies on a feature of the description: a plane through the ends of an edge, a pocket's
+    floor, a cylinder about a hole's axis or an arc's centre."""
     kind, axes, radius = text.surface(face)
     at, z, body = axes[:3, 3], axes[:3, 2], part.extrusion
 
@@ -149,6 +149,9 @@ def lies_on(text: Limits, face: int, part: Part, feature: str) -> bool:
         if isinstance(f, Hole) and f.name == feature and about(f.at, f.axis, f.diameter / 2):
             return True
         if not isinstance(f, Hole):  # its frame is the part's: tip-flat
+            floor = np.array(f.at) + f.depth * np.array(f.axis)
+            if f.name == feature and through(floor, floor + f.x_axis, floor + np.cross(f.axis, f.x_axis)):
+                return True
             edges += [s for c in f.island for s in c if f"{f.name} {s.name}" == feature]
     for s in edges:
         if hasattr(s, "centre"):
