@@ -580,11 +580,12 @@ def _wrong_forces(
     slope over the load. K_obj is made of ratios and shows neither. Raises InputError if some fall and others
     rise, each by more than REVERSED of the middle one.
     """
-    away, span = load - load.mean(), float(np.ptp(load))
+    span = float(np.ptp(load))
     if not span:
         return [], 0.0
+    away = (load - load.mean()) / span
     rows = [_row(calibration, int(n)) for n in slopes.element]
-    per_signal = calibration.stiffness[rows] / calibration.signal_per_deflection[rows] * span / (away @ away)
+    per_signal = calibration.stiffness[rows] / calibration.signal_per_deflection[rows] / (away @ away)
     rise, error = per_signal * (signal @ away), np.abs(per_signal) * noise * (away @ away) ** 0.5
     telling = np.abs(rise) > np.maximum(SURELY * error, REVERSED * np.median(np.abs(rise)))
     if (falls := telling & (rise < 0)).any() and (telling & (rise > 0)).any():
