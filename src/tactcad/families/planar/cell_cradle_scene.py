@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from typing import Literal
 
 from tactcad.design.messages import InputError
-from tactcad.parts.bought.electronic_parts import MECHANICAL, Supply
+from tactcad.parts.array.supplies import supplies as bill_lines
 from tactcad.parts.bought.standard_parts import dowel
 from tactcad.parts.language.metric import METRIC
 from tactcad.parts.rigs.frame import STANDARD_GRAVITY
@@ -17,7 +17,6 @@ from tactcad.scenes.scene import AGAINST_Y, DOWN, REST, STILL, UPRIGHT, Move, Po
 
 from . import cell_board, parts
 from . import cell_cradle as cradle
-from .cell_array import nothing_bends
 from .cell_cradle import CradleLayout
 from .cell_layout import CellPlace, PlanarLayout
 from .cell_loads import FITS, OFF_AXIS, OFF_LEVEL, OFF_MIDDLE, STEPS, loads, requirements
@@ -33,24 +32,6 @@ STANDS: dict[Axis, Rotation] = {
 HALF_TURN: Rotation = ((-1, 0, 0), (0, -1, 0), (0, 0, 1))  # the cradle's frame in the array's
 ACROSS: Rotation = ((0, 0, 1), (1, 0, 0), (0, 1, 0))  # the hanger's sheet across x
 AWAY = 60.0  # mm that hangers come from; chosen: a hand's width
-WEIGHTS = Supply(
-    "WEIGHTS-M1",
-    "Set of weights, class M1, 100 mg to 50 g",
-    1,
-    "set",
-    "weights OIML R 111, class M1, 100 mg to 50 g",
-    consumable=False,
-    process=MECHANICAL,
-)
-PAN = Supply(
-    "PAN-foil",
-    "Pan: 40 x 40 mm of household aluminium foil, its corners gathered on a hook of thin copper wire",
-    1,
-    "pcs",
-    "aluminium foil 10 to 20 um, copper wire 0.3 mm",
-    consumable=False,
-    process=MECHANICAL,
-)
 TOOLS = ("spirit level, 0.1 mm/m", "balance, 1 mg", "tweezers of plastic")
 
 
@@ -135,7 +116,7 @@ def scene(design: PlanarDesign, along: Axis, pose: Pose) -> Scene:
         tools=TOOLS,
     )
     _hung(b, rig, along, places[pose.element - 1])
-    b.supplies += [WEIGHTS, PAN]
+    b.supplies += bill_lines("cells calibration", {})
     b.step("Weights", (0, 0, 0), _weights(rig, along))
     b.step("Readings", (0, 0, 0), _readings(rig, along))
     return b.scene(f"calibration-{along}")
@@ -242,7 +223,7 @@ def rig(along: Axis) -> Rig:
         poses=poses,
         under_sensor=none,
         rules=FITS,
-        deflections=nothing_bends,
+        deflections=lambda _design: iter(()),
         requirements=requirements,
         checks=(),
     )
