@@ -18,13 +18,13 @@ from pathlib import Path
 
 import calculix
 import numpy as np
+from foil_elements import KEEP
 from numpy.typing import NDArray
 from tables import lines, write_tables
 
 from tactcad.contact.solid_face import outward
 from tactcad.families.planar import beam as closed
 from tactcad.families.planar.beam import MODES, FoilBeam
-from tactcad.families.planar.beam_elements import KEEP
 from tactcad.families.planar.cell import Cell, roots, wrench
 from tactcad.families.planar.sensor import stiffness_error, stress_error
 

@@ -15,12 +15,12 @@ import sys
 from pathlib import Path
 
 import numpy as np
+from foil_elements import solved
 from numpy.typing import NDArray
 from scipy.stats import qmc
 
 from tactcad.families.planar import beam as closed
 from tactcad.families.planar.beam import MODES, FoilBeam
-from tactcad.families.planar.beam_elements import solved
 
 Array = NDArray[np.float64]
 LOW, HIGH = np.array([0.1, 15.0, 0.1, 0.2]), np.array([0.5, 80.0, 1.0, 0.4])  # w/s, s/t, r/w, nu

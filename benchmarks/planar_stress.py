@@ -15,12 +15,12 @@ import sys
 from pathlib import Path
 
 import numpy as np
+from foil_elements import SITES, stresses
 from numpy.typing import NDArray
 from planar_beams import HIGH, LOW, WIDEST_FILLET, places
 
 from tactcad.families.planar import beam as closed
 from tactcad.families.planar.beam import MODES, STRESSED, FoilBeam
-from tactcad.families.planar.beam_elements import SITES, stresses
 
 Array = NDArray[np.float64]
 COLUMNS = [(mode, site) for mode in MODES for site in STRESSED[mode]]

@@ -56,10 +56,10 @@ readings grasp-log.csv --map grasp-map.toml --out readings.csv --json
 calibrate calibration.csv --load-cell 57+-1 --run-scatter 0.01 --drop-outliers --out cal.csv
 calibrate log.csv --map log.toml
 calibrate calibration.csv --design macro-array --level 0.9 --within 1% --in 1 --json
-stiffness grasp.csv --calibration cal.csv --reference 8 --level 0.9 --json
+stiffness grasp.csv --calibration cal.csv --reference 8 --level 0.9 --thickness 6 --json
 stiffness grasp.csv --calibration cal.csv --design macro-array --coupling 1 --within 1% --in 1
 stiffness grasp.csv --calibration cal.csv --thickness 5+-1 --nu 0.49
-stiffness grasp-log.csv --map grasp-map.toml --calibration cal.csv
+stiffness grasp-log.csv --map grasp-map.toml --calibration cal.csv --thickness 6
 schema --target --json
 grasp macro-array --object E=0.5,nu=0.49,thickness=6 --load 1 --angle 0.5,1 --rung layer --out p.svg
 grasp --object E=0.5,nu=0.49,thickness=6 --within 2% --json

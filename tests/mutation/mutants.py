@@ -171,8 +171,9 @@ def _spelt(module: str, node: ast.expr) -> set[str]:
 def rules() -> Iterator[Mutant]:
     """Functions with @rule or @fits above them."""
     for path in sorted((SOURCE / "tactcad").glob("*/**/*.py")):
-        module = path.relative_to(SOURCE / "tactcad").as_posix()
-        for function in _functions(ast.parse(path.read_text(encoding="utf-8"))):
+        module, text = path.relative_to(SOURCE / "tactcad").as_posix(), path.read_text(encoding="utf-8")
+        marked = re.search(r"^@(rule\(|fits$)", text, re.M)
+        for function in _functions(ast.parse(text)) if marked else ():
             if any(re.match(r"rule\(|fits$", ast.unparse(d)) for d in function.decorator_list):
                 name = function.name
                 yield Mutant("rule", module, name, lambda tree, name=name: _silent(tree, name))
@@ -415,33 +416,35 @@ ALSO = {
 
 
 @cache
-def _test_files() -> dict[Path, str]:
-    return {path: path.read_text(encoding="utf-8") for path in sorted(TESTS.rglob("test_*.py"))}
+def _test_files() -> dict[str, str]:
+    """The text of every test file but those of mutations, by its path."""
+    paths = sorted(path for path in TESTS.rglob("test_*.py") if path.parent != Path(__file__).parent)
+    return {path.relative_to(ROOT).as_posix(): path.read_text(encoding="utf-8") for path in paths}
 
 
-def tests_of(mutant: Mutant) -> list[str]:
-    """The test files that concern it most, those that name it most first: of those that import its module,
-    or, for a rule, name it, and before all others those of ALSO.
-    """
-    dotted = "tactcad." + mutant.module.removesuffix(".py").replace("/", ".")
+@cache
+def _importing(module: str) -> list[str]:
+    """The test files that import it."""
+    dotted = "tactcad." + module.removesuffix(".py").replace("/", ".")
     package, _, last = dotted.rpartition(".")
     imports = re.compile(
         rf"^\s*(from {re.escape(dotted)} import|import {re.escape(dotted)}\b"
         rf"|from {re.escape(package)} import .*\b{last}\b)",
         re.M,
     )
-    chosen: dict[str, int] = dict.fromkeys(ALSO.get(mutant.module, ()), 0)
-    word = mutant.name.split(":")[0]
-    for path, text in _test_files().items():
-        concerns = (
-            word in text
-            if mutant.kind == "rule"
-            else imports.search(text) or path.relative_to(ROOT).as_posix() in chosen
-        )
-        if path.parent == Path(__file__).parent or not concerns:
-            continue
-        chosen[path.relative_to(ROOT).as_posix()] = text.count(word)
-    also = ALSO.get(mutant.module, ())
+    return [path for path, text in _test_files().items() if imports.search(text)]
+
+
+def tests_of(mutant: Mutant) -> list[str]:
+    """The test files that concern it most, those that name it most first: of those that import its module,
+    or, for a rule, name it, and before all others those of ALSO.
+    """
+    also, word, texts = ALSO.get(mutant.module, ()), mutant.name.split(":")[0], _test_files()
+    if mutant.kind == "rule":
+        concerned = [path for path, text in texts.items() if word in text]
+    else:
+        concerned = _importing(mutant.module)
+    chosen = {path: texts[path].count(word) for path in dict.fromkeys((*also, *concerned))}
     few = sorted(chosen, key=lambda name: (name not in also, -chosen[name]))[:MOST_FILES]
     return sorted(few, key=lambda name: -chosen[name])
 

@@ -24,11 +24,12 @@ SOURCE = HERE.parents[1] / "src"
 
 
 class Tree:
-    """A copy of the sources; `changed` counts what a recipe writes or edits in it."""
+    """A copy of the sources and of what Python compiled of them; `changed` counts what a recipe writes or
+    edits in it."""
 
     def __init__(self, folder: Path) -> None:
         self.src, self.folder, self.changed = folder / "src", folder, set()
-        shutil.copytree(SOURCE, self.src, ignore=shutil.ignore_patterns("__pycache__", "*.egg-info"))
+        shutil.copytree(SOURCE, self.src, ignore=shutil.ignore_patterns("*.egg-info"))
 
     def write(self, path: str, text: str) -> None:
         self.changed.add(path)
@@ -339,7 +340,7 @@ print(*bad_parts.BAD["heavy"].find())
 def test_a_check_takes_two_files(tree):
     """It is found and run, and its bad part is asked for by name."""
     tests = tree.folder / "tests"
-    shutil.copytree(HERE.parent, tests, ignore=shutil.ignore_patterns("__pycache__", "__snapshots__"))
+    shutil.copytree(HERE.parent, tests, ignore=shutil.ignore_patterns("__snapshots__"))
     (tree.folder / "hardware").symlink_to(HERE.parents[1] / "hardware")  # that bad parts vary
     tree.write("checks/described/weight.py", CHECK)
 

@@ -3,7 +3,7 @@
 Every part is moved along its path in steps of STEP mm, past what stands there by then; it may share with
 another part no more than both share at their places, or a third more: a screw that passes its whole thread.
 
-    python tests/scenes/test_simulated_assembly.py         prints the table of docs/stack.md
+    python tests/scenes/test_simulated_assembly.py         prints the tables of docs/stack.md
 """
 
 from __future__ import annotations
@@ -44,6 +44,7 @@ pytestmark = pytest.mark.cad
 STEP = 2.0  # mm
 MOST = 0.1  # mm3: chords of curved faces
 FIRST = "soft-tissue"  # the quickest with a setting fixture
+NAMED = "macro-array"  # its freedoms are shown one by one
 DESIGNS = (
     FIRST,
     *("macro-array", "better-array", "double-sample", "smallest-bearing", "tissue-array"),
@@ -121,6 +122,7 @@ class Tried:
     places: int = 0
     freedoms: int = 0
     met: list[str] = field(default_factory=list)
+    named: dict[tuple[str, ...], list[str]] = field(default_factory=dict)  # by `named`'s last columns
 
     def __str__(self) -> str:
         return f"{self.steps}/{self.moves}/{self.places}/{self.freedoms}"
@@ -184,6 +186,7 @@ def tried(path: Path, told: dict) -> Tried:
     return found
 
 
+FREEDOMS = ("x", "y", "z", "rx", "ry", "rz")
 SHIFT = 0.12  # mm at a body's ends: more than any pin's play in a hole
 
 
@@ -195,29 +198,46 @@ def held(said: str, bodies: dict[str, manifold3d.Manifold], found: Tried) -> Non
         return
     names, by = line[1].split(), line[3].split()
     holding = manifold3d.Manifold.batch_boolean([bodies[n] for n in by], manifold3d.OpType.Add)
+    along, _, about = line[4].partition("turn about")
+    stated = {*re.findall(r"\b[xyz]\b", along), *("r" + axis for axis in re.findall(r"\b[xyz]\b", about))}
     for own in [[n] for n in names] if line[2] else [names]:
         body = manifold3d.Manifold.batch_boolean([bodies[n] for n in own], manifold3d.OpType.Add)
         box = np.reshape(body.bounding_box(), (2, 3))
         now, far = (body ^ holding).volume(), np.degrees(2 * SHIFT / np.linalg.norm(box[1] - box[0]))
         pivots = [np.reshape(b.bounding_box(), (2, 3)).mean(axis=0) for b in (body, *(bodies[n] for n in by))]
-        along, _, about = line[4].partition("turn about")
-        for axes, turns in ((along, False), (about, True)):
-            for axis in re.findall(r"\b[xyz]\b", axes):
-                found.freedoms += 1
-                k = "xyz".index(axis)
-                inside = [np.all(np.delete((box[0] < p) & (p < box[1]), k)) for p in pivots]
-                cuts = []
-                for pivot in [p for p, near in zip(pivots, inside) if near] if turns else pivots[:1]:
-                    moved = []
-                    for way in (-np.eye(3)[k], np.eye(3)[k]):
-                        if turns:
-                            turned = body.translate(list(-pivot)).rotate(list(far * way))
-                            moved.append(turned.translate(list(pivot)))
-                        else:
-                            moved.append(body.translate(list(SHIFT * way)))
-                    cuts.append(max((m ^ holding).volume() - now for m in moved))
-                if min(cuts) < 1e-3:
-                    found.met.append(f"{' '.join(own)} is free {'about' if turns else 'along'} {axis}")
+        free = []
+        for freedom in FREEDOMS:
+            k = "xyz".index(freedom[-1])
+            inside = [np.all(np.delete((box[0] < p) & (p < box[1]), k)) for p in pivots]
+            cuts = []
+            for pivot in [p for p, near in zip(pivots, inside) if near] if freedom[0] == "r" else pivots[:1]:
+                moved = []
+                for way in (-np.eye(3)[k], np.eye(3)[k]):
+                    if freedom[0] == "r":
+                        turned = body.translate(list(-pivot)).rotate(list(far * way))
+                        moved.append(turned.translate(list(pivot)))
+                    else:
+                        moved.append(body.translate(list(SHIFT * way)))
+                cuts.append(max((m ^ holding).volume() - now for m in moved))
+            if min(cuts) < 1e-3:
+                free.append(freedom)
+        found.freedoms += len(stated)
+        found.met += [f"{' '.join(own)} is free: {freedom}" for freedom in free if freedom in stated]
+        row = (listed(by), ",".join(f for f in FREEDOMS if f in stated), ",".join(free))
+        found.named.setdefault(row, []).append(listed(own))
+
+
+def listed(names: list[str]) -> str:
+    return "+".join(names) if len(names) < 4 else f"{names[0]}…{names[-1]}"
+
+
+def named(found: dict[str, Tried]) -> str:
+    """By scene: bodies, what holds them, the freedoms that it is to set, and those that it leaves."""
+    lines = ["|scene|body|against|set|free|", "|---" * 5 + "|"]
+    for name, of in found.items():
+        for row, bodies in of.named.items():
+            lines.append(f"|{name}|{listed(bodies)}{',each' * (len(bodies) > 1)}|{'|'.join(row)}|")
+    return "\n".join(lines)
 
 
 def table(found: dict[str, dict[str, Tried]]) -> str:
@@ -228,10 +248,14 @@ def table(found: dict[str, dict[str, Tried]]) -> str:
     return "\n".join(lines)
 
 
+def printed(name: str) -> str:
+    """The page's table of that name."""
+    return re.search(rf"<!-- table {name} -->\n(.*?)\n<!-- end -->", STACK.read_text("utf-8"), re.S)[1]
+
+
 def shown() -> dict[str, dict[str, str]]:
-    """The page's table, by design and scene."""
-    text = re.search(r"<!-- table assembly -->\n(.*?)\n<!-- end -->", STACK.read_text("utf-8"), re.S)[1]
-    head, _, *rows = (line[1:-1].split("|") for line in text.splitlines())
+    """The page's table of what was tried, by design and scene."""
+    head, _, *rows = (line[1:-1].split("|") for line in printed("assembly").splitlines())
     return {d: {row[0]: row[n] for row in rows if row[n]} for n, d in enumerate(head) if n}
 
 
@@ -250,8 +274,8 @@ def test_a_part_in_the_way_is_seen(tmp_path):
     bodies["FX1"] = bodies["FX1"].translate([0.0, 0.0, -0.2])
     for said in told["steps"][1]["sets"]:
         held(said, bodies, found)
-    assert any("EP1 EP2 is free along z" in m for m in found.met)
-    assert any("E3 is free about y" in m for m in found.met)
+    assert any("EP1 EP2 is free: z" in m for m in found.met)
+    assert any("E3 is free: ry" in m for m in found.met)
 
 
 @pytest.mark.parametrize("design", [FIRST, *(pytest.param(d, marks=pytest.mark.slow) for d in DESIGNS[1:])])
@@ -259,6 +283,8 @@ def test_every_scene_goes_together_from_its_files(design, tmp_path):
     found = whole(design, tmp_path)
     assert {name: f.met for name, f in found.items() if f.met} == {}
     assert {name: str(f) for name, f in found.items()} == shown()[design]
+    if design == NAMED:
+        assert named(found) == printed("freedoms")
 
 
 if __name__ == "__main__":
@@ -271,4 +297,4 @@ if __name__ == "__main__":
         made[design] = whole(design, Path(tempfile.mkdtemp()))
         told = [m for f in made[design].values() for m in f.met[:5]]
         print(design, f"{time.process_time() - start:.0f} s", *told, sep="\n", file=sys.stderr, flush=True)
-    print(table(made))
+    print(table(made), named(made[NAMED]) if NAMED in made else "", sep="\n\n")

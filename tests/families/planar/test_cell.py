@@ -6,10 +6,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from foil_elements import solved, stresses
 
 from tactcad.families.planar import beam
 from tactcad.families.planar.beam import MODES, FoilBeam
-from tactcad.families.planar.beam_elements import solved, stresses
 from tactcad.families.planar.cell import Cell, roots, wrench
 
 SOFT = FoilBeam(4.0, 0.4, 0.08, 0.1, 179_000.0, 0.30)

@@ -116,7 +116,9 @@ def test_the_guide_s_moves_bring_everything_to_its_place(lay):
         scene = make_scene(lay.design, f"calibration-{along}")
         told = json.loads(guide_json(scene))
         titles = [step["title"] for step in told["steps"]]
-        assert titles[-2:] == ["Weights", "Readings"] and f"Cradle on its foot {along}" in titles
+        assert (
+            titles[-3:] == ["Weights", "Every cell", "Readings"] and f"Cradle on its foot {along}" in titles
+        )
         moved = {m["designator"]: m for step in told["steps"] for m in step["moves"]}
         assert set(moved) == {p.designator for p in scene.placements}
         for m in moved.values():
@@ -125,6 +127,29 @@ def test_the_guide_s_moves_bring_everything_to_its_place(lay):
         assert last["path"][0][2] > 0 and last["path"][-1] == [0, 0, 0]  # let down at the end
         step = told["steps"][titles.index("Hanger" if along == "z" else "Link")]
         assert step["sets"] and step["leaves"]
+
+
+@pytest.mark.parametrize("along", "zxy")
+def test_cap_and_what_hangs_on_it_come_to_every_pad_in_the_guide_s_moves(lay, along):
+    """From any first pad: the cap's stops, from its place in the scene, are the pads' middles, each once and
+    the first one at last; hanger or link is off whenever the cap moves, and comes after it to its pad."""
+    for first in (1, len(lay.elements)):
+        scene = make_scene(lay.design, f"calibration-{along}", Pose(element=first))
+        at = {p.designator: p for p in scene.placements}
+        turn = np.array(at["AR1"].rotation) @ np.diag([1, -1, -1])
+        pads = [np.array(at["AR1"].origin) + turn @ np.array([e.x, e.y, 0.0]) for e in lay.elements]
+        steps = json.loads(guide_json(scene))["steps"]
+        moves = next(s for s in steps if s["title"] == "Every cell")["moves"]
+        stops, hung = [], np.zeros(3)
+        for m in moves:
+            if m["designator"] == "CA1":
+                stops.append(np.array(at["CA1"].origin) + m["path"][-1])
+                assert np.linalg.norm(hung - m["from"]) > 50.0
+            else:
+                hung = np.array(m["path"][-1])
+                assert np.linalg.norm(hung) > 50.0 or hung == pytest.approx(stops[-1] - at["CA1"].origin)
+        order = [*range(first, len(pads)), *range(first)]
+        assert np.array(stops) == pytest.approx(np.array([pads[k] for k in order]), abs=1e-6)
 
 
 def test_loads_stay_within_what_a_cell_bears(lay):

@@ -8,8 +8,7 @@ from math import inf
 
 import numpy as np
 
-from tactcad.parts.array.stiffness_table import Deflection
-from tactcad.parts.bought.electronic_parts import MECHANICAL, Supply
+from tactcad.parts.array.supplies import supplies as bill_lines
 from tactcad.parts.bought.standard_parts import dowel, dowel_diameter, dowel_limits
 from tactcad.parts.language.description import Part
 from tactcad.scenes import scene_names
@@ -22,15 +21,6 @@ from tactcad.scenes.scene import Scene
 from . import cell_board, parts
 from .cell_layout import PlanarLayout
 from .cell_tables import PlanarDesign
-
-ADHESIVE = Supply(
-    "ADHESIVE-epoxy",
-    "Epoxy adhesive, cold-curing, low viscosity",
-    1,
-    "pack",
-    "two-component epoxy, thin, cures cold",
-    process=MECHANICAL,
-)
 
 
 def scene(design: PlanarDesign, _pose: object = None) -> Scene:
@@ -124,7 +114,7 @@ def scene(design: PlanarDesign, _pose: object = None) -> Scene:
             "against the cover.",
         )
     else:
-        b.supplies.append(ADHESIVE)
+        b.supplies += bill_lines("cells adhesive", {})
     b.supplies += cell_board.supplies(layout)
     return b.scene(ARRAY, cover=(cover,))
 
@@ -312,8 +302,3 @@ def _slips(layout: PlanarLayout) -> Iterator[Requirement]:
 
 def _nominal(part: Part, limit: str) -> float:
     return next(c.nominal for c in part.characteristics if c.name == limit)
-
-
-def nothing_bends(_layout: PlanarLayout) -> Iterator[Deflection]:
-    """No part is taken as rigid but the islands, which foot plates make so."""
-    yield from ()

@@ -34,7 +34,8 @@ from tactcad.circuit.letters import width as printed_width
 from tactcad.circuit.netlist import GROUND, Component, Netlist, Pin
 from tactcad.circuit.printed import HIGH
 from tactcad.contour import rectangle
-from tactcad.parts.bought.electronic_parts import BARE_BOARD, BOARD, ELECTRONIC, Supply, board_spares
+from tactcad.parts.array.supplies import supplies as bill_lines
+from tactcad.parts.bought.electronic_parts import BOARD, Supply
 from tactcad.parts.language.description import Extrusion, Hole, Material, Part, Process, Purchase
 from tactcad.parts.language.metric import METRIC
 
@@ -456,52 +457,21 @@ def chip(layout: PlanarLayout, order: str) -> Part:
     )
 
 
-# Of what is fitted beside the chips: part number, description, designation; equal parts of any maker will do.
-FITTED = (
-    ("CAPACITOR-100N-0603", "capacitor of a chip", "ceramic capacitor 100 nF, 10 %, X7R, 16 V, 0603"),
-    ("CAPACITOR-10U", "capacitor of the supply", "ceramic capacitor 10 uF, 10 %, X5R or X7R, 10 V, 1206"),
-    ("PULL-UP-4K7", "pull-up of a bus line", "thick film resistor 4.7 kohm, 5 %, 0.1 W, 0805"),
-    ("HEADER-BUS", "connector to the controller", "pin header 2.54 mm, {pins} pins in one row, straight"),
-)
-
-
 def supplies(layout: PlanarLayout) -> list[Supply]:
     """Lines of the bill: the bare board and all that is fitted on it; none if none is laid out."""
     if why_none(layout):
         return []
-    d, (x, y), chips = layout.design, layout.half, layout.chip
     fitted = Counter(c.part_no for c in netlist(layout).components)
-    pins = 2 + len(lines_of(layout))
-    orders = dict.fromkeys(order_of(layout, e.number) for e in layout.elements)
-    bare = (
-        f"circuit board {d.name}-board by its Gerber files: FR-4 {d.hall.board:g} mm, 4 layers, "
-        f"copper 35 um, tin or gold on pads, {2 * x:g} x {2 * y + tongue(layout):g} mm"
+    (x, y), orders = layout.half, dict.fromkeys(order_of(layout, e.number) for e in layout.elements)
+    bare, *others = bill_lines(
+        "cells board",
+        fitted,
+        name=layout.design.name,
+        thickness=layout.design.hall.board,
+        length=2 * x,
+        width=2 * y + tongue(layout),
+        pins=2 + len(lines_of(layout)),
     )
-    return [
-        _supply(BOARD, "circuit board, bare", 1, bare, process=BARE_BOARD),
-        *(
-            _supply(name, "three-axis Hall chip", fitted[name], f"Hall chip {name}", chips.maker, name)
-            for name in orders
-        ),
-        *(
-            _supply(name, what, fitted[name], f"{order.format(pins=pins)}; any maker's")
-            for name, what, order in FITTED
-        ),
-    ]
-
-
-def _supply(
-    part_no: str, what: str, qty: int, order: str, maker: str = "", mpn: str = "", process: str = ELECTRONIC
-) -> Supply:
-    return Supply(
-        part_no,
-        what,
-        qty,
-        "pcs",
-        order,
-        spares=board_spares(qty),
-        consumable=False,
-        manufacturer=maker,
-        mpn=mpn,
-        process=process,
-    )
+    maker = layout.chip.maker
+    chips = [line for o in orders for line in bill_lines("cells chip", fitted, order=o, maker=maker)]
+    return [bare, *chips, *others]

@@ -16,7 +16,7 @@ import numpy as np
 
 from tactcad.contour import rectangle
 from tactcad.parts.array.clamp import PRESS_FIT, pressed
-from tactcad.parts.bought.electronic_parts import MECHANICAL, Supply
+from tactcad.parts.array.supplies import supplies as bill_lines
 from tactcad.parts.bought.standard_parts import LEAST_PLAY, dowel, dowel_diameter, dowel_lengths
 from tactcad.parts.language.description import Extrusion, Hole, Part, Vector
 from tactcad.parts.language.finding import Finding
@@ -29,7 +29,7 @@ from tactcad.scenes.rig import Rig, none
 from tactcad.scenes.scene import STILL, Move, Scene
 
 from . import parts
-from .cell_array import ADHESIVE, MAGNET_BOND, MAGNET_PLACE, nothing_bends
+from .cell_array import MAGNET_BOND, MAGNET_PLACE
 from .cell_layout import PlanarLayout
 from .cell_tables import PlanarDesign
 from .parts import DOWEL, MAGNET_LIMIT, PAD_FIELD, PLATE_ZONE, REAMED, foil_zone, milled
@@ -51,14 +51,6 @@ LIFTED = 40.0  # mm that what the jig holds is lifted off; chosen: clear of its 
 OVER: Vector = (0.0, 0.0, LIFTED)
 ASIDE: Vector = (-200.0, 0.0, LIFTED)
 WEIGHT = 10.0  # g on every post; chosen: presses its shoulder flat, bends nothing on the bed
-RELEASE = Supply(
-    "RELEASE-wax",
-    "Release agent: mould wax, free of silicone",
-    1,
-    "pack",
-    "mould release wax for epoxy, free of silicone",
-    process=MECHANICAL,
-)
 TOOLS = ("sheet of steel, 1 mm or more, larger than the bed", "tweezers of plastic", "felt pen")
 
 
@@ -229,7 +221,7 @@ def scene(design: PlanarDesign, _pose: object = None) -> Scene:
         order=[(floating,), Move((weight,), OVER, (STILL,))],
         sets=("posts in the guide: turn about x and y", "all in the jig: along z, by the weight"),
     )
-    b.supplies += [ADHESIVE, RELEASE]
+    b.supplies += [*bill_lines("cells adhesive", {}), *bill_lines("cells release", {})]
     b.step(
         "Cure",
         (0, 0, 0),
@@ -311,7 +303,7 @@ RIG = Rig(
     poses=none,
     under_sensor=none,
     rules=(jig_takes_magnets,),
-    deflections=nothing_bends,
+    deflections=lambda _design: iter(()),
     requirements=requirements,
     checks=(),
 )

@@ -2,22 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Literal
 
 from tactcad.design.messages import InputError
-from tactcad.parts.bought.electronic_parts import MECHANICAL, Supply
+from tactcad.parts.array.supplies import supplies as bill_lines
 from tactcad.parts.bought.standard_parts import dowel
+from tactcad.parts.language.description import Vector, vector
 from tactcad.parts.language.metric import METRIC
 from tactcad.parts.rigs.frame import STANDARD_GRAVITY
 from tactcad.scenes.builder import Builder
-from tactcad.scenes.moves import PRESS, TWEEZED
+from tactcad.scenes.moves import APPROACH, PRESS, TWEEZED
 from tactcad.scenes.rig import Rig, none
-from tactcad.scenes.scene import AGAINST_Y, DOWN, REST, STILL, UPRIGHT, Move, Pose, Rotation, Scene
+from tactcad.scenes.scene import AGAINST_Y, DOWN, HAND, REST, STILL, UPRIGHT, Move, Pose, Rotation, Scene
 
 from . import cell_board, parts
 from . import cell_cradle as cradle
-from .cell_array import nothing_bends
 from .cell_cradle import CradleLayout
 from .cell_layout import CellPlace, PlanarLayout
 from .cell_loads import FITS, OFF_AXIS, OFF_LEVEL, OFF_MIDDLE, STEPS, loads, requirements
@@ -33,24 +33,6 @@ STANDS: dict[Axis, Rotation] = {
 HALF_TURN: Rotation = ((-1, 0, 0), (0, -1, 0), (0, 0, 1))  # the cradle's frame in the array's
 ACROSS: Rotation = ((0, 0, 1), (1, 0, 0), (0, 1, 0))  # the hanger's sheet across x
 AWAY = 60.0  # mm that hangers come from; chosen: a hand's width
-WEIGHTS = Supply(
-    "WEIGHTS-M1",
-    "Set of weights, class M1, 100 mg to 50 g",
-    1,
-    "set",
-    "weights OIML R 111, class M1, 100 mg to 50 g",
-    consumable=False,
-    process=MECHANICAL,
-)
-PAN = Supply(
-    "PAN-foil",
-    "Pan: 40 x 40 mm of household aluminium foil, its corners gathered on a hook of thin copper wire",
-    1,
-    "pcs",
-    "aluminium foil 10 to 20 um, copper wire 0.3 mm",
-    consumable=False,
-    process=MECHANICAL,
-)
 TOOLS = ("spirit level, 0.1 mm/m", "balance, 1 mg", "tweezers of plastic")
 
 
@@ -134,15 +116,17 @@ def scene(design: PlanarDesign, along: Axis, pose: Pose) -> Scene:
         f"Stand the cradle on its foot {along}, {edge}, and hold it down with a clamp. {LEVELLED}",
         tools=TOOLS,
     )
-    _hung(b, rig, along, places[pose.element - 1])
-    b.supplies += [WEIGHTS, PAN]
+    cap, hung = _hung(b, rig, along, places[pose.element - 1])
+    b.supplies += bill_lines("cells calibration", {})
     b.step("Weights", (0, 0, 0), _weights(rig, along))
+    n = pose.element
+    _every_cell(b, rig, along, cap, hung, (places[n - 1], *places[n:], *places[:n]))
     b.step("Readings", (0, 0, 0), _readings(rig, along))
     return b.scene(f"calibration-{along}")
 
 
-def _hung(b: Builder, rig: CradleLayout, along: Axis, cell: CellPlace) -> None:
-    """The cap on the cell's pad, and hanger or link on the cap."""
+def _hung(b: Builder, rig: CradleLayout, along: Axis, cell: CellPlace) -> tuple[str, str]:
+    """The cap on the cell's pad, and hanger or link on the cap; their designators."""
     at = (cell.x, cell.y, rig.layout.pad_z)
     x, y, z = (sum(r * p for r, p in zip(row, at)) for row in STANDS[along])
     cap = b.place("CA", cradle.cap(rig), (x, y, z), UPRIGHT if along == "z" else AGAINST_Y)
@@ -158,28 +142,61 @@ def _hung(b: Builder, rig: CradleLayout, along: Axis, cell: CellPlace) -> None:
     )
     if along == "z":
         hung = b.place("HA", cradle.hanger(rig), (x - cradle.SHEET / 2.0, y, rig.tip), ACROSS)
-        high, far = (0.0, 0.0, cradle.LIFTED), rig.box[2] - cell.x + AWAY
-        order = [Move((hung,), (far, 0.0, cradle.LIFTED), (high, STILL))]
         text = (
             "Bring the hanger in from the overhanging end, around array and cradle, and set its nib into the "
             "cap's dimple. It must swing freely."
         )
     else:
         hung = b.place("LI", cradle.link(rig), (x, y + cradle.SHEET / 2.0, z - rig.sunk), AGAINST_Y)
-        high = (0.0, 0.0, rig.sunk)
-        order = [Move((hung,), (0.0, -AWAY, rig.sunk), (high, STILL))]
         text = (
             "Bring the link's arc over the cap and let it down into the groove: it hangs there past the "
             "posts below, on both sides of them, and touches nothing else."
         )
     b.meet(hung, cap)
+    far, high = _way(rig, along, cell, STILL)
     b.step(
         "Hanger" if along == "z" else "Link",
         (40, 0, 0) if along == "z" else (0, -40, 0),
         text + " Hang the pan into its eye.",
-        order=order,
+        order=[Move((hung,), far, (high, STILL))],
         sets=(f"{hung} on {cap}: along {along if along == 'z' else 'z'}",),
         leaves=(f"{hung} on {cap}: swings until it hangs plumb",),
+    )
+    return cap, hung
+
+
+def _way(rig: CradleLayout, along: Axis, first: CellPlace, at: Vector) -> tuple[Vector, Vector]:
+    """Hanger or link on its way out from over a pad, offsets from the first one's: out, and lifted over the
+    cap."""
+    x, y, z = at
+    if along == "z":
+        return (rig.box[2] - first.x + AWAY, y, z + cradle.LIFTED), (x, y, z + cradle.LIFTED)
+    return (x, y - AWAY, z + rig.sunk), (x, y, z + rig.sunk)
+
+
+def _every_cell(
+    b: Builder, rig: CradleLayout, along: Axis, cap: str, hung: str, cells: Sequence[CellPlace]
+) -> None:
+    """Cap and hanger or link from pad to pad; at last on the first one again."""
+    first, order, by = cells[0], [], HAND if along == "z" else TWEEZED
+    off = (0.0, 0.0, APPROACH) if along == "z" else (0.0, -APPROACH, 0.0)
+    offsets = [(cell.x - first.x, cell.y - first.y, 0.0) for cell in cells]
+    turned = [vector(sum(r * o for r, o in zip(row, at)) for row in STANDS[along]) for at in offsets]
+    for old, new in zip(turned, turned[1:]):
+        (out, high), (far, over) = (_way(rig, along, first, at) for at in (old, new))
+        order.append(Move((hung,), old, (high, out), by))
+        above = (vector(a + o for a, o in zip(at, off)) for at in (old, new))
+        order.append(Move((cap,), old, (*above, new), TWEEZED))
+        order.append(Move((hung,), out, (far, over, new), by))
+    name, how = ("hanger", "as it came in") if along == "z" else ("link", "with the tweezers, as it came in")
+    b.step(
+        "Every cell",
+        (0, 0, 0),
+        f"Take the pan off and the {name} out, {how}. Pull the cap off, read the next cell's chip, its pad "
+        f"bare, and push the cap on that pad. Hang {name} and pan in and load the cell. Do so with every "
+        "cell; at last the cap is on the first pad again.",
+        order=order,
+        sets=(f"{cap} on each pad in turn: along z; along x and y, turn about x and y by its bore",),
     )
 
 
@@ -212,7 +229,7 @@ def _readings(rig: CradleLayout, along: Axis) -> str:
         share, what = OFF_LEVEL / height, f"a groove {OFF_LEVEL:g} mm from the pad's level is like"
         other = "more or less"
     return (
-        "Load every cell so. Then set the cradle down and level anew, and with the cap half a turn on by "
+        "Then set the cradle down and level anew, and with the cap half a turn on by "
         "its mark load every cell again: that is another run. Write a row of the table for each reading: "
         "element; run, a number of its own for every time that the cradle was set down; fx, fy, fz in N, "
         f"which is {STANDARD_GRAVITY * 1e-3:.8g} times the grams in f{along} and 0 in the others, all 0 on "
@@ -242,7 +259,7 @@ def rig(along: Axis) -> Rig:
         poses=poses,
         under_sensor=none,
         rules=FITS,
-        deflections=nothing_bends,
+        deflections=lambda _design: iter(()),
         requirements=requirements,
         checks=(),
     )

@@ -20,7 +20,7 @@ from .cell import wrench
 from .cell_cradle import CradleLayout
 from .cell_layout import Kind, PlanarLayout
 from .parts import PAD, PAD_FIELD
-from .sensor import kind_figures, rated_force, stress_error
+from .sensor import rated_force, stress_error
 
 STEPS = 5  # of weights; chosen: two more than `calibrate` asks for
 STOP_SHARE = 0.8  # of the force at which a post or an island meets a stop; chosen
@@ -65,7 +65,7 @@ def loads(rig: CradleLayout, along: str) -> Iterator[Loads]:
     hung = cradle.hanger(rig) if along == "z" else cradle.link(rig)
     tare = (cradle.cap(rig).mass + hung.mass) * 1e-3 * STANDARD_GRAVITY
     for kind in layout.used:
-        rated = rated_force(layout, kind, kind_figures(layout, kind.name).stress)[1]
+        rated = rated_force(layout, kind)[1]
         heaviest = rated if along == "z" else across(layout, kind)
         room = max((heaviest - tare) / STANDARD_GRAVITY * 1e3 / STEPS, 0.0)
         yield Loads(kind.name, heaviest, tare, _preferred(room))

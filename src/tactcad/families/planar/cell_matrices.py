@@ -16,20 +16,23 @@ from tactcad.report.report import plain
 
 Array = NDArray[np.float64]
 AXES = "xyz"
-MATRIX = tuple(Field(f"m_{i}{j}", "mT/N", -1e6, 1e6) for i in AXES for j in AXES)
-PAIRS = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
-SPREAD = tuple(
-    Field(f"v{k}_{AXES[i]}{AXES[j]}", "mT2/N2", -1e12, 1e12) for k in AXES for i, j in PAIRS
-)  # of the matrix's columns
-DOF = tuple(Field(f"dof_{a}", "1", 0.0, 1e9, above=True) for a in AXES)
-STIFFNESS = Field("stiffness", "N/mm", 0.0, 1e6, above=True)
-STIFFNESS_SE = Field("stiffness_se", "N/mm", 0.0, 1e6)
-STIFFNESS_LIMIT = Field("stiffness_limit", "1", 0.0, 0.9)
-
-
-BOW = tuple(Field(f"c_{i}{j}", "mT/N2", -1e9, 1e9) for i in AXES for j in AXES)
-BOW_VARIANCE = tuple(Field(f"cv_{i}{j}", "mT2/N4", 0.0, 1e12) for i in AXES for j in AXES)
-FULL = tuple(Field(f"full_{a}", "N", -1000.0, 1000.0) for a in AXES)
+GRID = tuple(f"{i}{j}" for i in AXES for j in AXES)
+PAIRS = ([0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2])  # rows and columns of a covariance's entries
+# Columns of the file, by what of `CellMatrix` they hold.
+COLUMNS = {
+    "matrix": tuple(Field(f"m_{ij}", "mT/N", -1e6, 1e6) for ij in GRID),
+    "bow": tuple(Field(f"c_{ij}", "mT/N2", -1e9, 1e9) for ij in GRID),
+    "bow_variance": tuple(Field(f"cv_{ij}", "mT2/N4", 0.0, 1e12) for ij in GRID),
+    "full": tuple(Field(f"full_{a}", "N", -1000.0, 1000.0) for a in AXES),
+    "spread": tuple(
+        Field(f"v{k}_{AXES[i]}{AXES[j]}", "mT2/N2", -1e12, 1e12) for k in AXES for i, j in zip(*PAIRS)
+    ),
+    "dof": tuple(Field(f"dof_{a}", "1", 0.0, 1e9, above=True) for a in AXES),
+    "stiffness": (Field("stiffness", "N/mm", 0.0, 1e6, above=True),),
+    "stiffness_se": (Field("stiffness_se", "N/mm", 0.0, 1e6),),
+    "stiffness_limit": (Field("stiffness_limit", "1", 0.0, 0.9),),
+}
+FIELDS = tuple(f for some in COLUMNS.values() for f in some)
 
 
 @dataclass(frozen=True)
@@ -99,25 +102,14 @@ def to_json(cells: Sequence[CellMatrix], level: float) -> str:
 
 def to_csv(cells: Sequence[CellMatrix]) -> str:
     """Matrices with the covariances of their columns, which `read_matrices` reads back."""
-    fields = (*MATRIX, *BOW, *BOW_VARIANCE, *FULL, *SPREAD, *DOF, STIFFNESS, STIFFNESS_SE, STIFFNESS_LIMIT)
     lines = [
         "# calibration of cells by tactcad calibrate; mT/N, N/mm",
-        ",".join(["element", *(f.name for f in fields)]),
+        ",".join(["element", *(f.name for f in FIELDS)]),
     ]
     for c in cells:
-        spread = [float(c.spread[k, i, j]) for k in range(3) for i, j in PAIRS]
-        values = [
-            *c.matrix.ravel(),
-            *c.bow.ravel(),
-            *c.bow_variance.ravel(),
-            *c.full,
-            *spread,
-            *c.dof,
-            c.stiffness,
-            c.stiffness_se,
-            c.stiffness_limit,
-        ]
-        lines.append(",".join([str(c.element), *(f"{v:.9g}" for v in values)]))
+        held = {name: getattr(c, name) for name in COLUMNS} | {"spread": c.spread[:, PAIRS[0], PAIRS[1]]}
+        values = [f"{v:.9g}" for some in held.values() for v in np.ravel(some)]
+        lines.append(",".join([str(c.element), *values]))
     return "\n".join(lines) + "\n"
 
 
@@ -139,36 +131,17 @@ class Matrices:
 
 def read_matrices(path: str) -> Matrices:
     """A calibration from the CSV of `to_csv`. Raises InputError if it is not one."""
-    rows = read(
-        path,
-        (
-            ELEMENT,
-            *MATRIX,
-            *BOW,
-            *BOW_VARIANCE,
-            *FULL,
-            *SPREAD,
-            *DOF,
-            STIFFNESS,
-            STIFFNESS_SE,
-            STIFFNESS_LIMIT,
-        ),
-    )
+    rows = read(path, (ELEMENT, *FIELDS))
     number = rows.values("element").astype(int)
     if len(set(number.tolist())) < len(number):
         raise InputError(path, "an element is listed twice", value=number.tolist(), legal="each once")
-    m, bow, bow_variance = (
-        np.stack([rows.values(f.name) for f in of], axis=1).reshape(-1, 3, 3)
-        for of in (MATRIX, BOW, BOW_VARIANCE)
-    )
-    full = np.stack([rows.values(f.name) for f in FULL], axis=1)
-    for i in np.flatnonzero(np.linalg.cond(m) > 1e6)[:1]:
-        raise InputError(rows.where(int(i), MATRIX[0].name), "the matrix tells no three forces apart")
+    shapes: dict[int, tuple[int, ...]] = {1: (), 3: (3,), 9: (3, 3), 18: (3, 6)}
+    held = {
+        name: np.stack([rows.values(f.name) for f in some], axis=1).reshape(-1, *shapes[len(some)])
+        for name, some in COLUMNS.items()
+    }
+    for i in np.flatnonzero(np.linalg.cond(held["matrix"]) > 1e6)[:1]:
+        raise InputError(rows.where(int(i), FIELDS[0].name), "the matrix tells no three forces apart")
     spread = np.empty((len(number), 3, 3, 3))
-    given = iter(SPREAD)
-    for k in range(3):
-        for i, j in PAIRS:
-            spread[:, k, i, j] = spread[:, k, j, i] = rows.values(next(given).name)
-    dof = np.stack([rows.values(f.name) for f in DOF], axis=1)
-    last = (rows.values(f.name) for f in (STIFFNESS, STIFFNESS_SE, STIFFNESS_LIMIT))
-    return Matrices(number, m, bow, bow_variance, full, spread, dof, *last)
+    spread[:, :, PAIRS[0], PAIRS[1]] = spread[:, :, PAIRS[1], PAIRS[0]] = held["spread"]
+    return Matrices(number, **(held | {"spread": spread}))

@@ -34,7 +34,7 @@ from .cell_board import why_none
 from .cell_layout import PlanarLayout
 from .cell_tables import Planar, PlanarDesign
 from .rules import design_rules
-from .sensor import chip_matrix, closing_force, force_noise, pad_compliance, rated_force, rated_stress
+from .sensor import chip_matrix, closing_force, force_noise, pad_compliance, rated_force
 
 Array = NDArray[np.float64]
 Z = 1.959964  # the normal distribution's quantile, of a 95 % interval
@@ -208,7 +208,7 @@ def with_stops(d: PlanarDesign) -> PlanarDesign:
     for name in KINDS:
         layout = PlanarLayout(d)
         kind = layout.kinds[name]
-        _, rated = rated_force(layout, kind, rated_stress(layout, kind))
+        _, rated = rated_force(layout, kind)
         sink = rated * float(kind.cell.compliance[2, 2])
         roots = np.roots([kind.cell.stiffening, 0.0, 1.0, -sink])
         straight = float(roots[np.abs(roots.imag) < 1e-9].real.max())
@@ -220,8 +220,7 @@ def with_stops(d: PlanarDesign) -> PlanarDesign:
 
 
 def of_kind(layout: PlanarLayout, name: str) -> CellRead:
-    kind = layout.kinds[name]
-    return read_at(layout, name, rated_force(layout, kind, rated_stress(layout, kind))[1])
+    return read_at(layout, name, rated_force(layout, layout.kinds[name])[1])
 
 
 def read_at(layout: PlanarLayout, name: str, rated: float) -> CellRead:

@@ -10,7 +10,7 @@ from tactcad.parts.language.finding import Finding
 from .cell_board import why_none
 from .cell_layout import PlanarLayout
 from .cell_tables import PlanarDesign
-from .sensor import kind_figures, rated_force, rows
+from .sensor import rated_force, rows
 
 
 def check_strength(design: PlanarDesign) -> Iterator[Finding]:
@@ -21,7 +21,7 @@ def check_strength(design: PlanarDesign) -> Iterator[Finding]:
     for kind in layout.used:
         row = shown[kind.name]
         first = next(e.designator for e in layout.elements if e.kind.name == kind.name)
-        _, rated = rated_force(layout, kind, kind_figures(layout, kind.name).stress)
+        _, rated = rated_force(layout, kind)
         if rated < design.rating.force * (1.0 - 1e-9):
             message = (
                 f"{kind.name} cells are rated at {rated:.3g} N with a shear of {design.rating.shear:g} of "

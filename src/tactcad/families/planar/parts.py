@@ -33,7 +33,7 @@ from tactcad.parts.language.description import (
 )
 from tactcad.parts.language.limits import FACES, Characteristic, Geometric, within
 from tactcad.parts.language.metric import METRIC, tapped_through
-from tactcad.parts.language.stock import ANODISED, BREAK_EDGES, FRAME, FRAME_DATUMS, PLACE, plate_material
+from tactcad.parts.language.stock import ANODISED, BREAK_EDGES, FRAME, FRAME_DATUMS, PLACE, plate
 
 from .cell_layout import Kind, PlanarLayout
 from .cell_tables import FoilProcess
@@ -348,22 +348,11 @@ def milled(
     bores: tuple[Characteristic, ...] = (),
     flat: tuple[Geometric, ...] = (),
 ) -> Part:
-    d = layout.design
-    marks = _placed(features, zones)
-    marks["geometric"] = (*marks["geometric"], *flat)
-    return Part(
-        part_no=f"{d.name}-{number}",
-        name=name,
-        process="milled",
-        material=plate_material(d),
-        body=body,
-        features=tuple(features),
-        colour="#7c8794",
-        finish=ANODISED + ("; dowel holes masked" if layout.screwed else ""),
-        notes=(BREAK_EDGES, *notes),
-        characteristics=(within("thickness", body.thickness, 0.02, between=FACES), *_stated(layout, *bores)),
-        **marks,
-    )
+    finish = ANODISED + ("; dowel holes masked" if layout.screwed else "")
+    own = (within("thickness", body.thickness, 0.02, between=FACES), *_stated(layout, *bores))
+    marks, said = _placed(features, zones), (BREAK_EDGES, *notes)
+    places = (*marks["geometric"], *flat)
+    return plate(layout.design, number, name, body, features, finish, "#7c8794", said, own, places)
 
 
 def chip_room(layout: PlanarLayout) -> float:

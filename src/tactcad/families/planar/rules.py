@@ -14,7 +14,7 @@ from . import beam
 from .cell_layout import Kind, PlanarLayout
 from .field import pull
 from .parts import CHIP_ROOM, FOOT_INSET, SCREW, WEB, dowel_length, screw_length, stack_height
-from .sensor import closing_force, kind_figures, neighbours_field, rated_force, stop_stress
+from .sensor import closing_force, largest_field, neighbours_field, rated_force, stop_stress
 
 LAND = 0.1  # mm of an island on the base around its well, at least; chosen
 PULL = (
@@ -198,7 +198,7 @@ def stop_protects(layout: PlanarLayout) -> Iterator[Finding]:
     limit = d.material.yield_strength
     for name, kind in _each(layout):
         gap, tolerance = kind.table.stop_gap, d.tolerance.stop_gap
-        _, rated = rated_force(layout, kind, kind_figures(layout, name).stress)
+        _, rated = rated_force(layout, kind)
         least = rated * float(kind.cell.compliance[2, 2]) + tolerance
         if closing_force(layout, kind) < rated:
             yield wrong(
@@ -228,10 +228,7 @@ def magnets_keep_apart(layout: PlanarLayout) -> Iterator[Finding]:
     if len(layout.elements) < 2:
         return
     force = pull(layout.magnet, (d.planar.pitch, 0.0))
-    rated, name = min(
-        (rated_force(layout, kind, kind_figures(layout, name).stress)[1], name)
-        for name, kind in _each(layout)
-    )
+    rated, name = min((rated_force(layout, kind)[1], name) for name, kind in _each(layout))
     if force > PULL * rated:
         most = d.magnet.diameter * (PULL * rated / force) ** 0.25  # force goes with the square of its volume
         yield wrong(
@@ -255,9 +252,8 @@ def foil_leaves_magnets_alone(layout: PlanarLayout) -> Iterator[Finding]:
 def field_in_scale(layout: PlanarLayout) -> Iterator[Finding]:
     d, chip = layout.design, layout.chip
     near = neighbours_field(layout)
-    for name, _ in _each(layout):
-        figures = kind_figures(layout, name)
-        most = (max(figures.moved, float(abs(figures.at_rest).max())) + near) * (1.0 + d.magnet.tolerance)
+    for name, kind in _each(layout):
+        most = (largest_field(layout, kind) + near) * (1.0 + d.magnet.tolerance)
         if most > chip.full_scale:
             yield wrong(
                 "hall.gap",

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from tactcad.design.allowance import Allowance
 from tactcad.design.messages import InputError
+from tactcad.report.figures import aligned
 
 from . import beam
 from .cell import wrench
@@ -30,7 +31,8 @@ class CellEstimate:
     stiffness, shear_stiffness  at the pad, along z and across
     expected_error              of the stiffness, against solid elements, relative
     rated_force                 the lesser of the force asked for and yield over its factor, with the rated
-    shear stop_force                  at which the island meets the base
+                                shear
+    stop_force                  at which the island meets the base
     linear_force                up to which K stays within rating.linearity
     field                       at the chip, cell at rest
     force_noise                 of fx, fy and fz, from one reading's noise
@@ -59,18 +61,6 @@ class CellEstimate:
     peak_strain: float = 0.0
 
 
-@dataclass(frozen=True)
-class KindFigures:
-    """Figures of a kind of cell: compliance of the pad (3 x 3, mm/N), matrix of the chip (mT/N), stress of 1
-    N down with the rated shear (MPa)."""
-
-    pad: Array
-    matrix: Array
-    stress: float
-    at_rest: Array
-    moved: float
-
-
 def pad_compliance(kind: Kind, height: float) -> Array:
     """The pad's motion under a force on it, mm/N, 3 x 3."""
     load = np.stack([wrench(f, height) for f in np.eye(3)], axis=1)
@@ -89,20 +79,16 @@ def magnet_lever(layout: PlanarLayout) -> float:
     return layout.design.planar.thickness / 2.0 + layout.design.magnet.height
 
 
-def kind_figures(layout: PlanarLayout, name: str) -> KindFigures:
-    kind, design = layout.kinds[name], layout.design
-    down = wrench(np.array([design.rating.shear, 0.0, -1.0]), layout.pad_height)
-    stress = rated_stress(layout, kind)
-    at_rest, _ = sensitivity(layout.magnet, design.hall.gap, magnet_lever(layout))
-    rated = rated_force(layout, kind, stress)[1]
-    at_rated = felt(layout.magnet, design.hall.gap, magnet_lever(layout), kind.cell.compliance @ down * rated)
-    return KindFigures(
-        pad_compliance(kind, layout.pad_height),
-        chip_matrix(layout, kind),
-        stress,
-        at_rest,
-        float(np.abs(at_rated).max()),
-    )
+def largest_field(layout: PlanarLayout, kind: Kind) -> float:
+    """At the chip, at rest or at the rated force with its shear, mT."""
+    down = wrench(np.array([layout.design.rating.shear, 0.0, -1.0]), layout.pad_height)
+    motion = kind.cell.compliance @ down * rated_force(layout, kind)[1]
+    at_rated = felt(layout.magnet, layout.design.hall.gap, magnet_lever(layout), motion)
+    return max(field_at_rest(layout), float(np.abs(at_rated).max()))
+
+
+def field_at_rest(layout: PlanarLayout) -> float:
+    return float(np.abs(sensitivity(layout.magnet, layout.design.hall.gap, magnet_lever(layout))[0]).max())
 
 
 def force_noise(chip: Chip, matrix: Array) -> Array:
@@ -126,9 +112,9 @@ def stiffness_error() -> float:
     return max(e["climbed"] for e in beam.fit()["errors"].values())
 
 
-def rated_force(layout: PlanarLayout, kind: Kind, stress: float) -> tuple[float, float]:
+def rated_force(layout: PlanarLayout, kind: Kind) -> tuple[float, float]:
     """Force at yield together with the rated shear, and rated force, N."""
-    at_yield = layout.design.material.yield_strength / stress
+    at_yield = layout.design.material.yield_strength / rated_stress(layout, kind)
     return at_yield, min(layout.design.rating.force, at_yield / layout.design.rating.yield_factor)
 
 
@@ -153,21 +139,21 @@ def neighbours_field(layout: PlanarLayout) -> float:
 
 
 def rows(layout: PlanarLayout, _rung: str, force: float | None) -> list[CellEstimate]:
-    design, chip = layout.design, layout.chip
+    design = layout.design
     by_kind: dict[str, dict] = {}
     for kind in layout.used:
-        figures = kind_figures(layout, kind.name)
-        at_yield, rated = rated_force(layout, kind, figures.stress)
+        at_yield, rated = rated_force(layout, kind)
+        pad, matrix = pad_compliance(kind, layout.pad_height), chip_matrix(layout, kind)
         load = design.rating.force if force is None else force
-        stiffness = float(1.0 / figures.pad[2, 2])
-        per_axis = force_noise(chip, figures.matrix)
+        stiffness = float(1.0 / pad[2, 2])
+        per_axis = force_noise(layout.chip, matrix)
         linear = kind.cell.linear_range(design.rating.linearity)
-        stress = load * figures.stress
+        stress = load * rated_stress(layout, kind)
         by_kind[kind.name] = {
             "kind": kind.name,
             "arm": kind.beam_length,
             "stiffness": stiffness,
-            "shear_stiffness": float(1.0 / figures.pad[0, 0]),
+            "shear_stiffness": float(1.0 / pad[0, 0]),
             "expected_error": stiffness_error(),
             "force": load,
             "sink": load / stiffness,
@@ -177,9 +163,9 @@ def rows(layout: PlanarLayout, _rung: str, force: float | None) -> list[CellEsti
             "elastic": load < at_yield,
             "stop_force": closing_force(layout, kind),
             "linear_force": stiffness * linear * (1.0 + design.rating.linearity),
-            "field": float(np.abs(figures.at_rest).max()),
-            "signal": float(abs(figures.matrix[2, 2])),
-            "condition": float(np.linalg.cond(figures.matrix)),
+            "field": field_at_rest(layout),
+            "signal": float(abs(matrix[2, 2])),
+            "condition": float(np.linalg.cond(matrix)),
             "force_noise_x": float(per_axis[0]),
             "force_noise_z": float(per_axis[2]),
             "peak_strain": stress / design.material.youngs_modulus,
@@ -237,10 +223,8 @@ def run(args: argparse.Namespace, asked: Allowance, design: PlanarDesign) -> int
         ]
         for row in shown
     ]
-    table = [[h for _, h, _, _ in HEADINGS], [u for _, _, u, _ in HEADINGS], *cells]
-    widths = [max(len(line[i]) for line in table) for i in range(len(HEADINGS))]
-    for line in table:
-        print("  ".join(text.rjust(w) for text, w in zip(line, widths)).rstrip())
+    table = aligned([[h for _, h, _, _ in HEADINGS], [u for _, _, u, _ in HEADINGS], *cells])
+    print(*table, sep="\n")
     print(
         f"K against solid elements: within {100 * stiffness_error():.2g} %; stress includes its own error of "
         f"{100 * stress_error():.2g} % and the rated shear; noise is of one reading of {layout.chip.name}"

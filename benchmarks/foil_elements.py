@@ -14,11 +14,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tactcad.design.messages import CheckFailure
+from tactcad.families.planar.beam import MODES, FoilBeam
 from tactcad.fem import elasticity
 from tactcad.fem.mapped_mesh import merged
 from tactcad.fem.space import AcrossSpace, PlaneSpace
-
-from .beam import MODES, FoilBeam
 
 Array = NDArray[np.float64]
 ORDER = 4
@@ -71,8 +70,11 @@ def quarter_mesh(beam: FoilBeam, density: int = 1) -> PlaneSpace:
     x = straight + r * ((1.0 - blend) * angle / (pi / 2.0) + blend * np.sin(angle))
     edge = w + r * (1.0 - np.cos(angle))
     cells.append(np.stack([x, across * edge], axis=-1))
-    blocks = [_split(grid) for grid in cells]
-    every = np.concatenate(blocks)
+    return _meshed(cells)
+
+
+def _meshed(blocks: list[Array]) -> PlaneSpace:
+    every = np.concatenate([_split(grid) for grid in blocks])
     points, index = merged(every.reshape(len(every), -1, 2))
     return PlaneSpace(np.ascontiguousarray(points.T), index.reshape(len(every), ORDER + 1, ORDER + 1))
 
@@ -102,9 +104,7 @@ def stress_mesh(beam: FoilBeam, density: int = 2) -> PlaneSpace:
     edge = w + r * (1.0 - np.cos(angle))
     x = np.broadcast_to(straight + r * np.sin(angle), (len(angle), len(across)))
     cells.append(np.stack([x, across * edge], axis=-1))
-    every = np.concatenate([_split(grid) for grid in cells])
-    points, index = merged(every.reshape(len(every), -1, 2))
-    return PlaneSpace(np.ascontiguousarray(points.T), index.reshape(len(every), ORDER + 1, ORDER + 1))
+    return _meshed(cells)
 
 
 def _nodes(ends: Array) -> Array:
