@@ -16,7 +16,7 @@ from typing import Any
 
 from tactcad.design.text_values import as_number, as_whole
 from tactcad.parts.bought.electronic_parts import Supply
-from tactcad.parts.bought.examples import example
+from tactcad.parts.bought.example_makes import example
 from tactcad.parts.language.description import Part, Purchase
 from tactcad.scenes.scene import Scene
 

@@ -1,4 +1,4 @@
-"""One make of each part that is bought by description, as an example for its buyer: data/examples.csv."""
+"""One make of each part that is bought by description, as an example for its buyer: data/example_makes.csv."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from tactcad.design.text_values import data_rows
 
 from ..language.description import Part
 
-ROWS = data_rows(__file__, "examples")
+ROWS = data_rows(__file__, "example_makes")
 STANDARDS = ("ISO ", "DIN ")
 
 
