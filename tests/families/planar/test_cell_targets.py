@@ -172,6 +172,11 @@ def test_without_a_half_width_asked_the_best_counts_as_met(file, tmp_path, capsy
     said = json.loads(capsys.readouterr().out)
     assert said["met"] is None and said["yield"] >= 0.95
     assert said["half_width"] <= said["wanted_half_width"] < 1.5 * said["half_width"]
+    # as many arrays as half of the yield's interval asks for: 1000 at 4 %, by the normal law too
+    asked = ("design", str(path), "--out", str(tmp_path / "more"), "--within", "4%")
+    assert main([*asked, "--json"]) == 0
+    count = json.loads(capsys.readouterr().out)["yield_arrays"]
+    assert 1.96 * 0.5 / count**0.5 < 0.04 < 1.96 * 0.5 / (count / 2.5) ** 0.5
 
 
 def test_a_board_takes_more_buses_where_its_layout_needs_them():

@@ -44,9 +44,9 @@ from .rules import design_rules
 
 Array = NDArray[np.float64]
 LEVEL = 0.95  # of the intervals
-ARRAYS = 200  # built virtually
 SHARE = 0.5  # of the seconds asked for, for the search
 NEAR = 1e-9  # relative; a value nearer to a bound lies on it
+ARRAYS = 200  # built virtually where no number is asked for
 # Fields whose step beyond eases the target, and the factor of that step; counts go by one.
 EASED = {
     "planar.pitch[0]": 1 / 1.1,
@@ -160,13 +160,13 @@ def binding(t: CellTarget, best: CellFound) -> Iterator[dict[str, Any]]:
             yield {"field": field, "value": value, "eased": further, "half_width": width, "gain": gain}
 
 
-def made(t: CellTarget, best: CellFound, seed: int = 1) -> Array:
+def made(t: CellTarget, best: CellFound, count: int, seed: int = 1) -> Array:
     """Half-widths of arrays built virtually, each read at the drawn design's rated forces: foil, etching, gap
     and remanence are one cause each for both kinds."""
     rng, d = np.random.default_rng(seed), best.design
     cut = PlanarLayout(d).process.tolerance(d.planar.thickness)
     out = []
-    for foil, width, gap, remanence in rng.standard_normal((ARRAYS, 4)) / 2.0:
+    for foil, width, gap, remanence in rng.standard_normal((count, 4)) / 2.0:
         as_made = replace(
             d,
             planar=replace(d.planar, thickness=d.planar.thickness + d.foil_tolerance * foil),
@@ -204,7 +204,7 @@ def of_base(t: CellTarget) -> dict[str, Any]:
     return {"name": b.name, "half_width": width, "breaks": breaks}
 
 
-def record(a: CellAnswer, until: float = inf) -> dict[str, Any]:
+def record(a: CellAnswer, count: int, until: float = inf) -> dict[str, Any]:
     """The answer as plain data: the keys of a target of facing rows, as far as they mean something here.
 
     Parts that the time does not allow (`until` of `time.perf_counter`) are named in `left_out`.
@@ -233,15 +233,15 @@ def record(a: CellAnswer, until: float = inf) -> dict[str, Any]:
     }
     if best is None:
         return out
-    arrays = made(t, best)
+    arrays = made(t, best, count)
     limit = a.wanted
     if limit is None:  # the least that the share asked for keeps
-        limit = max(best.half_width, float(np.sort(arrays)[ceil(t.target.share * ARRAYS) - 1]))
+        limit = max(best.half_width, float(np.sort(arrays)[ceil(t.target.share * count) - 1]))
     kept = int((arrays <= limit).sum())
     tail = (1.0 - LEVEL) / 2.0
-    low = float(betaincinv(kept, ARRAYS - kept + 1.0, tail)) if kept else 0.0
-    high = float(betaincinv(kept + 1.0, ARRAYS - kept, 1.0 - tail)) if kept < ARRAYS else 1.0
-    reached = best.half_width <= limit and kept / ARRAYS >= t.target.share
+    low = float(betaincinv(kept, count - kept + 1.0, tail)) if kept else 0.0
+    high = float(betaincinv(kept + 1.0, count - kept, 1.0 - tail)) if kept < count else 1.0
+    reached = best.half_width <= limit and kept / count >= t.target.share
     k, layout = t.points, PlanarLayout(best.design)
     width = half_width(best.soft, best.stiff, t.planar, k)
     worst = int(np.argmax(width))
@@ -251,9 +251,9 @@ def record(a: CellAnswer, until: float = inf) -> dict[str, Any]:
     out |= {
         "met": (None if a.wanted is None else True) if reached else False,
         "wanted_half_width": limit,
-        "yield": kept / ARRAYS,
+        "yield": kept / count,
         "yield_interval": [low, high],
-        "yield_arrays": ARRAYS,
+        "yield_arrays": count,
         "object_interval": [
             {"object": float(x), "low": float(x * (1 - w)), "high": float(x * (1 + w))}
             for x, w in zip(k, width)
@@ -378,12 +378,18 @@ def files(a: CellAnswer, r: dict[str, Any]) -> dict[str, bytes]:
     }
 
 
-def answered(args: argparse.Namespace, t: CellTarget, seconds: float | None, ready: Callable[[], str]) -> int:
+def answered(
+    args: argparse.Namespace,
+    t: CellTarget,
+    seconds: float | None,
+    count: int | None,
+    ready: Callable[[], str],
+) -> int:
     """Search, write and print; the exit status."""
     page.refuse_unwritable(args.out)
     now = time.perf_counter()
     a = search(t, now + SHARE * seconds if seconds else inf)
-    r = record(a, now + SHARE * seconds if seconds else inf)
+    r = record(a, count or ARRAYS, now + SHARE * seconds if seconds else inf)
     written = a.best is not None and (r["met"] is not False or args.best)
     if written:
         page.write_folder(args.out, lambda: files(a, r))

@@ -180,7 +180,7 @@ def as_text(layout: PlanarLayout, s: CellGrasp, level: float) -> str:
             )
         lines += [f"note: {n}" for n in s.whole.notes]
     else:
-        lines.append(f"K_obj of all cells wants {LEAST} loads above zero")
+        lines.append(f"K_obj of all cells wants {LEAST} loads above zero, and two cells or more")
     return "\n".join(lines)
 
 
@@ -207,7 +207,7 @@ def picture(layout: PlanarLayout, s: CellGrasp) -> str:
             tiles = [Rectangle((u - pitch / 2, v - pitch / 2), pitch, pitch) for u, v in zip(x, y)]
             shown = PatchCollection(tiles, cmap="viridis", edgecolor="white")
             shown.set_array(np.ma.masked_invalid(values))
-            middle = float(np.nanmedian(values)) if np.isfinite(values).any() else 1.0
+            middle = float(np.nanmedian(values)) if np.isfinite(values).any() else 0.0
             if ax is axes[1] and middle > 0.0:
                 ends = np.clip(values, middle / SHOWN_RATIO, middle * SHOWN_RATIO)
                 shown.set_clim(float(np.nanmin(ends)), float(np.nanmax(ends)))

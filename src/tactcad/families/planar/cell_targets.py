@@ -19,7 +19,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tactcad.design.allowance import Allowance
 from tactcad.design.fields import Number, Numbers, TextLine, Whole, given
 from tactcad.design.files import read_text
 from tactcad.design.load import MOST_BYTES, read, read_table, unknown_field
@@ -392,11 +391,11 @@ def search(t: CellTarget, until: float = inf) -> CellAnswer:
     return CellAnswer(t, best, refused, shown, time.perf_counter() > until)
 
 
-def design(args: argparse.Namespace, asked: Allowance, ready: Callable[[], str]) -> int:
+def design(
+    args: argparse.Namespace, seconds: float | None, arrays: int | None, ready: Callable[[], str]
+) -> int:
     """`tactcad design` of a planar target: 0 if it is met or asks for no half-width, else 1; `ready` gives
     the next command."""
     from .cell_answers import answered
 
-    if asked.within is not None:
-        raise InputError("--within", "does not take planar targets", value=args.within, legal="none")
-    return answered(args, read_target(args.target), asked.seconds, ready)
+    return answered(args, read_target(args.target), seconds, arrays, ready)

@@ -10,7 +10,7 @@ import numpy as np
 from tactcad.design.materials import ALLOYS
 from tactcad.parts.language.finding import Finding
 from tactcad.parts.language.metric import METRIC
-from tactcad.parts.rules.rule import Rule, at_least, at_most, rule, wrong
+from tactcad.parts.rules.rule import SAME, Rule, at_least, at_most, rule, wrong
 
 from . import beam
 from .cell_layout import Kind, PlanarLayout
@@ -213,21 +213,23 @@ def stop_protects(layout: PlanarLayout) -> Iterator[Finding]:
         gap, tolerance = kind.table.stop_gap, travel_limit(layout, kind)
         _, rated = rated_force(layout, kind)
         least = _up(lowest(layout, kind, rated) + tolerance)
-        what = f"at its limits the stop closes before the rated force of {rated:.3g} N with its shear"
-        yield from at_least(f"{name}.stop_gap", what, gap, least)
-        if stop_stress(layout, kind, gap + tolerance) > limit:
-            low, high = 0.0, gap
-            for _ in range(40):
-                middle = (low + high) / 2.0
-                low, high = (
-                    (low, middle) if stop_stress(layout, kind, middle + tolerance) > limit else (middle, high)
-                )
-            yield wrong(
-                f"{name}.stop_gap",
-                f"a {name} cell yields before its stop closes",
-                gap,
-                f"at most {floor(low * 1e4) / 1e4:g} mm",
+        early, late = gap < least - SAME, stop_stress(layout, kind, gap + tolerance) > limit
+        if not early and not late:
+            continue
+        low, high = 0.0, 10.0 * max(gap, least)
+        for _ in range(40):
+            middle = (low + high) / 2.0
+            low, high = (
+                (low, middle) if stop_stress(layout, kind, middle + tolerance) > limit else (middle, high)
             )
+        legal = f"{least:g} to {floor(low * 1e4) / 1e4:g} mm"  # rounded to the side that is legal
+        if least > low:
+            legal = (
+                f"none: at least {least:g} mm for that force, at most {low:.3g} by yield: lower rating.force"
+            )
+        what = f"at its limits the stop closes before the rated force of {rated:.3g} N with its shear"
+        what = what if early else f"a {name} cell yields before its stop closes"
+        yield wrong(f"{name}.stop_gap", what, gap, legal)
 
 
 @rule(after="beams_in_range")
