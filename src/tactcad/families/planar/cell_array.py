@@ -56,13 +56,21 @@ def scene(design: PlanarDesign, _pose: object = None) -> Scene:
     for pin in pins:
         b.meet(pin, base, "press")
         b.meet(pin, frame)
-    first = "Press the two dowels into the base, flush with its lower face."
-    tools: tuple[str, ...] = (PRESS, "a flat plate under the base as stop")
-    if not layout.screwed:
+    if layout.screwed:
+        b.step(
+            "Dowels",
+            (0, 0, -15),
+            "On the bench: press the two dowels into the base, flush with its lower face.",
+            bench=True,
+            tools=(PRESS, "a flat plate under the base as stop"),
+            sets=tuple(f"{pin} in {base}: all" for pin in pins),
+        )
+        text = "Lay the base on the frame, dowels up."
+        b.step("Base", (0, 0, -15), text, order=[()], sets=(f"{base} on {frame}: along z",))
+    else:
         out = ", the board's tongue past one of them" if cell_board.tongue(layout) else ""
         first = f"Bond every layer on the one below, flush at its edges between two straight edges{out}."
-        tools = ("two straight edges",)
-    b.step("Base", (0, 0, -15), first, tools=tools, sets=_laid(layout, base, frame))
+        b.step("Base", (0, 0, -15), first, tools=("two straight edges",), sets=_laid(layout, base, frame))
     lower = b.place("SP", parts.lower_spacer(layout), (0, 0, layout.base_z))
     b.meet(lower, base)
     b.step(
@@ -112,8 +120,11 @@ def scene(design: PlanarDesign, _pose: object = None) -> Scene:
         b.step(
             "Screws",
             (0, 0, -45),
-            "Tighten the screws crosswise, in three rounds: they clamp board, base, spacers and foil "
-            "against the cover.",
+            "Press board and cover together by a hand clamp with soft jaws on their borders, and stand them "
+            "on edge: nothing may lie on the posts. Turn the screws in from the board's side. Tighten them "
+            "crosswise, in three rounds: they clamp board, base, spacers and foil against the cover. Take "
+            "the clamp off.",
+            tools=("hand clamp, soft jaws",),
         )
     else:
         b.supplies += bill_lines("cells adhesive", {})

@@ -412,9 +412,9 @@ def setting_words(layout: Layout) -> str:
     )
     strip = " and every blank on the strip" if layout.blanks() else ""
     return (
-        "Press both end plates down on the fixture's steps. With a bar of rubber on the ledges, between pads "
-        f"and dowels, press every pad down on the fixture's floor{strip}; pressing behind the dowels lifts "
-        "the pads. "
+        "For two: one presses, the other tightens. Press both end plates down on the fixture's steps, and "
+        "with a bar of rubber on each row's ledges, between pads and dowels, every pad down on the fixture's "
+        f"floor{strip}; pressing behind the dowels lifts the pads. Hold them so. "
         f"{tight} crosswise, in three rounds: to a third, two thirds and all of the torque. An element can "
         f"still turn about its dowel ({wedge(layout)}); pressed on its ledge, it lies at one end of this "
         f"play. {gap}No {2 * tolerance * 1e3:g} um feeler may pass under a pad. Then lay the array on its "
@@ -430,7 +430,12 @@ def flatness_tools(layout: Layout) -> tuple[str, ...]:
     feelers = f"feelers, {2 * tolerance * 1e3:g} um"
     if len(layout.design.array.row_arms) == ABREAST:
         feelers += f" and {2 * layout.pad_inner:g} mm"
-    return "surface plate, grade 1 or better", "bar of rubber", feelers, "lever indicator, 1 um, on a stand"
+    return (
+        "surface plate, grade 1 or better",
+        "bar of rubber for each row",
+        feelers,
+        "lever indicator, 1 um, on a stand",
+    )
 
 
 def carrier_tools(design: Design) -> tuple[str, ...]:

@@ -145,7 +145,13 @@ def wiring(design: Design, pose: Pose = REST) -> Scene:
         "open circuit between black and the array's metal, and below 1 ohm between that wire and each "
         "element's rear body.",
         order=[Move((name,), vector((*parked[s][:2], LIFTED)), (parked[s],)) for s, name in sockets.items()],
-        tools=(SOLDERING, "solder and flux, as for the gauges", "ohmmeter, four wires, 0.01 ohm"),
+        tools=(
+            SOLDERING,
+            "solder and flux, as for the gauges",
+            "scraper",
+            "hot-air gun",
+            "ohmmeter, four wires, 0.01 ohm",
+        ),
         sets=("leads in their socket: all, by solder",),
         leaves=("sockets: lie loose on their plates",),
         needs=(Need((*fitted,), "leads are as long as the way to their board"),),
