@@ -14,8 +14,8 @@ from .sensor import rated_force, rows
 
 
 def check_strength(design: PlanarDesign) -> Iterator[Finding]:
-    """A flag for each kind of cells rated below the force asked for, and for pads whose K is not linear up to
-    that force."""
+    """A flag for each kind of cells rated below the force asked for, for finite life at the rated force, and
+    for pads whose K is not linear up to it."""
     layout = PlanarLayout(design)
     shown = {row.kind: row for row in rows(layout, "", None)}
     for kind in layout.used:
@@ -29,6 +29,13 @@ def check_strength(design: PlanarDesign) -> Iterator[Finding]:
                 f"than its safety of {design.rating.yield_factor:g} against yield"
             )
             yield Finding("planar-rated-force", "flag", first, (), rated, design.rating.force, message)
+        if row.fatigue_factor < 1.0:
+            endured = row.fatigue_factor * rated
+            message = (
+                f"{kind.name} cells have finite life at their rated force of {rated:.3g} N (Goodman factor "
+                f"below 1); put on and off, {endured:.3g} N are borne as often as the fatigue strength holds"
+            )
+            yield Finding("planar-fatigue", "flag", first, (), endured, rated, message)
         if row.linear_force < rated:
             message = (
                 f"{kind.name} cells stiffen by {100 * design.rating.linearity:g} % at "

@@ -60,6 +60,9 @@ WEB = 0.8  # mm of base left over the chips' pocket, at least: checks/data/shop.
 FRAME_CORNER = 0.5  # mm; chosen: a cutter of 1 mm, and room for the outer chips
 COPPER = 1.4, 0.6  # mm of tracks and vias beyond the outer chips along x and y: cell_board.CLOSE
 CHIP_ROOM = 0.2  # mm above and around a chip; chosen: soldered boards' usual tolerance
+TABS = (
+    "tabs, if any, on the upper and the right edge, dressed flush"  # the others are datums, and lie on pins
+)
 SPRING_STEEL = Material("1.4310", 7900, "+C1300", "EN 10151")
 NEODYMIUM = Material("NdFeB, nickel plated", 7500)
 STAINLESS_BAR = Material("X8CrNiS18-9 (1.4305)", 7900, standard="EN 10088-3", magnetic="no")
@@ -215,7 +218,11 @@ def foil(layout: PlanarLayout) -> Part:
         body=Extrusion(_outline(layout), t, slots),
         features=features,
         colour="#c9ccd1",
-        notes=(contour_note(layout.process, t), "do not bend, do not tumble; packed flat between cards"),
+        notes=(
+            contour_note(layout.process, t),
+            TABS,
+            "do not bend, do not tumble; packed flat between cards",
+        ),
         characteristics=(
             within("thickness", t, d.foil_tolerance, True, between=FACES),
             *beams,
@@ -321,7 +328,7 @@ def _spacer(layout: PlanarLayout, where: str, thickness: float, limit: float, ke
         body=Extrusion(_outline(layout), thickness, openings),
         features=features,
         colour="#aab2bd",
-        notes=(contour_note(process, thickness), "flat, free of burrs"),
+        notes=(contour_note(process, thickness), TABS, "flat, free of burrs"),
         characteristics=(within("thickness", thickness, limit, key, between=FACES), *_stated(layout, bore)),
         kind="cells",
         **_placed(features, {"dowel_hole": zone, "screw": PLACE}),

@@ -6,13 +6,15 @@ from __future__ import annotations
 import argparse
 import json
 from dataclasses import asdict, dataclass
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tactcad.design.allowance import Allowance
+from tactcad.design.materials import Alloy
 from tactcad.design.messages import InputError
+from tactcad.mechanics.strength import goodman
 from tactcad.report.figures import aligned
 
 from . import beam
@@ -31,6 +33,7 @@ class CellEstimate:
 
     stiffness, shear_stiffness  at the pad, along z and across
     expected_error              of the stiffness, against solid elements, relative
+    fatigue_factor              Goodman's at the rated force, put on and off, by the von Mises stress
     rated_force                 the lesser of the force asked for and yield over its factor, with the rated
                                 shear
     stop_force                  at which the island meets the base
@@ -50,6 +53,7 @@ class CellEstimate:
     stress: float
     yield_force: float
     rated_force: float
+    fatigue_factor: float
     elastic: bool
     stop_force: float
     linear_force: float
@@ -175,6 +179,9 @@ def rows(layout: PlanarLayout, _rung: str, force: float | None) -> list[CellEsti
             "stress": stress,
             "yield_force": at_yield,
             "rated_force": rated,
+            "fatigue_factor": float(
+                goodman(cast(Alloy, design.material), rated * rated_stress(layout, kind))
+            ),
             "elastic": load < at_yield,
             "stop_force": closing_force(layout, kind),
             "linear_force": stiffness * linear * (1.0 + design.rating.linearity),
@@ -196,6 +203,7 @@ HEADINGS = (
     ("stress", "stress", "MPa", 1.0),
     ("yield_force", "yields at", "N", 1.0),
     ("rated_force", "rated", "N", 1.0),
+    ("fatigue_factor", "Goodman", "", 1.0),
     ("stop_force", "stop closes", "N", 1.0),
     ("linear_force", "linear to", "N", 1.0),
     ("signal", "signal", "mT/N", 1.0),
@@ -268,7 +276,16 @@ def golden(design: PlanarDesign) -> dict[str, dict]:
     }
 
 
-STRENGTH = ("kind", "stiffness", "rated_force", "yield_force", "stop_force", "linear_force", "stress")
+STRENGTH = (
+    "kind",
+    "stiffness",
+    "rated_force",
+    "fatigue_factor",
+    "yield_force",
+    "stop_force",
+    "linear_force",
+    "stress",
+)
 
 
 def strength(layout: PlanarLayout) -> bytes:
