@@ -84,8 +84,7 @@ def _placed(layout: Layout, instead: Mapping[int, Part], stops: bool) -> Builder
     z = layout.carrier_bottom + fixing.under_head
     for sx, sy in ((1, -1), (-1, -1), (1, 1), (-1, 1)):
         at = (sx * layout.carrier_screw_x, sy * layout.end_plate_y, z)
-        name = b.place("SC", screw, at, DOWN, CARRIER)
-        b.meet(name, "CA1")
+        name = b.place("SC", screw, at, DOWN, CARRIER, "CA1")
         b.meet(name, "EP1" if sy < 0 else "EP2", "thread")
     if stops:
         _stop_plate(b, layout, on_ledge)
@@ -146,8 +145,7 @@ def _clamping(b: Builder, layout: Layout) -> None:
             _tie_rod(b, layout, x, c.screw)
             continue
         screw = screws.cap_screw(d.clamp.screw, c.screw)
-        name = b.place("SC", screw, (x, -(face + c.head_plate_web), z), ALONG_Y, COPLANAR)
-        b.meet(name, "EP1")
+        name = b.place("SC", screw, (x, -(face + c.head_plate_web), z), ALONG_Y, COPLANAR, "EP1")
         b.meet(name, "EP2", "thread")
     pin = standard_parts.dowel(d.clamp.dowel, c.dowel)
     for x in (side * x for side in (1, -1) for x in layout.dowel_x):
@@ -173,8 +171,7 @@ def _stop_plate(b: Builder, layout: Layout, on_ledge: list[str]) -> None:
     length = present(layout.hold_down.length)
     screw = screws.set_screw(layout.design.clamp.screw, length)
     for x, y in ((side * layout.hold_down_x, y) for side in (1, -1) for y in layout.hold_down_y):
-        name = b.place("SS", screw, (x, y, layout.stop_plate_top + length), DOWN, HOLD_DOWN)
-        b.meet(name, plate)
+        name = b.place("SS", screw, (x, y, layout.stop_plate_top + length), DOWN, HOLD_DOWN, plate)
         b.meet(name, "CA1", "thread")
 
 
