@@ -102,9 +102,12 @@ class Trial:
                 yield from self._spanner_room(step, moment)
             if move.by == HAND:
                 loose = [body for body in loose if not {*body} & {*move.designators}] + [move.designators]
-            elif self.placed[move.designators[0]].part.kind in HEADED and not step.apart:
-                met = [b for b in loose if any(frozenset((move.designators[0], n)) in self.kind for n in b)]
-                for body in met:
+            elif (driven := self.placed[move.designators[0]].part.kind) in HEADED and not step.apart:
+                no = (None, "thread") if driven == "nut" else (None,)  # its own rod
+                pairs = {
+                    n: self.kind.get(frozenset((move.designators[0], n))) for body in loose for n in body
+                }
+                for body in [b for b in loose if any(pairs[n] not in no for n in b)]:
                     yield from self._held_room(step, moment, body)
                     loose.remove(body)
             at |= dict.fromkeys(move.designators, move.path[-1])
