@@ -33,7 +33,7 @@ PLACE_LENGTH = 25.0  # mm, up to which an etched place keeps its tolerance: row 
 
 
 @dataclass(frozen=True)
-class Limit:
+class FoilLimit:
     """Of a length in the foil: the larger of a share of the foil's thickness and a least value, mm."""
 
     share: float
@@ -50,10 +50,10 @@ class FoilProcess:
     name: str
     thinnest: float
     thickest: float
-    slot: Limit
-    web: Limit
-    inside_radius: Limit
-    tolerance: Limit
+    slot: FoilLimit
+    web: FoilLimit
+    inside_radius: FoilLimit
+    tolerance: FoilLimit
     source: str
 
     def place(self, length: float) -> float:
@@ -64,7 +64,7 @@ class FoilProcess:
 
 def _process(row: dict[str, str]) -> FoilProcess:
     pairs = ((row[f"{of}_share"], row[f"{of}_least"]) for of in ("slot", "web", "inside", "tolerance"))
-    slot, web, inside, cut = (Limit(float(share), float(least)) for share, least in pairs)
+    slot, web, inside, cut = (FoilLimit(float(share), float(least)) for share, least in pairs)
     low, high = float(row["thinnest"]), float(row["thickest"])
     return FoilProcess(row["name"], low, high, slot, web, inside, cut, row["source"])
 
