@@ -46,6 +46,16 @@ def texts(name: str, part) -> list[str]:
     return runs
 
 
+@pytest.mark.parametrize("name", ["planar", "jaw"])
+def test_every_made_part_has_its_sheet_and_states_its_limits(name):
+    """None is left unstated, or the sheet is refused; wells and openings may be 0.05 wider."""
+    lay = layout(name)
+    made = [parts.frame(lay), parts.base(lay), parts.lower_spacer(lay), parts.cover(lay), parts.post(lay)]
+    said = {part.part_no.rpartition("-")[2]: " ".join(texts(name, part)) for part in made}
+    assert said["base"].count("+0.05") == 2 and said["cover"].count("+0.05") == 1
+    assert "tabs, if any" in said["spacer"]
+
+
 def test_the_jaw_s_foil_by_hand():
     """Opening = pitch - web; a straight beam from the island's edge, a pinwheel's from its ear, to the frame;
     ears stand over their beam by twice the fillet."""
