@@ -49,7 +49,7 @@ def guide(scene: str) -> dict[str, str]:
 @cache
 def bill(scene: str) -> dict[str, dict[str, str]]:
     made = make_scene(load("macro-array"), scene)
-    return {row["part_no"]: row for row in rows(csv_bytes(bom_rows(made, "A", {})))}
+    return {row["part_no"]: row for row in rows(csv_bytes(bom_rows(made, None, {})))}
 
 
 @cache
