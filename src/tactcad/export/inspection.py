@@ -35,7 +35,8 @@ def inspection_bytes(layout: Any) -> bytes:
         head = (identity.name, identity.of_part(part_no).revision)
         for m in dimensions:
             name = (place.designator, part_no, m.name, "yes" if m.key else "")
-            rows.append((*head, *name, m.nominal, m.lower, m.upper, UNIT, "", "", m.where, m.how))
+            limits = (round(v, 6) for v in (m.nominal, m.lower, m.upper))  # 0.25 - 0.005 is a binary fraction
+            rows.append((*head, *name, *limits, UNIT, "", "", m.where, m.how))
     return _csv(rows)
 
 
@@ -118,7 +119,12 @@ def _size(part: Part, c: Characteristic) -> tuple[str, str]:
     if len(c.between) == 2:
         a, b = (_plain(f) for f in c.between)
         return f"from {a} to {b}, at both faces", f"measuring microscope or height gauge, {_reads(width)}"
-    return "across the hole, at both faces", f"plug gauges, {c.lower:g} goes and {c.upper:g} does not"
+    if {*c.between} & {"bore", *(f.name for f in part.features)}:
+        return "across the hole, at both faces", f"plug gauges, {c.lower:g} goes and {c.upper:g} does not"
+    return (
+        f"across the {_plain(c.between[0]).removesuffix(' side')}, at both ends",
+        f"micrometer, {_reads(width)}",
+    )
 
 
 def _zone(part: Part, g: Geometric) -> tuple[str, str]:

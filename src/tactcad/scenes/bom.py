@@ -17,6 +17,7 @@ from typing import Any
 from tactcad.design.text_values import as_number, as_whole
 from tactcad.design.tree import Identity
 from tactcad.parts.bought.electronic_parts import Supply
+from tactcad.parts.bought.example_makes import example
 from tactcad.parts.language.description import Part, Purchase
 from tactcad.scenes.scene import Scene
 
@@ -102,6 +103,7 @@ def _part_row(item: int, part: Part, scene: Scene, revision: str, file: str, sha
         make_buy="buy" if part.bought else "make",
         material=str(part.material),
         standard_designation=order.designation,
+        alternates="; ".join(filter(None, (example(part), order.alternates))),
         consumable=False,
         file=file,
         sha256=sha256,

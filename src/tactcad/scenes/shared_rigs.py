@@ -252,7 +252,7 @@ def place_force_axis(
     designator, and the moves that put jam nut and tip on its shaft."""
     b.unit("force axis")
     travel = present(rig.design.calibration).axis_travel
-    stage = replace(STAGES[0], travel=travel, maker="", part_no="", verified=False)
+    stage = replace(STAGES[0], travel=travel)
     resolution = present(rig.design.calibration).micrometer_resolution
     aside = min(travel, STAGE / 2)  # the screws are free by then; further down is the base
     zs, z = rig.stage_middle(touch), rig.axis_middle(touch) + height

@@ -17,6 +17,7 @@ from . import beam as closed
 from .beam import MODES, FoilBeam
 
 Array = NDArray[np.float64]
+NEWTON = 8  # steps to the root of a cubic that hardly bends
 
 
 @dataclass(frozen=True)
@@ -114,6 +115,13 @@ class Cell:
         """
         k = closed.stiffness(self.beam)["axial"] * len(self.roots) * self.held
         return float(2.0 * k * (3.0 / (5.0 * self.beam.length)) ** 2 / self.stiffness[2, 2])
+
+    def sunk(self, straight: Array) -> Array:
+        """Sink u where the stiffness at rest would give `straight`, mm: u (1 + c u^2) = straight."""
+        c, u = self.stiffening, straight.copy()
+        for _ in range(NEWTON):
+            u -= (u * (1.0 + c * u * u) - straight) / (1.0 + 3.0 * c * u * u)
+        return u
 
     def linear_range(self, share: float) -> float:
         """Sink up to which K differs by at most that share from its value at rest, mm."""

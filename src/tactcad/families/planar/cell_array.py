@@ -11,6 +11,7 @@ import numpy as np
 from tactcad.parts.array.supplies import supplies as bill_lines
 from tactcad.parts.bought.standard_parts import dowel, dowel_diameter, dowel_limits
 from tactcad.parts.language.description import Part
+from tactcad.parts.language.stock import PLACE
 from tactcad.scenes import scene_names
 from tactcad.scenes.builder import Builder
 from tactcad.scenes.moves import PRESS
@@ -19,8 +20,9 @@ from tactcad.scenes.rig import ARRAY, rig_of
 from tactcad.scenes.scene import Scene
 
 from . import cell_board, parts
-from .cell_layout import PlanarLayout
+from .cell_layout import Kind, PlanarLayout
 from .cell_tables import PlanarDesign
+from .sensor import rows, stop_stress
 
 
 def scene(design: PlanarDesign, _pose: object = None) -> Scene:
@@ -127,6 +129,11 @@ def _laid(layout: PlanarLayout, name: str, on: str) -> tuple[str, ...]:
 
 
 SPIGOT, PLACES = "spigot diameter", "places of dowel holes"
+FOIL, GROWN, SPACER, LAND = (
+    "foil: thickness", "foil: growth of beams", "lower spacer: thickness", "base: depth of lands"
+)  # fmt: skip
+WELL = "base: diameter of wells"
+PLANE = 2.0 * parts.POST_TOLERANCE  # mm: facing rows ask for as much
 MAGNET_PLACE, MAGNET_BOND = "magnet's place along ", "magnet: adhesive over it"
 POST_LENGTH = f"post: {parts.POST_LENGTH}"
 
@@ -144,17 +151,24 @@ class Stacked:
 
 
 def figures(arrays: Stacked) -> dict[str, np.ndarray]:
-    """Stiffness of every cell as built, N/mm: K goes with t^3, and the foil's thickness is common to all; and
-    the distance of its pad below the highest, um."""
-    from .sensor import rows
+    """Stiffness of every cell as built, N/mm; and the distance of its pad below the highest, um."""
+    of = zip(rows(arrays.layout, "", None), arrays.layout.elements)
+    at = [row.stiffness * stiffer(arrays, place.kind) for row, place in of]
+    return {"stiffness": np.hstack(at), "pad_height_um": 1e3 * _below(arrays)}
 
-    at = np.array([row.stiffness for row in rows(arrays.layout, "", None)])
-    t = arrays.layout.design.planar.thickness
+
+def _below(arrays: Stacked) -> np.ndarray:
+    """Every pad below the highest, mm."""
     post = arrays.made[POST_LENGTH]
-    return {
-        "stiffness": at * (1.0 + arrays.made["foil: thickness"] / t) ** 3,
-        "pad_height_um": 1e3 * (post.max(axis=1, keepdims=True) - post),
-    }
+    return np.asarray(post.max(axis=1, keepdims=True) - post)
+
+
+def stiffer(arrays: Stacked, kind: Kind) -> np.ndarray:
+    """K of a kind of cells as made over the drawn one, (arrays, 1): as w t^3/s^3; a beam that is cut wider
+    is as much shorter."""
+    t, w, s = kind.thickness, kind.table.beam_width, kind.beam_length
+    grown = arrays.made[GROWN]
+    return np.asarray((1.0 + arrays.made[FOIL] / t) ** 3 * (1.0 + grown / w) / (1.0 - grown / s) ** 3)
 
 
 def limits(
@@ -163,14 +177,18 @@ def limits(
     """Variables of the layers, magnets, chips and rigs, and their requirements."""
     d, tol, n = layout.design, layout.design.tolerance, len(layout.elements)
     name, t = d.name, layout.design.planar.thickness
-    foil = d.foil_tolerance
+    foil, cut = d.foil_tolerance, layout.process.tolerance(t)
     known = {
         v.name: v
         for v in (
             *_fits(layout),
-            variable("foil: thickness", -foil, foil, stated=((f"{name}-foil", "thickness"),)),
+            variable(FOIL, -foil, foil, stated=((f"{name}-foil", "thickness"),)),
             variable(
-                "lower spacer: thickness",
+                GROWN, -cut, cut, stated=tuple((f"{name}-foil", f"beam width, {k.name}") for k in layout.used)
+            ),
+            variable(LAND, -parts.LAND_DEPTH, parts.LAND_DEPTH),
+            variable(
+                SPACER,
                 -tol.stop_gap / 2.0,
                 tol.stop_gap / 2.0,
                 stated=((f"{name}-lower-spacer", "thickness"),),
@@ -188,11 +206,16 @@ def limits(
         )
     }
 
-    def pads(a: Stacked) -> np.ndarray:
-        return np.ptp(a.made[POST_LENGTH], axis=1, keepdims=True)
-
     def stiffness(a: Stacked) -> np.ndarray:
-        return (1.0 + a.made["foil: thickness"] / t) ** 3 - 1.0
+        return np.hstack([stiffer(a, kind) for kind in layout.used]) - 1.0
+
+    def stress(a: Stacked) -> np.ndarray:
+        """On the stop over yield: goes with the foil's thickness, and with the island's way."""
+        ways = (
+            (k, k.table.stop_gap + a.made[SPACER] + parts.sunk(layout, k) * a.made[LAND]) for k in layout.used
+        )
+        on_stop = np.hstack([stop_stress(layout, kind, way) for kind, way in ways])
+        return (1.0 + a.made[FOIL] / t) * on_stop / d.material.yield_strength
 
     of_rigs: dict[str, Requirement] = {}
     for scene in scenes:
@@ -204,35 +227,37 @@ def limits(
         [v for v in known if v.startswith(MAGNET_PLACE + axis)] or [MAGNET_PLACE + axis] for axis in "xy"
     ]
     known |= {v: replace(asked, name=v) for (v, *_) in places if v not in known}
+    wells = tuple((f"{name}-base", f"{parts.WELL}, {k.name}") for k in layout.used)
+    known[WELL] = variable(WELL, 0.0, parts.BORED, n, wells)
+    for terms, axis in zip(places, "xy"):
+        stated = tuple((f"{name}-base", f"well {k.name} holes") for k in layout.used)
+        at = variable(f"base: places of wells along {axis}", -PLACE / 2.0, PLACE / 2.0, n, stated)
+        known[at.name] = at
+        terms.append(at.name)
+
+    tips = (t / 2.0 + d.magnet.height) / (layout.pad_height - d.post.stand_out)  # to a post's way
 
     def well(a: Stacked) -> np.ndarray:
         x, y = (sum((a.made[v] for v in terms), np.zeros(n)) for terms in places)
-        return d.housing.well - d.housing.side_gap - np.hypot(x, y)
+        return d.housing.well + a.made[WELL] / 2.0 - tips * d.housing.side_gap - np.hypot(x, y)
 
     lift = d.housing.lift
     return known, [
         *_slips(layout),
-        Requirement("pads in one plane", "mm", -inf, 0.04, pads, fields=("post.stand_out",)),
+        Requirement("pads in one plane", "mm", -inf, PLANE, _below, fields=("post.stand_out",)),
         Requirement("K as drawn", "", -0.2, 0.2, stiffness, fields=("tolerance.thickness",)),
+        Requirement("stop keeps the beams from yielding, as made", "", -inf, 1.0, stress),
         Requirement("magnets clear of their wells", "mm", 0.02, inf, well, fields=("housing.well",)),
         summed("feet clear of the cover", 0.05, inf, lift, (("upper spacer: thickness", 1.0),)),
         summed(
-            "island's way down",
-            0.7 * -layout.base_z,
-            1.3 * -layout.base_z,
-            -layout.base_z,
-            (("lower spacer: thickness", 1.0),),
+            "island's way down", 0.7 * -layout.base_z, 1.3 * -layout.base_z, -layout.base_z, ((SPACER, 1.0),)
         ),
         summed(
             "magnet to chip",
             0.9 * d.hall.gap,
             1.1 * d.hall.gap,
             d.hall.gap,
-            (
-                ("base: thickness", 1.0),
-                ("lower spacer: thickness", 1.0),
-                *((v, -1.0) for v in known if v == MAGNET_BOND),
-            ),
+            (("base: thickness", 1.0), (SPACER, 1.0), *((v, -1.0) for v in known if v == MAGNET_BOND)),
         ),
         *of_rigs.values(),
     ]

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from math import ceil
+from math import ceil, hypot
 
 from tactcad.contour import Contour, Corner, rectangle, rounded_polygon
 
@@ -66,6 +66,11 @@ class Kind:
         """Half of the island's side, ears included."""
         t = self.table
         return self.beam_offset + t.beam_width / 2.0 + self.rim if self.pinwheel else t.island / 2.0
+
+    @property
+    def corner(self) -> float:
+        """From the middle to the island's corner, or its ear's, mm."""
+        return hypot(self.reach, self.table.island / 2.0)
 
     @cached_property
     def beam(self) -> FoilBeam:

@@ -90,7 +90,7 @@ def to_text(cells: Sequence[CellMatrix], level: float) -> str:
     if cells[0].stiffness_limit:
         lines.append(
             f"K is the design's, known within {100 * cells[0].stiffness_limit:.2g} % by the foil's "
-            "thickness; a column `sink` (mm) measures it"
+            "thickness and cut; a column `sink` (mm) measures it"
         )
     return "\n".join(lines) + "\n"
 

@@ -25,7 +25,7 @@ def measured(layout: PlanarLayout) -> list[tuple[CellPlace, str, tuple[Measureme
                 True,
                 "",
                 "on the border, near the cell",
-                "micrometer, 0.001",
+                "micrometer, 0.0005 or better",
             ),
         )
 

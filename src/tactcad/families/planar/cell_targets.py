@@ -33,8 +33,9 @@ from tactcad.synthesis.target import origins_of
 from .cell_board import why_none
 from .cell_layout import PlanarLayout
 from .cell_tables import Planar, PlanarDesign
+from .parts import LAND_DEPTH
 from .rules import design_rules
-from .sensor import chip_matrix, closing_force, force_noise, pad_compliance, rated_force
+from .sensor import chip_matrix, force_noise, lowest, pad_compliance, rated_force
 
 Array = NDArray[np.float64]
 Z = 1.959964  # the normal distribution's quantile, of a 95 % interval
@@ -207,17 +208,13 @@ def with_buses(d: PlanarDesign) -> PlanarDesign:
 
 def with_stops(d: PlanarDesign) -> PlanarDesign:
     """Stops that close just above the rated force, as the rule on them asks."""
-    for name in KINDS:
-        layout = PlanarLayout(d)
-        kind = layout.kinds[name]
-        _, rated = rated_force(layout, kind)
-        sink = rated * float(kind.cell.compliance[2, 2])
-        roots = np.roots([kind.cell.stiffening, 0.0, 1.0, -sink])
-        straight = float(roots[np.abs(roots.imag) < 1e-9].real.max())
-        gap = max(straight, layout.process.thinnest)
-        gap = round(STEP * ceil(gap / STEP - 1e-9), 6)
+    layout = PlanarLayout(d)
+    ways = {name: lowest(layout, kind, rated_force(layout, kind)[1]) for name, kind in layout.kinds.items()}
+    for name, way in ways.items():
+        sunk = LAND_DEPTH if way > min(ways.values()) else 0.0
+        least = max(way + d.tolerance.stop_gap / 2.0 + sunk, layout.process.thinnest)
+        gap = round(STEP * ceil(least / STEP - 1e-9), 6)
         d = replace(d, **{name: replace(getattr(d, name), stop_gap=gap)})
-        assert closing_force(PlanarLayout(d), PlanarLayout(d).kinds[name]) >= rated
     return d
 
 

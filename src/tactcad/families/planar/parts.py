@@ -41,7 +41,7 @@ from .cell_tables import FoilProcess
 SCREW, DOWEL = "M2", "2"
 LARGEST_STEP = 20.0  # mm between screws along an edge; chosen: what keeps 1 mm of base flat under them
 POST_LENGTH, POST_TOLERANCE = "length over the shoulder", 0.01  # mm, plus and minus; chosen: a small lathe's
-PAD = "pad side diameter"
+PAD, WELL = "pad side diameter", "well diameter"
 PAD_FIELD = 0.02  # mm by which a pad may be smaller than drawn; chosen: a cap slips over it
 SPIGOT = 0.01  # mm by which a post's spigot may be thinner than drawn; chosen, likewise
 MAGNET_LIMIT = (
@@ -54,6 +54,7 @@ DOWEL_HOLE = "dowel hole diameter"
 # one clamping; field of a reamed hole: ISO 286, H8 of 1 to 3 mm; depth of the sunk lands, plus and minus:
 # chosen.
 PLATE_ZONE, STOP_FLAT, REAMED, LAND_DEPTH = 0.02, 0.01, 0.014, 0.01
+BORED = 0.05  # mm by which wells and posts' openings may be wider than drawn; chosen: a drill
 FOOT_INSET = 0.03  # mm of island around its foot plate; chosen: the etching's tolerance
 WEB = 0.8  # mm of base left over the chips' pocket, at least: checks/data/shop.toml's floor of a pocket
 FRAME_CORNER = 0.5  # mm; chosen: a cutter of 1 mm, and room for the outer chips
@@ -240,7 +241,7 @@ def foot(layout: PlanarLayout, kind: Kind) -> Part:
         body=Extrusion(kind.island_outline(layout.sheet_corner(t), FOOT_INSET), t),
         features=(Hole("spigot", (0, 0, 0), (0, 0, 1), bore.nominal, t, True),),
         colour="#8f9aa8" if kind.name == "measuring" else "#5b6673",
-        notes=(contour_note(process, t),),
+        notes=(contour_note(process, t), "plates of both kinds from one strip: the posts stand on them"),
         characteristics=(within("thickness", t, FOOT_THICKNESS, between=FACES), bore),
     )
 
@@ -372,10 +373,12 @@ def base(layout: PlanarLayout) -> Part:
     wells: list[Feature] = []
     for e in layout.elements:
         lower = round(e.kind.table.stop_gap + layout.base_z, 9)
-        sunk = (land_diameter(layout), lower) if lower > 0.0 else None
+        land = (land_diameter(layout), lower) if sunk(layout, e.kind) else None
         name = f"well_{e.kind.name}"
-        wells.append(Hole(name, (e.x, e.y, t), (0, 0, -1), layout.well, t, True, counterbore=sunk))
+        wells.append(Hole(name, (e.x, e.y, t), (0, 0, -1), layout.well, t, True, counterbore=land))
     bore = pressed(float(DOWEL))
+    names = [f"well_{kind.name}" for kind in layout.used]
+    bores = [_bored(f"{WELL}, {name.removeprefix('well_')}", name, layout.well) for name in names]
     deep = max((kind.table.stop_gap for kind in layout.used), default=0.0) + layout.base_z
     lands = f"counterbores {deep:.3g} ±{LAND_DEPTH:g} deep, milled in one setting with the upper face"
     return milled(
@@ -384,9 +387,9 @@ def base(layout: PlanarLayout) -> Part:
         "Base",
         Extrusion(_outline(layout), t),
         [*_through(layout, t, bore), *wells],
-        {"dowel_hole": PLATE_ZONE, "screw": PLACE, "well_measuring": PLACE, "well_reference": PLACE},
+        {"dowel_hole": PLATE_ZONE, "screw": PLACE, **dict.fromkeys(names, PLACE)},
         (lands,) if deep > 0.0 else (),
-        (bore,),
+        (bore, *bores),
         (Geometric("stop face", "flatness", STOP_FLAT, (FACES[1],)),),
     )
 
@@ -421,12 +424,37 @@ def frame(layout: PlanarLayout) -> Part:
     return milled(layout, "frame", "Board frame", body, holes, {"screw": PLACE})
 
 
+def _bored(name: str, feature: str, least: float) -> Characteristic:
+    return Characteristic(name, least, round(least + BORED, 9), least, between=(feature,))
+
+
+def post_play(layout: PlanarLayout) -> float:
+    """Most that a post is off its opening's middle, mm: places and plays in the foil and in the cover."""
+    foil_, process = layout.design.planar.thickness, layout.process
+    play = spigot_bore(layout, process, foil_).upper - layout.design.post.spigot + SPIGOT
+    zone = foil_zone(layout, process)
+    if layout.screwed:
+        bores = dowel_bore(layout, process, foil_).upper + dowel_bore(layout, None, foil_).upper
+        play += bores - 2.0 * dowel_limits(DOWEL)[0] + PLATE_ZONE + zone
+    return (play + PLACE + zone) / 2.0
+
+
+def travel_limit(layout: PlanarLayout, kind: Kind) -> float:
+    """Most by which an island's way down differs from the drawn one, mm: spacer, and land if it is sunk."""
+    return layout.design.tolerance.stop_gap / 2.0 + sunk(layout, kind) * LAND_DEPTH
+
+
+def sunk(layout: PlanarLayout, kind: Kind) -> bool:
+    """Whether its islands land below the base's upper face."""
+    return kind.table.stop_gap + layout.base_z > 1e-9
+
+
 def cover(layout: PlanarLayout) -> Part:
     """Round openings around the posts, the sideways stops; the screws' threads. z = 0 its lower face."""
     d = layout.design
     t = d.housing.cover_thickness
     opening = round(d.post.pad + 2.0 * d.housing.side_gap, 9)
-    bore = dowel_bore(layout, None, t)
+    bore, room = dowel_bore(layout, None, t), _bored("opening diameter", "post_opening", opening)
     return milled(
         layout,
         "cover",
@@ -434,7 +462,7 @@ def cover(layout: PlanarLayout) -> Part:
         Extrusion(_outline(layout), t),
         [*_through(layout, t, bore, tapped=True), *_round_holes(layout, "post_opening", opening, t)],
         {"dowel_hole": PLATE_ZONE, "screw": PLACE, "post_opening": PLACE},
-        bores=(bore,),
+        bores=(bore, room),
     )
 
 

@@ -6,6 +6,7 @@ from __future__ import annotations
 import argparse
 import json
 from dataclasses import asdict, dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -122,6 +123,20 @@ def closing_force(layout: PlanarLayout, kind: Kind) -> float:
     """At which the island meets the base, N: its stiffness grows with the sink (cell.stiffening)."""
     z, cell = kind.table.stop_gap, kind.cell
     return float(z / cell.compliance[2, 2] * (1.0 + cell.stiffening * z**2))
+
+
+def lowest(layout: PlanarLayout, kind: Kind, force: float) -> float:
+    """How deep the island's corner gets under a force with the rated shear towards it, mm."""
+    c = kind.cell.compliance
+    tilt = layout.design.rating.shear * force * layout.pad_height * float(c[4, 4])
+    return float(kind.cell.sunk(force * c[2, 2:3])[0]) + tilt * kind.corner
+
+
+def aside(layout: PlanarLayout, kind: Kind) -> float:
+    """How far a post moves sideways at the cover's upper face by the rated shear, mm."""
+    shear = np.array([layout.design.rating.shear * rated_force(layout, kind)[1], 0.0, 0.0])
+    motion = kind.cell.compliance @ wrench(shear, layout.pad_height)
+    return float(motion[0] + motion[4] * (layout.pad_height - layout.design.post.stand_out))
 
 
 def neighbours_field(layout: PlanarLayout) -> float:
@@ -266,10 +281,10 @@ def strength(layout: PlanarLayout) -> bytes:
     return ("\r\n".join(lines) + "\r\n").encode()
 
 
-def stop_stress(layout: PlanarLayout, kind: Kind, gap: float) -> float:
-    """Stress of a cell that is pressed down on its stop, `gap` mm deep, with the rated shear of the force
-    that closes it, MPa: by bending, by the beams' stretch of 3 z^2/(5 s^2) if the island cannot turn, and by
-    tipping."""
+def stop_stress(layout: PlanarLayout, kind: Kind, gap: Any) -> Any:
+    """Stress of a cell that is pressed down on its stop, `gap` mm deep (or several), with the rated shear of
+    the force that closes it, MPa: by bending, by the beams' stretch of 3 z^2/(5 s^2) if the island cannot
+    turn, and by tipping."""
     cell = kind.cell
     down = wrench(np.array([0.0, 0.0, -1.0]), layout.pad_height) / cell.compliance[2, 2]
     tip = wrench(np.array([layout.design.rating.shear, 0.0, 0.0]), layout.pad_height)
