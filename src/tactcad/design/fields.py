@@ -211,7 +211,7 @@ class TextLines:
         return tuple(self.item.read(v, f"{where}[{i}]") for i, v in enumerate(value))
 
     def schema(self) -> dict:
-        return {"type": "array", "items": self.item.schema(), "minItems": 1, "uniqueItems": True}
+        return {"type": "array", "items": self.item.schema(), "minItems": 1}
 
 
 @dataclass(frozen=True)

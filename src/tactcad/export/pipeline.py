@@ -160,13 +160,12 @@ def _rebuild(
     why: tuple[str, ...],
     progress: Progress,
 ) -> Exported:
-    from tactcad.scenes import make_scene, refuse_unknown_parts
+    from tactcad.scenes import make_scene
     from tactcad.scenes.scene import at_detail
 
     from .products import Plan
     from .shapes import Shapes
 
-    refuse_unknown_parts(design)
     scenes = [at_detail(make_scene(design, name, options.pose), options.detail) for name in options.scenes]
     plan = Plan(design, options, scenes, Shapes(cache, digest((inputs.sources, inputs.libraries))))
     jobs = plan.jobs()

@@ -127,8 +127,8 @@ def _identified(row: _Row, layout: Layout, known: dict) -> tuple[str, str]:
     if row["design"] != design.name:
         raise row.refusal("design", "a sheet of another design", legal=design.name)
     key = (row["element"], row["characteristic"])
-    of = design.design.of_part(known[key][1] if key in known else "")
-    if row["revision"] != of.revision:
+    of = design.design.of_part(known[key][1]) if key in known else None
+    if of and row["revision"] != of.revision:
         raise row.refusal("revision", "a sheet of another revision", legal=of.revision)
     last = layout.elements[-1].designator
     if row["element"] not in {designator for designator, _ in known}:
