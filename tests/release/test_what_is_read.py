@@ -83,7 +83,7 @@ def packages(name: str) -> dict[str, tuple[dict[str, dict[str, str]], str]]:
         ("grasping", "thin oil", "GUIDE-OIL"),
         ("array", "oil every thread", "ASSEMBLY-OIL"),
         ("array", "thread lacquer", "THREAD-LACQUER"),
-        ("setting", "bar of rubber", "RUBBER-BAR"),
+        ("setting", "bar of rubber for each row", "RUBBER-BAR"),
     ],
 )
 def test_what_a_guide_uses_up_is_in_its_bill(scene, said, part_no):
@@ -176,9 +176,8 @@ def test_what_no_standard_names_has_one_make_as_an_example(name):
         if told or re.match(r"(ISO|DIN) \d", row.standard_designation):
             assert "example" not in row.alternates, row.part_no
             continue
-        said = re.match(
-            r"example: \S.*; drawing (read|unread)(?=;|$)|no example found(?=;|$)", row.alternates
-        )
+        make = r"example: \S.*; drawing (read|unread)(?=;|$)|no example found(?=;|$)"
+        said = re.match(make, row.alternates)
         assert said and (said[1] == "read") == row.source_verified, row.part_no
 
 

@@ -135,6 +135,8 @@ def press_array(
             raise InputError("--angle", "out of range", value=a, legal=legal)
     of = family_of(design).must("pads", "grasp")
     number = of.places(design)[2]
+    if len(number) < 2:
+        raise InputError(design.name, "one pad makes no pair", value=1, legal="two elements or more")
     pads, per_sink = of.springs(design)
     alone = pad_stiffness(body, pads.length, pads.width, pads.disc)
     K = 1 / pads.compliance[:, 0, 0]

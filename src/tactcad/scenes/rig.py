@@ -71,6 +71,16 @@ def none(*_: Any) -> tuple[()]:
     return ()
 
 
+def plain_rig(
+    name: str,
+    make: Callable[[Any, Pose], Scene],
+    rules: tuple[Rule, ...] = (),
+    requirements: Callable[[Any, dict[str, DimensionLimits]], list[Requirement]] = lambda *_: [],
+) -> Rig:
+    """A rig that needs no table, has one pose, and neither a part that deflects nor checks of its own."""
+    return Rig(name, (), make, none, none, rules, lambda _design: iter(()), requirements, ())
+
+
 def all_rigs(spec: type[CommonTables]) -> dict[str, Rig]:
     """Every rig of the family whose designs are of that class, by name: the array, then in the order of their
     tables in a design."""

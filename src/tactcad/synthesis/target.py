@@ -314,15 +314,7 @@ def parse_target(text: str, where: str, folder: Path = Path()) -> Target:
     """A target from TOML text; `where` names the text in messages, and `target.base` as a path is one from
     `folder`. Raises as `read_target`."""
     table = parse_toml(text, where)
-    for name, value in table.items():
-        if name not in (*TABLES, "origin"):
-            raise unknown_field(name, [*TABLES, "origin"], "tactcad schema target")
-        if not isinstance(value, dict):
-            raise InputError(name, "not a table", value=value, legal=f"a table [{name}]")
-    for name in REQUIRED:
-        if name not in table:
-            raise InputError(name, "missing table", legal=f"a table [{name}]")
-    values = {name: read_table(kind, table.get(name, {}), name) for name, kind in TABLES.items()}
+    values, written = tables_of(table, TABLES, REQUIRED)
     base = _base(values["target"].base, folder)
     stock = values["stock"]
     values["stock"] = Stock(
@@ -332,10 +324,26 @@ def parse_target(text: str, where: str, folder: Path = Path()) -> Target:
         stock.gauges or (base.gauge.resistance,),
         stock.powers or (base.readout.power,),
     )
-    written = frozenset(f"{name}.{field}" for name in TABLES for field in table.get(name, {}))
     target = Target(**values, base=base, origin=origins_of(table.get("origin", {}), values), written=written)
     _refuse_contradictions(target)
     return target
+
+
+def tables_of(
+    table: Mapping[str, Any], kinds: Mapping[str, type], required: Sequence[str] = ()
+) -> tuple[dict[str, Any], frozenset[str]]:
+    """Values of a target file's tables of these kinds, and the paths of the fields that are written. Raises
+    InputError for what is unknown, missing or illegal."""
+    for name, value in table.items():
+        if name not in (*kinds, "origin"):
+            raise unknown_field(name, [*kinds, "origin"], "tactcad schema target")
+        if not isinstance(value, dict):
+            raise InputError(name, "not a table", value=value, legal=f"a table [{name}]")
+    for name in required:
+        if name not in table:
+            raise InputError(name, "missing table", legal=f"a table [{name}]")
+    values = {name: read_table(kind, table.get(name, {}), name) for name, kind in kinds.items()}
+    return values, frozenset(f"{name}.{field}" for name in kinds for field in table.get(name, {}))
 
 
 def _base(name: str, folder: Path) -> Design:

@@ -316,6 +316,30 @@ def test_a_square_of_a_pad_s_area_is_nearly_as_stiff(thickness):
     assert 1.0 <= square / disc < 1.03
 
 
+def test_one_cell_feels_forces_and_no_object(bench, tmp_path, capsys, recwarn):
+    folder, _ = bench
+    text = (
+        (folder / "small.toml")
+        .read_text()
+        .replace("rows = 2", "rows = 1")
+        .replace("columns = 2", "columns = 1")
+    )
+    (tmp_path / "one.toml").write_text(text)
+    for name in ("calibration", "grasp"):
+        header, *rows = (folder / f"{name}.csv").read_text().splitlines()
+        own = [r for r in rows if r.split(",")[header.split(",").index("element")] == "1"]
+        (tmp_path / f"{name}.csv").write_text("\n".join([header, *own]) + "\n")
+    of = ("--design", tmp_path / "one.toml")
+    assert run("calibrate", tmp_path / "calibration.csv", *of, "--out", tmp_path / "cal.csv") == 0
+    asked = ("stiffness", tmp_path / "grasp.csv", "--calibration", tmp_path / "cal.csv", *of)
+    assert run(*asked, "--picture", tmp_path / "map.svg") == 0
+    assert "K_obj of all cells wants 3 loads above zero, and two cells or more" in capsys.readouterr().out
+    assert not [w for w in recwarn if issubclass(w.category, RuntimeWarning)]
+    body = ("--object", "E=0.1,nu=0.49,thickness=8", "--load", "0.2")
+    assert run("grasp", tmp_path / "one.toml", *body) == 2
+    assert "one pad makes no pair" in capsys.readouterr().err
+
+
 def changed(text: str, line: int, **cells: str) -> str:
     """The table with cells of one line changed, by column."""
     lines = text.splitlines()

@@ -20,6 +20,7 @@ from tactcad.design.messages import InputError
 from tactcad.export.inspection import inspection_bytes
 from tactcad.families.planar import cell_array, parts
 from tactcad.families.planar.cell_layout import PlanarLayout
+from tactcad.families.planar.checks import check_strength
 from tactcad.families.planar.rules import design_rules
 from tactcad.families.planar.sensor import chip_matrix, closing_force, rows, stop_stress, strength
 from tactcad.parts.bought.standard_parts import dowel_limits
@@ -105,12 +106,21 @@ def test_estimate_tells_ratio_resolution_and_stops(layout):
         assert (
             row.stop_force == pytest.approx(closing_force(layout, kind)) and row.stop_force > row.rated_force
         )
+        # Goodman's line from the sheet metal's row, Marin's factor of a machined surface
+        m, half = layout.design.material, row.rated_force * row.stress / row.force / 2
+        marin = 4.51 * m.tensile_strength**-0.265
+        assert 1 / row.fatigue_factor == pytest.approx(
+            half / (marin * m.fatigue_strength) + half / m.tensile_strength
+        )
         # noise: the chip's own, through the inverse of the matrix, by drawing it
         noise = np.array([layout.chip.noise_xy] * 2 + [layout.chip.noise_z]) * 1e-3
         drawn = np.linalg.solve(
             chip_matrix(layout, kind), (np.random.default_rng(1).normal(size=(4000, 3)) * noise).T
         )
         assert drawn.std(axis=1)[[0, 2]] == pytest.approx([row.force_noise_x, row.force_noise_z], rel=0.05)
+    flags = {f.check: f for f in check_strength(layout.design) if f.part == "E2"}
+    tired = flags["planar-fatigue"]
+    assert tired.value == pytest.approx(tired.limit * soft.fatigue_factor) and tired.value < soft.rated_force
     table = list(csv.DictReader(io.StringIO(strength(layout).decode())))
     assert [r["element"] for r in table] == [e.designator for e in layout.elements]
 

@@ -7,14 +7,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tactcad.design.csv_table import Field, read
 from tactcad.design.messages import InputError
 from tactcad.lab.readings import ELEMENT
 from tactcad.report.report import plain
 
-Array = NDArray[np.float64]
+from .beam import Array, Whole
+
 AXES = "xyz"
 GRID = tuple(f"{i}{j}" for i in AXES for j in AXES)
 PAIRS = ([0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2])  # rows and columns of a covariance's entries
@@ -117,7 +117,7 @@ def to_csv(cells: Sequence[CellMatrix]) -> str:
 class Matrices:
     """Matrices of calibrated cells; arrays, [cell]: see `CellMatrix`."""
 
-    element: NDArray[np.int64]
+    element: Whole
     matrix: Array
     bow: Array
     bow_variance: Array

@@ -10,14 +10,13 @@ from collections.abc import Sequence
 from math import hypot
 
 import numpy as np
-from numpy.typing import NDArray
 
-from .cell import wrench
+from .beam import Array
+from .cell import unit_loads
 from .cell_layout import CellPlace, Kind, PlanarLayout
 from .field import felt, sensitivity
 from .sensor import NEIGHBOURS, chip_matrix, magnet_lever
 
-Array = NDArray[np.float64]
 DOWN = np.array([1.0, 1.0, -1.0])  # a pressing force is along -z of the design
 
 
@@ -37,8 +36,7 @@ def bend(layout: PlanarLayout, kind: Kind, force: Array) -> Array:
 
 def _motion(layout: PlanarLayout, kind: Kind, force: Array) -> Array:
     """Of the island, mm and rad, [n, 6]."""
-    load = np.stack([wrench(f, layout.pad_height) for f in np.eye(3)], axis=1)
-    motion = np.asarray(force * DOWN @ (kind.cell.compliance @ load).T)
+    motion = np.asarray(force * DOWN @ (kind.cell.compliance @ unit_loads(layout.pad_height)).T)
     motion[:, 2] = kind.cell.sunk(motion[:, 2])
     return motion
 
@@ -87,7 +85,7 @@ def all_bends(layout: PlanarLayout, kinds: Sequence[Kind], force: Array) -> Arra
 def neighbours(layout: PlanarLayout, cells: Sequence[CellPlace]) -> Array:
     """The field at every chip by forces on the other pads, mT/N, [3 cell, 3 cell]; its own pad left out."""
     p, gap, lever = layout.design.planar, layout.design.hall.gap, magnet_lever(layout)
-    load = np.stack([wrench(f, layout.pad_height) for f in np.eye(3)], axis=1)
+    load = unit_loads(layout.pad_height)
     moves = {kind.name: kind.cell.compliance @ load * DOWN for kind in layout.used}
     slopes: dict[tuple[int, int], Array] = {}
     out = np.zeros((len(cells), 3, len(cells), 3))

@@ -69,16 +69,9 @@ class FoilProcess:
 
 
 def _table(kind: type, name: str) -> dict[str, Any]:
-    text = {f for f, t in kind.__annotations__.items() if t == "str"}
-    return {
-        row["name"]: kind(
-            **{
-                key: value if key in text else int(value) if key == "addresses" else float(value)
-                for key, value in row.items()
-            }
-        )
-        for row in data_rows(__file__, name)
-    }
+    types = {f: {"str": str, "int": int, "float": float}[t] for f, t in kind.__annotations__.items()}
+    rows = data_rows(__file__, name)
+    return {row["name"]: kind(**{key: types[key](value) for key, value in row.items()}) for row in rows}
 
 
 CHIPS: dict[str, Chip] = _table(Chip, "chips")

@@ -1,4 +1,4 @@
-"""One make of each part that is bought by description, as an example for its buyer: data/example_makes.csv."""
+"""One make of each part that is bought by description, as an example: data/example_makes.csv."""
 
 from __future__ import annotations
 

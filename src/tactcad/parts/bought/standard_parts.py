@@ -50,7 +50,7 @@ def dowel(size: str, length: float) -> Part:
     )
     return Part(
         part_no=f"ISO8734-{size}x{length:g}-pin" if standard else f"GROUND-{size}m6x{length:g}-rod",
-        name=f"Dowel pin {size}x{length:g}",
+        name=f"{'Dowel pin' if standard else 'Ground rod'} {size}x{length:g}",
         process="bought",
         material=HARDENED,
         body=Extrusion(circle((0, 0), dowel_diameter(size)), length),

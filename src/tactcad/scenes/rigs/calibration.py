@@ -66,6 +66,7 @@ FRONT = -250.0  # mm along y, where the mount is assembled
 IN_FRONT: Vector = (0.0, FRONT, RAISED / 2)  # from its final place
 BLOCK = (35.0, 9.0)  # mm: section of gauge blocks over 10 mm (ISO 3650)
 Names = tuple[str, ...]
+ROLLED = 0.8  # of the gauge's range, on the block; chosen: a step more is no overload
 Mounted = tuple[Names, str, Names, Names]  # array, mount, screws into the carrier and into the stage
 OUT_OF_X: Rotation = ((0, 0, -1), (0, 1, 0), (1, 0, 0))  # local z runs along -x
 
@@ -113,8 +114,9 @@ def calibration(design: Design, pose: Pose = REST) -> Scene:
     b.step(
         "Stiffness of gauge and stand",
         (0, 0, 0),
-        f"Measure the gauge in its stand on the block under the roller. {_series(design)} Drive the "
-        f"roller up by {RAISED:g} mm and take the block away.",
+        f"Measure the gauge in its stand on the block under the roller, in steps of the micrometer up to "
+        f"{ROLLED * c.load_cell_range:.3g} N and no further: the block does not give way. {_series(design)} "
+        f"Drive the roller up by {RAISED:g} mm and take the block away.",
         order=[raised(b), Move((block,), STILL, ((0.0, 0.0, RAISED / 2), (0.0, -150.0, RAISED / 2)))],
         needs=(
             Need((contact, under), "the roller presses a block on the upper stage"),
@@ -198,8 +200,8 @@ def _stages(b: Builder, rig: StandLayout, dx: float, dy: float) -> str:
         (0, 0, 55),
         "On the bench: set the y stage on the x stage, a quarter turn off, so that its micrometer points to "
         "the front where the other's points to the left. The square pattern of threads fits each way: look "
-        "at the micrometers. Drive the y stage to one end until two screws are free, fix them; drive it to "
-        "the other end and fix the other two, square to the x stage within 0.02 mm on 20 mm. Then drive "
+        "at the micrometers. Drive the y stage to one end until two holes are free, fix it there; drive it "
+        "to the other end and fix the other two, square to the x stage within 0.02 mm on 20 mm. Then drive "
         "it to the middle of its travel.",
         bench=True,
         at=BESIDE,
@@ -215,8 +217,8 @@ def _stages(b: Builder, rig: StandLayout, dx: float, dy: float) -> str:
         "Stages on the base plate",
         (0, 0, 30),
         "Set both on the base plate, the lower micrometer to the left (-x), the upper one to the front, away "
-        "from the post. Drive the x stage to one end until two screws are free, fix them; drive it to the "
-        "other end and fix the other two. Then drive it to the middle of its travel.",
+        "from the post. Drive the x stage to one end until two holes are free, fix it there; drive it to "
+        "the other end and fix the other two. Then drive it to the middle of its travel.",
         order=[
             Move((x_fixed, x_moving, x_micrometer, *upper, *on_x), BESIDE, (OVER, STILL)),
             *driven((x_moving, *upper, *on_x), fixings[0], (1.0, 0.0, 0.0), stage.travel, dx),
