@@ -10,7 +10,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from cell_labs import loops_field
 from scipy.optimize import brentq
+from scipy.spatial.transform import Rotation
 from scipy.stats import truncnorm
 
 from tactcad.contour.inside import side
@@ -22,7 +24,14 @@ from tactcad.families.planar import cell_array, parts
 from tactcad.families.planar.cell_layout import PlanarLayout
 from tactcad.families.planar.checks import check_strength
 from tactcad.families.planar.rules import design_rules
-from tactcad.families.planar.sensor import chip_matrix, closing_force, rows, stop_stress, strength
+from tactcad.families.planar.sensor import (
+    chip_matrix,
+    closing_force,
+    object_errors,
+    rows,
+    stop_stress,
+    strength,
+)
 from tactcad.parts.bought.standard_parts import dowel_limits
 from tactcad.parts.rules import load
 from tactcad.review.effect import Reviewed, same_elements
@@ -125,6 +134,31 @@ def test_estimate_tells_ratio_resolution_and_stops(layout):
     assert [r["element"] for r in table] == [e.designator for e in layout.elements]
 
 
+def test_a_matrix_changes_as_the_field_of_the_simulator_does(layout):
+    """Central differences of the tests' own current loops and exact turns, at rest and at the rated force."""
+    shear, gap = layout.design.rating.shear, layout.design.hall.gap
+    lever, m = layout.design.planar.thickness / 2 + layout.design.magnet.height, layout.magnet
+    for row in {row.kind: row for row in rows(layout, "", None)}.values():
+        cell, load = layout.kinds[row.kind].cell, np.zeros((6, 3))
+        load[:3], load[3, 1], load[4, 0] = np.eye(3), -layout.pad_height, layout.pad_height
+
+        def felt(force, cell=cell, load=load):
+            move, bow = cell.compliance @ load @ force, cell.stiffening
+            move[2] = brentq(lambda u: u * (1 + bow * u * u) - move[2], -1, 1)
+            turned = Rotation.from_rotvec(move[3:])
+            low = move[:3] + turned.apply([0, 0, -lever])
+            at = turned.inv().apply(np.array([0, 0, -lever - gap]) - low)
+            return turned.apply(loops_field(m.radius, m.height, m.remanence, at))
+
+        def matrix(force, felt=felt):
+            steps = 1e-3 * row.rated_force * np.eye(3)
+            return np.array([(felt(force + s) - felt(force - s)) / (2 * s.max()) for s in steps]).T
+
+        rest, rated = matrix(np.zeros(3)), matrix(row.rated_force * np.array([shear, 0, -1.0]))
+        change = np.abs(rated - rest).max() / np.abs(rest).max()
+        assert row.matrix_change == pytest.approx(change, abs=0.005)
+
+
 def told(found, object_stiffness, matrices):
     """Relative error of K_obj, of a cell of each kind on it, pressed until one is at its rated force: by the
     slope of F_m / F_r and its errors, which are the noise and that of the matrices."""
@@ -147,6 +181,7 @@ def test_the_jaw_s_file_says_what_can_be_had_there():
     for row in (soft, stiff):
         assert f"{1e3 * row.force_noise_x:.2f} mN" in said and f"{1e3 * row.force_noise_z:.2f} mN" in said
     errors = [[100 * told(found, k, m) for k in (0.5, 1.0, 5.0, 20.0)] for m in (0.0, 0.01)]
+    assert [100 * e for e in object_errors(lay).values()] == pytest.approx(errors[0], rel=1e-6)
     text = "{:.1f} % at 0.5 N/mm, {:.1f} % at 1, {:.1f} % at 5 and {:.1f} % at 20".format(*errors[0])
     assert text in said and "{:.1f}, {:.1f}, {:.1f} and {:.1f} %".format(*errors[1]) in said
 
@@ -263,6 +298,9 @@ FAULTS = {  # by what was asked: a change of the design, the rule that it breaks
         "border = 5.0", "border = 5.0\nside_gap = 0.21", "posts_clear_cover", "measuring cell meets",
     ),
     "posts that meet": ("pad = 2.4", "pad = 7.6", "island_takes_post", "meet at rated shear"),
+    "chips that are read too seldom": (
+        "buses = 3", "buses = 3\nrate = 61.0", "chips_fit", "36 chips MLX90393 are not read so often",
+    ),
     "two chips of one address": ("buses = 3", "buses = 2", "chips_fit", "two would have one address"),
 }  # fmt: skip
 

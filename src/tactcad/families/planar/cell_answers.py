@@ -217,7 +217,10 @@ def record(a: CellAnswer, count: int, until: float = inf) -> dict[str, Any]:
     reached = best.half_width <= limit and kept / count >= t.target.share
     k, layout, pair = t.points, PlanarLayout(best.design), (best.soft, best.stiff)
     width = half_width(*pair, t.planar, k)
-    parts = [float(v[int(np.argmax(width))]) for v in targets.variances(*pair, t.planar, k)]
+    parts = [
+        float(v[int(np.argmax(width))])
+        for v in targets.variances(*pair, t.planar.readings, t.planar.matrices, k)
+    ]
     causes = ("noise of the measuring cell", "noise of the reference cell", "matrices")
     why = why_none(layout)
     out |= {

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from math import floor, inf, log10
+from math import ceil, floor, inf, log10
 
 import numpy as np
 
@@ -98,8 +98,11 @@ def cradle_holds_array(layout: PlanarLayout) -> Iterator[Finding]:
     what = f"the array is {longest:g} mm long, and the calibration's hanger goes round {LONGEST:g} mm"
     yield from no_more(layout, "planar.pitch", what, layout.design.planar.pitch * LONGEST / longest)
     apart, border = rig.pins[1][0] - rig.pins[0][0], layout.design.housing.border
-    least = border + max(2.0 * float(cradle.PIN) - apart, 0.0) / 2.0
-    yield from no_less(layout, "housing.border", "the cradle's two pins meet", least)
+    x0, y0, x1, y1 = rig.box
+    rest = OFF_AXIS - LEVEL - 1e3 * rig.zone / min(x1 - x0, y1 - y0)  # mrad that the pins' places may take
+    lacking = max(1e3 * cradle.PIN_ZONE / rest - apart, 0.0) / 2.0
+    what = f"{apart:g} mm between the cradle's two pins do not hold the array square"
+    yield from no_less(layout, "housing.border", what, border + ceil(1e3 * lacking) / 1e3)
     what = "the cradle's clamp finds no cover beside the link"
     yield from no_less(layout, "housing.border", what, border + LEAST_LIP - rig.lip)
 

@@ -132,6 +132,7 @@ class Hall:
     gap: float = given(Number("mm", 0.2, 20, "magnet at rest to chip"), 1.5)
     board: float = given(Number("mm", 0.2, 5, "board that carries the chips"), 1.0)
     buses: int = given(Whole(1, 400, "buses, or lines of a multiplexer, that the chips share"), 4)
+    rate: float = given(Number("Hz", 0.01, 1000, "readings of every chip a second, at least"), 20.0)
 
 
 @dataclass(frozen=True)

@@ -223,24 +223,26 @@ def fits(layout: PlanarLayout, name: str) -> bool:
     return not any(f.part.startswith(f"{name}.") for f in found)
 
 
-def variances(soft: CellRead, stiff: CellRead, m: CellMeans, k: Array) -> tuple[Array, Array, Array]:
+def variances(
+    soft: CellRead, stiff: CellRead, readings: int, matrices: float, k: Array
+) -> tuple[Array, Array, Array]:
     """Of ln K_obj at stiffnesses k: noise of the measuring cell, of the reference cell, and both matrices."""
     way_m, way_r = 1.0 / soft.stiffness + 1.0 / k, 1.0 / stiff.stiffness + 1.0 / k
     way = np.minimum(soft.rated * way_m, stiff.rated * way_r)
     slope = (1.0 / way_r - 1.0 / way_m) / k
     with np.errstate(divide="ignore"):
         one, other = (
-            (cell.noise * ways / way / slope) ** 2 / m.readings
+            (cell.noise * ways / way / slope) ** 2 / readings
             for cell, ways in ((soft, way_m), (stiff, way_r))
         )
-        return one, other, 2.0 * (m.matrices / slope) ** 2
+        return one, other, 2.0 * (matrices / slope) ** 2
 
 
 def half_width(soft: CellRead, stiff: CellRead, m: CellMeans, k: Array) -> Array:
     """Of the 95 % interval of K_obj, relative, at stiffnesses k; infinite where the kinds do not differ."""
     if stiff.stiffness <= soft.stiffness:
         return np.full(np.shape(k), np.inf)
-    return Z * np.sqrt(sum(variances(soft, stiff, m, k)))
+    return Z * np.sqrt(sum(variances(soft, stiff, m.readings, m.matrices, k)))
 
 
 def pair_half_width(t: CellTarget, layout: PlanarLayout) -> float:

@@ -21,6 +21,7 @@ from .sensor import aside, largest_field, lowest, neighbours_field, rated_force,
 
 LAND = 0.1  # mm of an island on the base around its well, at least; chosen
 PULL = 0.01  # of the rated force, by a neighbour's magnet; chosen: matrices are known to about that
+TRANSFER = 0.3  # ms of a bus a reading: 12 bytes to and fro at 400 kHz, start and addresses included
 CLEAR = 0.1  # mm between parts that pass each other, at least; chosen
 
 
@@ -122,6 +123,10 @@ def chips_fit(layout: PlanarLayout) -> Iterator[Finding]:
     if count > most:
         what = f"{count} chips {chip.name} with {chip.addresses} addresses a bus: two would have one address"
         yield wrong("hall.buses", what, d.hall.buses, f"at least {-(-count // chip.addresses)}")
+    fastest = 1e3 / (chip.reading_ms + TRANSFER * -(-count // d.hall.buses))
+    if d.hall.rate > fastest:
+        what = f"{count} chips {chip.name} are not read so often"
+        yield wrong("hall.rate", what, d.hall.rate, f"at most {floor(10.0 * fastest) / 10.0:g} Hz")
 
 
 @rule(after="chips_fit")

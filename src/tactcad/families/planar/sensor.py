@@ -22,7 +22,7 @@ from .beam import Array
 from .cell import unit_loads, wrench
 from .cell_layout import Kind, PlanarLayout
 from .cell_tables import Chip, PlanarDesign
-from .field import felt, field, sensitivity
+from .field import STEP, felt, field, sensitivity
 
 NEIGHBOURS = 3  # pitches away at which a neighbour's field still counts: beyond, under 1 % of the nearest's
 
@@ -39,6 +39,7 @@ class CellEstimate:
     stop_force                  at which the island meets the base
     linear_force                up to which K stays within rating.linearity
     field                       at the chip, cell at rest
+    condition, matrix_change    of the 3 x 3 matrix at rest; its largest change up to the rated force
     force_noise                 of fx, fy and fz, from one reading's noise
     """
 
@@ -60,6 +61,7 @@ class CellEstimate:
     field: float
     signal: float
     condition: float
+    matrix_change: float
     force_noise_x: float
     force_noise_z: float
     gauge_strain: None = None
@@ -76,6 +78,17 @@ def chip_matrix(layout: PlanarLayout, kind: Kind) -> Array:
     """The field's change at the chip by a force on the pad, mT/N, 3 x 3, about the cell at rest."""
     _, slope = sensitivity(layout.magnet, layout.design.hall.gap, magnet_lever(layout))
     return slope @ kind.cell.compliance @ unit_loads(layout.pad_height)
+
+
+def matrix_change(layout: PlanarLayout, kind: Kind) -> float:
+    """Largest change of `chip_matrix` up to the rated force with its shear, over its largest entry."""
+    rest, cell = chip_matrix(layout, kind), kind.cell
+    moved = cell.compliance @ _sheared(layout) * rated_force(layout, kind)[1]
+    moved[2:3] = cell.sunk(moved[2:3])
+    stiffer = np.array([1.0, 1.0, 1.0 + 3.0 * cell.stiffening * moved[2] ** 2, 1.0, 1.0, 1.0])
+    fields = felt(layout.magnet, layout.design.hall.gap, magnet_lever(layout), moved + 1j * STEP * np.eye(6))
+    there = fields.imag.T / STEP / stiffer @ cell.compliance @ unit_loads(layout.pad_height)
+    return float(np.abs(there - rest).max() / np.abs(rest).max())
 
 
 def magnet_lever(layout: PlanarLayout) -> float:
@@ -188,6 +201,7 @@ def rows(layout: PlanarLayout, _rung: str, force: float | None) -> list[CellEsti
             field=field_at_rest(layout),
             signal=float(abs(matrix[2, 2])),
             condition=float(np.linalg.cond(matrix)),
+            matrix_change=matrix_change(layout, kind),
             force_noise_x=float(per_axis[0]),
             force_noise_z=float(per_axis[2]),
             peak_strain=stress / design.material.youngs_modulus,
@@ -207,6 +221,7 @@ HEADINGS = (
     ("stop_force", "stop closes", "N", 1.0),
     ("linear_force", "linear to", "N", 1.0),
     ("signal", "signal", "mT/N", 1.0),
+    ("matrix_change", "changes by", "%", 100.0),
     ("force_noise_x", "noise x, y", "mN", 1e3),
     ("force_noise_z", "noise z", "mN", 1e3),
 )
@@ -230,6 +245,7 @@ def run(args: argparse.Namespace, asked: Allowance, design: PlanarDesign) -> int
             "size_mm": size,
             "units": {"length": "mm", "force": "N", "stiffness": "N/mm", "stress": "MPa", "field": "mT"},
             "neighbours_field_mT": neighbours_field(layout),
+            "object_errors": object_errors(layout) if len(layout.used) == 2 else {},
             "elements": [asdict(row) for row in found],
         }
         print(json.dumps(document, indent=2))
@@ -256,7 +272,21 @@ def run(args: argparse.Namespace, asked: Allowance, design: PlanarDesign) -> int
     ratio = {row.kind: row.stiffness for row in shown}
     if len(ratio) == 2:
         print(f"K_r/K_m {max(ratio.values()) / min(ratio.values()):.3g}")
+        told = ", ".join(f"{100 * e:.1f} % at {k:g} N/mm" for k, e in object_errors(layout).items())
+        print(f"noise of one reading of a pair, one of its cells at its rated force: K_obj within {told}")
     return 0
+
+
+def object_errors(layout: PlanarLayout) -> dict[float, float]:
+    """By K_obj, N/mm: its relative standard deviation by the noise of one reading of a pair, one of whose
+    cells is at its rated force."""
+    from .cell_targets import KINDS, of_kind, variances
+
+    at = np.array([0.5, 1.0, 5.0, 20.0])
+    pair = [of_kind(layout, name) for name in KINDS]
+    soft, stiff, _ = variances(pair[0], pair[1], 1, 0.0, at)
+    found = zip(at.tolist(), np.sqrt(soft + stiff).tolist())
+    return {k: error for k, error in found if np.isfinite(error)}
 
 
 def golden(design: PlanarDesign) -> dict[str, dict]:
