@@ -44,7 +44,7 @@ def golden_record(design: CommonTables) -> Record:
     """
     identity, told, boards = design.design, geometry(design), board_record(design)
     kept = kept_letters(identity, [*with_letters({**told, "boards": boards})])
-    head = {"schema": SCHEMA, "design": design.name, "revision": identity.revision}
+    head: Record = {"schema": SCHEMA, "design": design.name, "revision": identity.revision}
     head |= {"date": identity.date, "title": identity.title, "kept": kept, "unchanged": kept}
     return {**head, **told, "boards": boards}
 
