@@ -132,7 +132,7 @@ def judge(old: Record, new: Record) -> list[Finding]:
         said += f"letters, {count} differences: `make golden` takes them up"
     severity: Severity = "fail" if same_revision else "flag"
     head = Finding("golden", severity, name, (), count, 0, said)
-    return [*wrong, head, *(_about(severity, c) for c in changes)]
+    return [head, *wrong, *(_about(severity, c) for c in changes)]
 
 
 def asks_for_letter(change: Change) -> bool:
