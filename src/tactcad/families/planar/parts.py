@@ -43,7 +43,7 @@ from .cell_tables import FoilProcess
 SCREW, DOWEL = "M2", "2"
 LARGEST_STEP = 20.0  # mm between screws along an edge; chosen: what keeps 1 mm of base flat under them
 POST_LENGTH, POST_TOLERANCE = "length over the shoulder", 0.01  # mm, plus and minus; chosen: a small lathe's
-PAD, WELL = "pad side diameter", "well diameter"
+PAD = "pad side diameter"
 PAD_FIELD = 0.02  # mm by which a pad may be smaller than drawn; chosen: a cap slips over it
 SPIGOT = 0.01  # mm by which a post's spigot may be thinner than drawn; chosen, likewise
 MAGNET_LIMIT = 0.02  # mm, plus and minus, of a magnet's sizes; chosen: ground, or picked by micrometer
@@ -353,7 +353,7 @@ def base(layout: PlanarLayout) -> Part:
         wells.append(Hole(name, (e.x, e.y, t), (0, 0, -1), layout.well, t, True, counterbore=land))
     bore = pressed(float(DOWEL))
     names = [f"well_{kind.name}" for kind in layout.used]
-    bores = [_wider(f"{WELL}, {name.removeprefix('well_')}", name, layout.well) for name in names]
+    bores = [_wider(well_bore(name.removeprefix("well_")), name, layout.well) for name in names]
     deep = max((kind.table.stop_gap for kind in layout.used), default=0.0) + layout.base_z
     lands = f"counterbores {deep:.3g} ±{LAND_DEPTH:g} deep, milled in one setting with the upper face"
     holes, notes = [*_through(layout, t, bore), *wells], (lands,) if deep > 0.0 else ()
@@ -386,6 +386,11 @@ def frame(layout: PlanarLayout) -> Part:
     return milled(layout, "frame", "Board frame", body, holes, {"screw": PLACE})
 
 
+def well_bore(kind: str) -> str:
+    """Name of the limit of its wells: as the sheet's callout has them."""
+    return f"well {kind} diameter"
+
+
 def _wider(name: str, feature: str, least: float) -> Characteristic:
     return Characteristic(name, least, round(least + BORED, 9), least, between=(feature,))
 
@@ -416,7 +421,7 @@ def cover(layout: PlanarLayout) -> Part:
     d = layout.design
     t = d.housing.cover_thickness
     opening = round(d.post.pad + 2.0 * d.housing.side_gap, 9)
-    bore, room = dowel_bore(layout, None, t), _wider("opening diameter", "post_opening", opening)
+    bore, room = dowel_bore(layout, None, t), _wider("post opening diameter", "post_opening", opening)
     holes = [*_through(layout, t, bore, tapped=True), *bored("post_opening", layout.places, opening, t)]
     zones, body = {"dowel_hole": PLATE_ZONE, "screw": PLACE, "post_opening": PLACE}, _plain(layout, t)
     return milled(layout, "cover", "Cover", body, holes, zones, bores=(bore, room))
