@@ -4,6 +4,7 @@ shipped scenes' moves as guide/SCENE.json tells them."""
 from __future__ import annotations
 
 import json
+import re
 from dataclasses import replace
 
 import pytest
@@ -324,3 +325,14 @@ def test_every_stage_sold_can_be_screwed_down(monkeypatch, stage):
     met = tuple(c for c in made.contacts if {c.first, c.second} <= names)
     stands = replace(made, placements=placed, contacts=met, steps=steps, groups=(), motions=(), ready=())
     assert found(stands) == []
+
+
+@pytest.mark.parametrize("name", ["macro-array", "planar-array", "jaw-array"])
+def test_a_step_on_the_bench_fixes_nothing_on_what_is_not_there(name):
+    design = load(name)
+    for scene_name in scene_names(design):
+        told, there = json.loads(guide_json(make_scene(design, scene_name))), set()
+        for one in (s for s in told["steps"] if s["bench"]):
+            there |= {move["designator"] for move in one["moves"]}
+            said = set(re.findall(r"\b[A-Z]{1,3}\d+\b", " ".join([*one["sets"], *one["leaves"]])))
+            assert said <= there, (scene_name, one["title"], said - there)

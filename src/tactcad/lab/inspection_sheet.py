@@ -101,11 +101,9 @@ def read_sheet(path: str | Path, layout: Layout) -> list[Reading]:
         readings[key] = _reading(row, number, dimension, commas)
     for designator, name in known:
         if (designator, name) not in readings:
-            raise InputError(
-                f"{table.path}:{rows[-1].line + 1}:1",
-                f"the row {name!r} of element {designator} is missing",
-                legal="every row of the sheet, in any order; leave cells blank where nothing was measured",
-            )
+            what = f"the row {name!r} of element {designator} is missing"
+            legal = "every row of the sheet, in any order; leave cells blank where nothing was measured"
+            raise InputError(f"{table.path}:{rows[-1].line + 1}:1", what, legal=legal)
     return [readings[key] for key in known]
 
 
@@ -248,11 +246,8 @@ def reissued(design: Design, path: str | Path) -> Reissued:
         r.measured for r in readings if r.dimension.name == "sheet thickness" and r.measured is not None
     ]
     if not sheets:
-        raise InputError(
-            str(path),
-            "no sheet thickness is measured",
-            legal="at least one element's row `sheet thickness`, mm",
-        )
+        legal = "at least one element's row `sheet thickness`, mm"
+        raise InputError(str(path), "no sheet thickness is measured", legal=legal)
     sheet = round(sum(sheets) / len(sheets), 6)
     spacer = round(design.array.pitch - round(sheet / STEP) * STEP, 6)
     said = (

@@ -111,20 +111,15 @@ def calibration_of(table: Table) -> CalibrationReadings:
     for number, own in groups(out.element):
         runs, at = len(np.unique(out.run[own])), np.unique(steps(out.displacement[own]))
         if len(own) < runs + 3 or len(at) < 3:
-            raise InputError(
-                table.where(int(out.line[own[-1]]), "element"),
-                f"too few readings of element {number}",
-                value=len(own),
-                legal="three more than runs, at three displacements at least",
-            )
+            what, value = f"too few readings of element {number}", len(own)
+            legal = "three more than runs, at three displacements at least"
+            raise InputError(table.where(int(out.line[own[-1]]), "element"), what, value=value, legal=legal)
         least = int(own[np.argmin(out.displacement[own])])
         if -out.displacement[least] > out.displacement[own].max():
-            raise InputError(
-                table.where(int(out.line[least]), scaled["displacement"][0]),
-                f"element {number} is pressed to negative displacements: the column's sign is reversed",
-                value=f"{out.displacement[least]:g} mm",
-                legal="displacement and force both grow as the element is pressed",
-            )
+            where = table.where(int(out.line[least]), scaled["displacement"][0])
+            what = f"element {number} is pressed to negative displacements: the column's sign is reversed"
+            legal = "displacement and force both grow as the element is pressed"
+            raise InputError(where, what, value=f"{out.displacement[least]:g} mm", legal=legal)
     return out
 
 
@@ -230,11 +225,8 @@ def _grasp(
         grid = (np.bincount(place, signal, len(count)) / count).reshape(len(elements), len(states))
     if np.isnan(grid).any():
         e, s = np.argwhere(np.isnan(grid))[0]
-        raise InputError(
-            rows.where(int(own[-1]), "element"),
-            f"element {elements[e]} has no signal at load {states['load'][s]:g} N",
-            legal="every element at every load",
-        )
+        what = f"element {elements[e]} has no signal at load {states['load'][s]:g} N"
+        raise InputError(rows.where(int(own[-1]), "element"), what, legal="every element at every load")
     columns = tuple(rows.columns)[1:3]  # behind the element
     at = None if time is None else np.bincount(column, time) / np.bincount(column)
     return GraspReadings(sample, elements, states["load"], states["run"], grid, rows.path, columns, at)
@@ -283,11 +275,8 @@ def _column_of(table: Table, quantity: str) -> tuple[str, float]:
     known = {quantity + suffix: factor for suffix, factor in UNITS[quantity][0].items()}
     names = [name for name in table.header if name in known]
     if len(names) > 1:
-        raise InputError(
-            f"{table.path}:{table.header_line}:{table.header.index(names[1]) + 1}",
-            f"{names[0]} and {names[1]} are both the {quantity}",
-            value=names[1],
-            legal="one of " + ", ".join(known),
-        )
+        where = f"{table.path}:{table.header_line}:{table.header.index(names[1]) + 1}"
+        what = f"{names[0]} and {names[1]} are both the {quantity}"
+        raise InputError(where, what, value=names[1], legal="one of " + ", ".join(known))
     name = names[0] if names else quantity
     return name, known[name]

@@ -152,9 +152,8 @@ def made(t: CellTarget, best: CellFound, count: int, seed: int = 1) -> Array:
             **{k: replace(v := getattr(d, k), beam_width=v.beam_width + cut * width) for k in KINDS},
         )
         layout = PlanarLayout(as_made)
-        cells = [
-            targets.of_kind(layout, name, drawn.rated) for name, drawn in zip(KINDS, (best.soft, best.stiff))
-        ]
+        drawn = zip(KINDS, (best.soft, best.stiff))
+        cells = [targets.of_kind(layout, name, cell.rated) for name, cell in drawn]
         out.append(targets.widest(t, *cells))
     return np.array(out)
 

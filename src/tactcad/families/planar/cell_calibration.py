@@ -58,10 +58,9 @@ def calibrate(layout: PlanarLayout, path: str | Path, level: float) -> list[Cell
     """
     require_level(level)
     rows = read(path, (ELEMENT, RUN, *FORCE, *FIELD), (SINK,))
-    refuse_overrange(layout, rows)
     places = {e.number: e for e in layout.elements}
     element = rows.values("element").astype(int)
-    refuse_strangers(layout, rows)
+    refuse_unread(layout, rows)
     force, field = (np.stack([rows.values(f.name) for f in of], axis=1) for of in (FORCE, FIELD))
     bent = all_bends(layout, [places[n].kind for n in element], force)
     given = [(places[n], rows, own, force, field, bent) for n, own in groups(element)]
@@ -76,16 +75,13 @@ def calibrate(layout: PlanarLayout, path: str | Path, level: float) -> list[Cell
     return [_cell(layout, c, laws[c.place.kind.name], noise, level) for c in cells]
 
 
-def refuse_strangers(layout: PlanarLayout, rows: Rows) -> None:
-    """Raise InputError if the design has no such cell."""
+def refuse_unread(layout: PlanarLayout, rows: Rows) -> None:
+    """Raise InputError if the design has no such cell, or if a chip reads its full scale: what it felt is not
+    known."""
     number, count = rows.values(ELEMENT.name), len(layout.elements)
     for i in np.flatnonzero(number > count)[:1]:
         where, what = rows.where(int(i), ELEMENT.name), f"design {layout.design.name} has no such cell"
         raise InputError(where, what, value=int(number[i]), legal=f"1 to {count}")
-
-
-def refuse_overrange(layout: PlanarLayout, rows: Rows) -> None:
-    """Raise InputError if a chip reads its full scale: what it felt is not known."""
     what, legal = f"{layout.chip.name} is out of its range", f"below {layout.chip.full_scale:g} mT"
     for f in FIELD:
         value = rows.values(f.name)

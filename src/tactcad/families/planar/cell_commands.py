@@ -81,13 +81,9 @@ def _evaluated(
     whole = None
     if len(read.load) >= LEAST and len(read.element) > 1:
         signals, springs = as_rows(read, found, known)
+        coupling, n = pads.coupling(args.design, signals, args.coupling or 0.0), len(layout.elements)
         whole = grasp.evaluate(
-            signals,
-            springs,
-            reference=args.reference,
-            level=args.level,
-            coupling=pads.coupling(args.design, signals, args.coupling or 0.0),
-            elements=len(layout.elements),
+            signals, springs, reference=args.reference, level=args.level, coupling=coupling, elements=n
         )
         if layers:
             whole = grasp.on_layers(whole, with_rest(signals), springs, layers, args.level)

@@ -182,15 +182,10 @@ def array(rig: CradleLayout) -> Part:
     layout, (hx, hy) = rig.layout, rig.layout.half
     d, outline = layout.design, rectangle(-hx, -hy, hx, hy)
     pads = tuple(circle((e.x, e.y), d.post.pad) for e in layout.elements)  # their pattern is even in y
-    return Part(
-        part_no=f"{d.name}-finished",
-        name="Array, finished",
-        process="reference",
-        material=plate_material(d),
-        body=Extrusion(outline, round(layout.pad_z - rig.seat, 9)),
-        features=(Pocket("pads", (0, 0, 0), (0, 0, 1), (1, 0, 0), outline, d.post.stand_out, pads),),
-        colour="#7c8794",
-    )
+    body = Extrusion(outline, round(layout.pad_z - rig.seat, 9))
+    around = (Pocket("pads", (0, 0, 0), (0, 0, 1), (1, 0, 0), outline, d.post.stand_out, pads),)
+    name, made_of = f"{d.name}-finished", plate_material(d)
+    return Part(name, "Array, finished", "reference", made_of, body, around, "#7c8794")
 
 
 def head(rig: CradleLayout) -> Part:
@@ -203,10 +198,8 @@ def head(rig: CradleLayout) -> Part:
 def tongue(rig: CradleLayout) -> Part:
     """The board beyond the housing."""
     (hx, hy), d = rig.layout.half, rig.layout.design
-    body = Extrusion(rectangle(-hx, -hy - rig.tongue, hx, -hy), d.hall.board)
-    return Part(
-        f"{d.name}-tongue", "Board's tongue", "reference", cell_board.GLASS_EPOXY, body, colour="#3f6b4b"
-    )
+    body, made_of = Extrusion(rectangle(-hx, -hy - rig.tongue, hx, -hy), d.hall.board), cell_board.GLASS_EPOXY
+    return Part(f"{d.name}-tongue", "Board's tongue", "reference", made_of, body, colour="#3f6b4b")
 
 
 def plug(rig: CradleLayout) -> Part:
@@ -301,11 +294,8 @@ def cap(rig: CradleLayout) -> Part:
 def link(rig: CradleLayout) -> Part:
     """Hangs in the cap's groove and passes the posts below on both sides; the pan's hook goes into its eye.
     Origin: its arc's middle; y upwards."""
-    (hx, hy), first = rig.layout.half, rig.layout.elements[0]
-    r, low = (
-        rig.arc,
-        -ceil(max(hx - first.x, hy - first.y) + BESIDE + CLEAR),
-    )  # from any cell beyond the array
+    (hx, hy), first, r = rig.layout.half, rig.layout.elements[0], rig.arc
+    low = -ceil(max(hx - first.x, hy - first.y) + BESIDE + CLEAR)  # from any cell beyond the array
     o = round(r + LEG, 9)
     window = [Corner((r, r), r), Corner((-r, r), r), Corner((-r, low), INSIDE), Corner((r, low), INSIDE)]
     return _sheet(rig, "link", "Calibration link", (o, o, round(low - LEG, 9)), o, window)

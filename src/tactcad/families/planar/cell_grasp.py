@@ -21,7 +21,7 @@ from tactcad.lab.readings import ELEMENT, RUN, SAMPLE, GraspReadings, groups
 from tactcad.lab.regression import KNOWN, steps, t_quantile
 
 from .beam import Array, Whole
-from .cell_calibration import FIELD, refuse_overrange, refuse_strangers
+from .cell_calibration import FIELD, refuse_unread
 from .cell_layout import CellPlace, PlanarLayout, beside
 from .cell_matrices import Matrices
 from .cell_response import all_bends, neighbours
@@ -70,8 +70,7 @@ def fields(layout: PlanarLayout, path: str | Path) -> list[CellFields]:
     for a malformed table, a reading missing, a cell that the design does not have, a chip out of its range.
     """
     rows = read(path, (ELEMENT, LOAD, *FIELD), (RUN, SAMPLE))
-    refuse_strangers(layout, rows)
-    refuse_overrange(layout, rows)
+    refuse_unread(layout, rows)
     sample = rows.columns.get(SAMPLE.name, np.ones(len(rows))).astype(int)
     return [_sample(layout, rows, number, own) for number, own in groups(sample)]
 

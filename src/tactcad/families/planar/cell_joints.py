@@ -77,10 +77,8 @@ def cells(design: PlanarDesign) -> Mechanism:
         own = (placed.pop(f"{part}{e.number}") for part in ("FP", "P", "M"))
         # the post, up to half of its free length: above that the ball touches
         box = [(-d / 2, -d / 2, t / 2), (d / 2, d / 2, H - design.post.stand_out / 2)]
-        moved = (replace(island, origin=(x + e.x, y + e.y, z)), *own)
-        moving.append(
-            Moving(taxel, np.eye(3), np.array([0.0, 0.0, -H]), joints, moved, np.array(box), H, rubs=True)
-        )
+        moved, pad = (replace(island, origin=(x + e.x, y + e.y, z)), *own), np.array([0.0, 0.0, -H])
+        moving.append(Moving(taxel, np.eye(3), pad, joints, moved, np.array(box), H, rubs=True))
     return Mechanism(design, tuple(placed.values()), tuple(moving))
 
 

@@ -234,10 +234,8 @@ class PlanarLayout:
     def half(self) -> tuple[float, float]:
         """Half length and half width of foil, spacers, base, cover and board, mm."""
         p = self.design.planar
-        x, y = (
-            round(n * p.pitch / 2.0 - p.web / 2.0 + border, 9)
-            for n, border in zip((p.columns, p.rows), self.borders)
-        )
+        counts = zip((p.columns, p.rows), self.borders)
+        x, y = (round(n * p.pitch / 2.0 - p.web / 2.0 + border, 9) for n, border in counts)
         return x, y
 
     @property

@@ -160,10 +160,9 @@ def designed(t: CellTarget, c: CellChoice) -> PlanarDesign | None:
     """The base design with this choice, as many cells as the room takes, and roots as its process leaves
     them; None if the room is too small."""
     b, m = t.base, t.planar
-    columns, rows = (
-        min(40, floor((room - 2.0 * border + b.planar.web) / c.pitch + 1e-9))
-        for room, border in zip((m.length, m.width), PlanarLayout(b).borders)
-    )
+    rooms = zip((m.length, m.width), PlanarLayout(b).borders)
+    inside = [room - 2.0 * border + b.planar.web for room, border in rooms]
+    columns, rows = (min(40, floor(room / c.pitch + 1e-9)) for room in inside)
     if min(columns, rows) < 1 or columns * rows < m.cells:
         return None
     planar = replace(b.planar, rows=rows, columns=columns, pitch=c.pitch, thickness=c.foil)

@@ -439,9 +439,7 @@ def measured(layout: PlanarLayout) -> list[tuple[CellPlace, str, tuple[Measureme
             ("beam length", k.beam_length, cut, False, edges, MICROSCOPE),
             ("thickness", t, of_foil, True, "on the border, near the cell", "micrometer, 0.0005 or better"),
         )
-        return tuple(
-            Measurement(name, v, v - off, v + off, key, "", *how) for name, v, off, key, *how in sizes
-        )
+        return tuple(Measurement(of, v, v - off, v + off, key, "", *how) for of, v, off, key, *how in sizes)
 
     return [(e, f"{layout.design.name}-foil", of(e.kind)) for e in layout.elements]
 
