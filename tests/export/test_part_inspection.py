@@ -39,7 +39,7 @@ def test_rows_are_the_parts_own_limits_each_once(made):
         assert limits == pytest.approx((sizes | zones)[r["characteristic"]])
         assert (r["design"], r["revision"], r["unit"], r["measured"]) == (
             design.name,
-            design.design.revision,
+            design.design.of_part(r["part_no"]).revision,
             "mm",
             "",
         )

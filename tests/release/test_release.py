@@ -426,7 +426,7 @@ def copy(project, tmp_path):
 
 WIDER = TINY_TEXT.replace("hinge_length = 0.88", "hinge_length = 0.90")
 BY_GOLDEN = {
-    "other geometry under the same revision": (WIDER, "other geometry than its golden file"),
+    "other geometry under the same revision": (WIDER, "other content than its golden file"),
     "a revision not taken up": (
         TINY_TEXT.replace(f'revision = "{REVISION}"', 'revision = "ZZ"'),
         "`make golden` takes it up",

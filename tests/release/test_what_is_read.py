@@ -49,7 +49,7 @@ def guide(scene: str) -> dict[str, str]:
 @cache
 def bill(scene: str) -> dict[str, dict[str, str]]:
     made = make_scene(load("macro-array"), scene)
-    return {row["part_no"]: row for row in rows(csv_bytes(bom_rows(made, "A", {})))}
+    return {row["part_no"]: row for row in rows(csv_bytes(bom_rows(made, None, {})))}
 
 
 @cache
@@ -171,7 +171,7 @@ def test_a_stage_whose_drawing_nobody_read_says_so_to_its_buyer():
 @pytest.mark.parametrize("name", DESIGNS)
 def test_what_no_standard_names_has_one_make_as_an_example(name):
     design = load(name)
-    for row in (row for s in scene_names(design) for row in bom_rows(make_scene(design, s), "A", {})):
+    for row in (row for s in scene_names(design) for row in bom_rows(make_scene(design, s), None, {})):
         told = row.mpn or row.process != "bought" or not row.has_solid
         if told or re.match(r"(ISO|DIN) \d", row.standard_designation):
             assert "example" not in row.alternates, row.part_no

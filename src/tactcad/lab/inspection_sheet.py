@@ -124,12 +124,13 @@ def _identified(row: _Row, layout: Layout, known: dict) -> tuple[str, str]:
     design = layout.design
     if row["design"] != design.name:
         raise row.refusal("design", "a sheet of another design", legal=design.name)
-    if row["revision"] != design.design.revision:
-        raise row.refusal("revision", "a sheet of another revision", legal=design.design.revision)
+    key = (row["element"], row["characteristic"])
+    of = design.design.of_part(known[key][1]) if key in known else None
+    if of and row["revision"] != of.revision:
+        raise row.refusal("revision", "a sheet of another revision", legal=of.revision)
     last = layout.elements[-1].designator
     if row["element"] not in {designator for designator, _ in known}:
         raise row.refusal("element", "no such element", legal="E1" if last == "E1" else f"E1 to {last}")
-    key = (row["element"], row["characteristic"])
     if key not in known:
         raise row.refusal(
             "characteristic",
@@ -255,7 +256,7 @@ def reissued(design: Design, path: str | Path) -> Reissued:
     )
     made = replace(
         design,
-        design=replace(design.design, revision=f"{design.design.revision}M"),
+        design=replace(design.design, revision=f"{design.design.revision}M", unchanged={}),
         sheet=replace(design.sheet, thickness=round(sheet / STEP) * STEP),
         array=replace(design.array, spacer=spacer),
         origin={**design.origin, "array.spacer": said, "sheet.thickness": said},

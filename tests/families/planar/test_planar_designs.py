@@ -352,9 +352,8 @@ def test_stops_and_cover_are_clear_at_the_rated_force_and_at_the_limits(layout):
         bores = [limit[n, "dowel hole diameter"].upper for n in ("foil", "cover")]
         play += zone["cover", "dowel_hole"] + zone["foil", "dowel_hole"]
         play += sum(bores) - 2 * dowel_limits("2")[0]
-    room = (
-        limit["cover", "post opening diameter"].lower - limit["post", "pad side diameter"].upper - play
-    ) / 2
+    opening, pad = limit["cover", "post opening diameter"], limit["post", "pad side diameter"]
+    room = (opening.lower - pad.upper - play) / 2
     assert max(moved) <= room
     less = d.housing.side_gap - room + max(moved) - 2e-3
     assert refused("posts_clear_cover", "meets the cover", housing=replace(d.housing, side_gap=less))

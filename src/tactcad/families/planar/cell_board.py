@@ -161,7 +161,7 @@ def tongue(layout: PlanarLayout) -> float:
 
 
 def _name(layout: PlanarLayout) -> str:
-    return f"{layout.design.name}-board {layout.design.design.revision}"
+    return f"{layout.design.design.board_no} {layout.design.design.of_board.revision}"
 
 
 def _pair(name: str, kind: str, value: str, part_no: str, package: str, *nets: str) -> Component:

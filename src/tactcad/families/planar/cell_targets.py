@@ -168,7 +168,9 @@ def designed(t: CellTarget, c: CellChoice) -> PlanarDesign | None:
     planar = replace(b.planar, rows=rows, columns=columns, pitch=c.pitch, thickness=c.foil)
     d = replace(
         b,
-        design=replace(b.design, name=t.target.name, title="Planar array from a target", revision="A"),
+        design=replace(
+            b.design, name=t.target.name, title="Planar array from a target", revision="A", unchanged={}
+        ),
         planar=planar,
         measuring=replace(b.measuring, beam_width=c.soft),
         reference=replace(b.reference, beam_width=c.stiff, island=c.island),
