@@ -211,7 +211,7 @@ def limits(
         [v for v in known if v.startswith(MAGNET_PLACE + axis)] or [MAGNET_PLACE + axis] for axis in "xy"
     ]
     known |= {v: replace(asked, name=v) for (v, *_) in places if v not in known}
-    wells = tuple((f"{d.name}-base", parts.well_bore(k.name)) for k in layout.used)
+    wells = tuple((f"{d.name}-base", f"well {k.name} diameter") for k in layout.used)
     known[WELL] = variable(WELL, 0.0, parts.BORED, n, wells)
     for terms, axis in zip(places, "xy"):
         stated = tuple((f"{d.name}-base", f"well {k.name} holes") for k in layout.used)

@@ -353,7 +353,7 @@ def base(layout: PlanarLayout) -> Part:
         wells.append(Hole(name, (e.x, e.y, t), (0, 0, -1), layout.well, t, True, counterbore=land))
     bore = pressed(float(DOWEL))
     names = [f"well_{kind.name}" for kind in layout.used]
-    bores = [_wider(well_bore(name.removeprefix("well_")), name, layout.well) for name in names]
+    bores = [_wider(name, layout.well) for name in names]
     deep = max((kind.table.stop_gap for kind in layout.used), default=0.0) + layout.base_z
     lands = f"counterbores {deep:.3g} ±{LAND_DEPTH:g} deep, milled in one setting with the upper face"
     holes, notes = [*_through(layout, t, bore), *wells], (lands,) if deep > 0.0 else ()
@@ -386,13 +386,9 @@ def frame(layout: PlanarLayout) -> Part:
     return milled(layout, "frame", "Board frame", body, holes, {"screw": PLACE})
 
 
-def well_bore(kind: str) -> str:
-    """Name of the limit of its wells: as the sheet's callout has them."""
-    return f"well {kind} diameter"
-
-
-def _wider(name: str, feature: str, least: float) -> Characteristic:
-    return Characteristic(name, least, round(least + BORED, 9), least, between=(feature,))
+def _wider(hole: str, least: float) -> Characteristic:
+    name = f"{hole.replace('_', ' ')} diameter"
+    return Characteristic(name, least, round(least + BORED, 9), least, between=(hole,))
 
 
 def post_play(layout: PlanarLayout) -> float:
@@ -421,7 +417,7 @@ def cover(layout: PlanarLayout) -> Part:
     d = layout.design
     t = d.housing.cover_thickness
     opening = round(d.post.pad + 2.0 * d.housing.side_gap, 9)
-    bore, room = dowel_bore(layout, None, t), _wider("post opening diameter", "post_opening", opening)
+    bore, room = dowel_bore(layout, None, t), _wider("post_opening", opening)
     holes = [*_through(layout, t, bore, tapped=True), *bored("post_opening", layout.places, opening, t)]
     zones, body = {"dowel_hole": PLATE_ZONE, "screw": PLACE, "post_opening": PLACE}, _plain(layout, t)
     return milled(layout, "cover", "Cover", body, holes, zones, bores=(bore, room))

@@ -156,18 +156,11 @@ def stop_protects(layout: PlanarLayout) -> Iterator[Finding]:
         early = gap < least - SAME
         if not early and stop_stress(layout, kind, gap + tolerance) <= limit:
             continue
-        low, high = 0.0, 10.0 * max(gap, least)
-        for _ in range(40):
-            middle = (low + high) / 2.0
-            if stop_stress(layout, kind, middle + tolerance) > limit:
-                high = middle
-            else:
-                low = middle
-        legal = f"{least:g} to {floor(low * 1e4) / 1e4:g} mm"  # rounded to the side that is legal
-        if least > low:
-            legal = (
-                f"none: at least {least:g} mm for that force, at most {low:.3g} by yield: lower rating.force"
-            )
+        ways = np.linspace(0.0, 10.0 * max(gap, least), 20_001)
+        most = ways[stop_stress(layout, kind, ways + tolerance) <= limit].max(initial=0.0)
+        legal = f"{least:g} to {floor(most * 1e4) / 1e4:g} mm"  # rounded to the side that is legal
+        if least > most:
+            legal = f"none: over {least:g} mm by that force, under {most:.3g} by yield; a lower rating"
         what = f"at its limits the stop closes before the rated force of {rated:.3g} N with its shear"
         yield wrong(field, what if early else f"a {kind.name} cell yields before its stop closes", gap, legal)
 
