@@ -195,11 +195,8 @@ def read(path: str) -> Sensitivity:
     """
     if path.endswith(".json"):
         return _from_json(path)
-    rows = read_table(
-        path,
-        (NUMBER, STIFFNESS, SENSITIVITY),
-        (STIFFNESS_SE, SENSITIVITY_SE, CORRELATION, DOF, LOAD_CELL, LOAD_CELL_HALF_WIDTH, ZERO),
-    )
+    other = (STIFFNESS_SE, SENSITIVITY_SE, CORRELATION, DOF, LOAD_CELL, LOAD_CELL_HALF_WIDTH, ZERO)
+    rows = read_table(path, (NUMBER, STIFFNESS, SENSITIVITY), other)
     refuse_duplicates(rows, ("element",))
     for i in np.flatnonzero(np.abs(rows.values(SENSITIVITY.name)) < LEAST_SENSITIVITY)[:1]:
         raise _no_sensitivity(rows.where(i, SENSITIVITY.name))
@@ -248,8 +245,5 @@ def _sensitivity(columns: list[np.ndarray], path: str, zero: np.ndarray | None) 
 
 
 def _no_sensitivity(where: str) -> InputError:
-    return InputError(
-        where,
-        "a sensitivity of zero gives no deflection",
-        legal=f"{LEAST_SENSITIVITY:g} V/mm or more, of either sign",
-    )
+    legal = f"{LEAST_SENSITIVITY:g} V/mm or more, of either sign"
+    return InputError(where, "a sensitivity of zero gives no deflection", legal=legal)

@@ -158,18 +158,8 @@ class _Model:
         self.K[rows] = calibration.stiffness
         self.K_v = calibration.signal_per_deflection
         n, m, t = len(at.number), len(rows), len(load)
-        sizes = {
-            "E": 1,
-            "slope": 2,
-            "offset": m,
-            "rate": 0 if time is None else m,
-            "approach": t,
-            "height": n,
-            "K": n,
-            "K_v": m,
-            "thickness": 1,
-            "own": m,
-        }
+        sizes = {"E": 1, "slope": 2, "offset": m, "rate": 0 if time is None else m, "approach": t}
+        sizes |= {"height": n, "K": n, "K_v": m, "thickness": 1, "own": m}
         ends = np.cumsum([0, *sizes.values()])
         self.part = {name: slice(a, b) for name, a, b in zip(sizes, ends, ends[1:])}
         self.size = int(ends[-1])

@@ -88,24 +88,16 @@ def calibration_of(table: Table) -> CalibrationReadings:
     rows, scaled = _read(table, (ELEMENT, RUN), ("displacement", "force", "signal"), (TIME,))
     timed = TIME.name in rows.columns
     if not timed:
-        refuse_duplicates(
-            rows,
-            ("element", "run", scaled["displacement"][0]),
-            "each displacement once a run; number the ways up and down as two runs, or give time_s",
-        )
+        legal = "each displacement once a run; number the ways up and down as two runs, or give time_s"
+        refuse_duplicates(rows, ("element", "run", scaled["displacement"][0]), legal)
     displacement, force, signal = (rows.values(name) * factor for name, factor in scaled.values())
     element, run = (rows.values(name).astype(int) for name in ("element", "run"))
-    out = CalibrationReadings(
-        element,
-        run,
-        displacement,
-        force,
-        signal,
-        rows.lines,
-        rows.path,
-        tuple(rows.columns)[2:5],  # behind element and run
+    time, named = (
         rows.values(TIME.name) if timed else None,
-    )
+        tuple(rows.columns)[2:5],
+    )  # behind element and run
+    read = (element, run, displacement, force, signal)
+    out = CalibrationReadings(*read, rows.lines, rows.path, named, time)
     if timed:
         out = _averaged(out)
     for number, own in groups(out.element):
@@ -136,16 +128,8 @@ def _averaged(r: CalibrationReadings) -> CalibrationReadings:
         return (np.bincount(visit, v[order]) / count)[back]
 
     kept = order[first][back]
-    return replace(
-        r,
-        element=r.element[kept],
-        run=r.run[kept],
-        displacement=r.displacement[kept],
-        force=mean(r.force),
-        signal=mean(r.signal),
-        line=r.line[kept],
-        time=mean(r.time),
-    )
+    of_first = {name: getattr(r, name)[kept] for name in ("element", "run", "displacement", "line")}
+    return replace(r, **of_first, force=mean(r.force), signal=mean(r.signal), time=mean(r.time))
 
 
 def groups(number: np.ndarray) -> list[tuple[int, np.ndarray]]:
@@ -181,10 +165,8 @@ def grasps(path: str | Path) -> list[GraspReadings]:
 def grasps_of(table: Table) -> list[GraspReadings]:
     """`grasps` of a table that was read."""
     rows, scaled = _read(table, (ELEMENT,), ("load", "signal"), (RUN, SAMPLE, TIME))
-    run, sample = (
-        rows.values(n).astype(int) if n in rows.columns else np.ones(len(rows), int)
-        for n in ("run", "sample")
-    )
+    one = np.ones(len(rows))
+    run, sample = (rows.columns.get(n, one).astype(int) for n in ("run", "sample"))
     element = rows.values("element").astype(int)
     load, signal = (rows.values(name) * factor for name, factor in scaled.values())
     timed = TIME.name in rows.columns

@@ -113,6 +113,13 @@ def rig_of(design: CommonTables, scene: str) -> Rig:
     return all_rigs(type(design))[scene]
 
 
+def require_element(pose: Pose, count: int) -> None:
+    """Raise InputError if an array of so many elements has none of the pose's number."""
+    if not 1 <= pose.element <= count:
+        what = "the array has none of that number"
+        raise InputError("element", what, value=pose.element, legal=f"1 to {count}")
+
+
 LEAST = 1e-3  # mm; less is more likely a typing error, and the CAD kernel drops edges that short
 
 

@@ -45,13 +45,8 @@ EASED = {
     "rating.yield_factor": 1 / 1.1,
 }
 LIMITS = ("planar.shear", "planar.readings", "planar.matrices")  # of every answer: no bound to lie on
-FIELDS = {  # of the design, by what the search varies
-    "pitch": "planar.pitch",
-    "soft": "measuring.beam_width",
-    "stiff": "reference.beam_width",
-    "island": "reference.island",
-    "gap": "hall.gap",
-}
+VARIED = ("planar.pitch", "measuring.beam_width", "reference.beam_width", "reference.island", "hall.gap")
+FIELDS = dict(zip(targets.STEPS, VARIED))  # of the design, by what the search varies
 
 
 def stepped(t: CellTarget, field: str) -> tuple[Any, Any, CellTarget]:
@@ -114,7 +109,7 @@ def bounds(t: CellTarget, best: CellFound) -> list[Bound]:
     refused: dict[str, Bound] = {}
     for name, choice in targets.beside(t, best.choice, 0.5 ** (targets.ROUNDS - 1)):
         found, drawn = evaluated(t, choice), designed(t, choice)
-        if isinstance(found, CellFound) or drawn is None or not fits_all(layout := PlanarLayout(drawn)):
+        if isinstance(found, CellFound) or drawn is None or not fits(layout := PlanarLayout(drawn), *KINDS):
             continue
         width = targets.pair_half_width(t, layout)
         rule = found.check
@@ -123,10 +118,6 @@ def bounds(t: CellTarget, best: CellFound) -> list[Bound]:
             whose = f"rule {rule} refuses the step"
             refused[rule] = Bound(FIELDS[name], value, whose, further, width)
     return out + list(refused.values())
-
-
-def fits_all(layout: PlanarLayout) -> bool:
-    return all(fits(layout, name) for name in KINDS)
 
 
 def binding(t: CellTarget, best: CellFound) -> Iterator[dict[str, Any]]:
@@ -162,7 +153,7 @@ def of_base(t: CellTarget) -> dict[str, Any]:
     """The base design as it is, under the target's forces and knowledge: half-width, and why it misses."""
     b, m = t.base, t.planar
     layout = PlanarLayout(replace(b, rating=replace(b.rating, force=m.force, shear=m.shear)))
-    width = targets.pair_half_width(t, layout) if fits_all(layout) else None
+    width = targets.pair_half_width(t, layout) if fits(layout, *KINDS) else None
     rules: list[Any] = [*design_rules().values()]
     breaks = [f"rule {f.check}: {f.broken}" for rule in rules for f in rule(layout)]
     for name, half, most in (("length", layout.half[0], m.length), ("width", layout.half[1], m.width)):
@@ -216,10 +207,8 @@ def record(a: CellAnswer, count: int, until: float = inf) -> dict[str, Any]:
     reached = best.half_width <= limit and kept / count >= t.target.share
     k, layout, pair = t.points, PlanarLayout(best.design), (best.soft, best.stiff)
     width = half_width(*pair, t.planar, k)
-    parts = [
-        float(v[int(np.argmax(width))])
-        for v in targets.variances(*pair, t.planar.readings, t.planar.matrices, k)
-    ]
+    spread = targets.variances(*pair, t.planar.readings, t.planar.matrices, k)
+    parts = [float(v[int(np.argmax(width))]) for v in spread]
     causes = ("noise of the measuring cell", "noise of the reference cell", "matrices")
     why = why_none(layout)
     out |= {
@@ -300,21 +289,20 @@ def as_page(a: CellAnswer, r: dict[str, Any]) -> bytes:
         page.bounds_part(r),
         f"<h2>Cells</h2>{cells_picture(PlanarLayout(a.best.design))}" if a.best else "",
     ]
-    rows = [
-        (name, f"{v['stiffness']:.3g}", f"{v['rated']:.3g}", f"{1e3 * v['noise']:.3g}")
-        for name, v in r["cells"].items()
-    ]
-    parts.append(page.table(("kind", "K, N/mm", "rated, N", "noise of a reading, mN"), rows))
-    parts += ["<h2>How surely a pair feels</h2>", page.interval_picture(r, "one pair")]
-    parts.append(
-        "<p>Two neighbours on separate springs, pressed until one of them is at its rated force.</p>"
-        "<h2>What limits it</h2>" + page.binding_part(r)
-    )
+    kinds = [(name, v["stiffness"], v["rated"], 1e3 * v["noise"]) for name, v in r["cells"].items()]
+    rows = [(name, *(f"{v:.3g}" for v in values)) for name, *values in kinds]
     shares = [(s["cause"], page.percent(s["share"])) for s in r["shares"]]
-    parts.append(page.table(("cause", "share of the variance"), shares))
     best = [(f"{f['thickness']:g}", f"{f['pitch']:g}", page.percent(f["half_width"])) for f in r["front"]]
-    parts.append("<h2>Foils and pitches of the grid, before rules are tried</h2>")
-    parts.append(page.table(("foil, mm", "pitch, mm", "half-width"), best))
+    parts += [
+        page.table(("kind", "K, N/mm", "rated, N", "noise of a reading, mN"), rows),
+        "<h2>How surely a pair feels</h2>",
+        page.interval_picture(r, "one pair"),
+        "<p>Two neighbours on separate springs, pressed until one of them is at its rated force.</p>"
+        "<h2>What limits it</h2>" + page.binding_part(r),
+        page.table(("cause", "share of the variance"), shares),
+        "<h2>Foils and pitches of the grid, before rules are tried</h2>",
+        page.table(("foil, mm", "pitch, mm", "half-width"), best),
+    ]
     if r["left_out"]:
         parts.append(f"<p>Left out for time: {escape(', '.join(r['left_out']))}.</p>")
     return page.page(title, parts)

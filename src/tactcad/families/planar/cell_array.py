@@ -207,9 +207,8 @@ def limits(
     if MAGNET_BOND not in known and "bonding" in scene_names(d):  # judged by its jig without being asked for
         rig_of(d, "bonding").requirements(layout, known)
     asked = variable("", -tol.magnet_place, tol.magnet_place, n)  # of a design that the jig does not take
-    places = [
-        [v for v in known if v.startswith(MAGNET_PLACE + axis)] or [MAGNET_PLACE + axis] for axis in "xy"
-    ]
+    along = (MAGNET_PLACE + axis for axis in "xy")
+    places = [[v for v in known if v.startswith(name)] or [name] for name in along]
     known |= {v: replace(asked, name=v) for (v, *_) in places if v not in known}
     wells = tuple((f"{d.name}-base", f"well {k.name} diameter") for k in layout.used)
     known[WELL] = variable(WELL, 0.0, parts.BORED, n, wells)

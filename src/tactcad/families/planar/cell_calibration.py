@@ -27,8 +27,8 @@ from tactcad.lab.regression import fit_lines, require_level, steps, t_quantile
 from .beam import Array, Whole
 from .cell_layout import CellPlace, Kind, PlanarLayout
 from .cell_matrices import AXES, CellMatrix
-from .cell_response import all_bends, bow_variance, matrix, stiffness_limit
-from .sensor import pad_compliance
+from .cell_response import DOWN, all_bends, bow_variance, stiffness_limit
+from .sensor import chip_matrix, pad_compliance
 
 FORCE = tuple(Field(f"f{a}", "N", -1000.0, 1000.0) for a in AXES)
 FIELD = tuple(Field(f"b{a}", "mT", -1000.0, 1000.0) for a in AXES)
@@ -222,7 +222,7 @@ def _law_along(axis: int, cells: Sequence[Sequence[_Run]]) -> tuple[Array, float
 
 def _cell(layout: PlanarLayout, cell: _Cell, law: _Law, noise: Array, level: float) -> CellMatrix:
     kind, found, m = cell.place.kind, cell.runs, _mean(cell.runs)
-    drawn = matrix(layout, kind)
+    drawn = chip_matrix(layout, kind) * DOWN
     for k in range(3):
         if m[k, k] * drawn[k, k] <= 0.0:
             what = f"b{AXES[k]} goes against f{AXES[k]}: a sign or two columns are exchanged"

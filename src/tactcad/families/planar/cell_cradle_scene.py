@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from functools import partial
 from typing import Literal
 
-from tactcad.design.messages import InputError
 from tactcad.parts.array.supplies import supplies as bill_lines
 from tactcad.parts.bought.standard_parts import dowel
 from tactcad.parts.language.description import Vector, vector
@@ -14,7 +14,7 @@ from tactcad.parts.language.metric import METRIC
 from tactcad.parts.rigs.frame import STANDARD_GRAVITY
 from tactcad.scenes.builder import Builder
 from tactcad.scenes.moves import APPROACH, PRESS, TWEEZED
-from tactcad.scenes.rig import Rig, none
+from tactcad.scenes.rig import Rig, plain_rig, require_element
 from tactcad.scenes.scene import AGAINST_Y, DOWN, HAND, REST, STILL, UPRIGHT, Move, Pose, Rotation, Scene
 
 from . import cell_board, parts
@@ -91,9 +91,7 @@ def scene(design: PlanarDesign, pose: Pose = REST, *, along: Axis) -> Scene:
     """The load along z, x or y of the array on the pad of pose.element."""
     layout = PlanarLayout(design)
     rig, places = CradleLayout(layout), layout.elements
-    if not 1 <= pose.element <= len(places):
-        what, legal = "the array has none of that number", f"1 to {len(places)}"
-        raise InputError("element", what, value=pose.element, legal=legal)
+    require_element(pose, len(places))
     b, edge = _mounted(rig), "with its pins' end over the table's edge, so that the hanger goes round it"
     if along != "z":
         ready = b.scene("calibration-z")
@@ -235,14 +233,5 @@ def rig(along: Axis) -> Rig:
         last = p.rows * p.columns
         yield from (Pose(element=n) for n in sorted({p.columns, last - p.columns + 1, last} - {1}))
 
-    return Rig(
-        name=f"calibration-{along}",
-        tables=("calibration",),
-        make=partial(scene, along=along),
-        poses=poses,
-        under_sensor=none,
-        rules=FITS,
-        deflections=lambda _design: iter(()),
-        requirements=requirements,
-        checks=(),
-    )
+    plain = plain_rig(f"calibration-{along}", partial(scene, along=along), FITS, requirements)
+    return replace(plain, tables=("calibration",), poses=poses)

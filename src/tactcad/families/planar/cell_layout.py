@@ -290,8 +290,3 @@ class PlanarLayout:
     @property
     def base_thickness(self) -> float:
         return round(self.base_z - self.board_z, 9)
-
-    @property
-    def well(self) -> float:
-        """Diameter of the base's hole around a magnet, mm."""
-        return round(self.design.magnet.diameter + 2.0 * self.design.housing.well, 9)

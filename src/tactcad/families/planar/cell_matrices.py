@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tactcad.design.csv_table import Field, read
+from tactcad.design.csv_table import Field, read, refuse_duplicates
 from tactcad.design.messages import InputError
 from tactcad.lab.readings import ELEMENT
 from tactcad.report.report import plain
@@ -132,9 +132,8 @@ class Matrices:
 def read_matrices(path: str) -> Matrices:
     """A calibration from the CSV of `to_csv`. Raises InputError if it is not one."""
     rows = read(path, (ELEMENT, *FIELDS))
+    refuse_duplicates(rows, ("element",))
     number = rows.values("element").astype(int)
-    if len(set(number.tolist())) < len(number):
-        raise InputError(path, "an element is listed twice", value=number.tolist(), legal="each once")
     shapes: dict[int, tuple[int, ...]] = {1: (), 3: (3,), 9: (3, 3), 18: (3, 6)}
     held = {
         name: np.stack([rows.values(f.name) for f in some], axis=1).reshape(-1, *shapes[len(some)])

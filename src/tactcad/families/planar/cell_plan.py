@@ -31,7 +31,7 @@ from tactcad.drawing.parts.measures import (
     rounds,
 )
 from tactcad.drawing.parts.prism import FRONT, side_view
-from tactcad.drawing.parts.sheet_plan import Callout, Dimension, Linear, SheetPlan, Side, View
+from tactcad.drawing.parts.sheet_plan import Dimension, Linear, SheetPlan, Side, View
 from tactcad.drawing.parts.sketch import ALIKE, Coordinate, Sketch, closed, view_of
 from tactcad.drawing.parts.tolerances import with_marks
 from tactcad.parts.language.description import Part
@@ -234,17 +234,14 @@ def _cell_view(
     square = turns == 1
     linears = _square(sketch, first, openings[0]) if square else _beams(sketch, shown, cell, owners)
     arcs = [(name, Radius(first, i), s) for i, s in enumerate(openings[0]) if isinstance(s, Arc)]
-    callouts = [_for_all(c, turns) for c in equal_radii(sketch, view, arcs)]
+    callouts = []
+    for callout in equal_radii(sketch, view, arcs):  # as the radius of as many equal openings
+        count, _, text = callout.lines[0].rpartition("× ")
+        whole = turns * int(count or 1)
+        callouts.append(replace(callout, lines=(f"{whole}× {text}" if whole > 1 else text,)))
     x, y = cell.at
     axes = (((x0, y), (x1, y)), ((x, y0), (x, y1)))
     return replace(view, linears=tuple(linears), callouts=tuple(callouts), axes=() if square else axes)
-
-
-def _for_all(callout: Callout, turns: int) -> Callout:
-    """The radius of as many equal openings."""
-    count, _, text = callout.lines[0].rpartition("× ")
-    whole = turns * int(count or 1)
-    return replace(callout, lines=(f"{whole}× {text}" if whole > 1 else text,))
 
 
 def _square(sketch: Sketch, owner: Owner, contour: Contour) -> list[Linear]:

@@ -20,14 +20,9 @@ from .sensor import NEIGHBOURS, chip_matrix, magnet_lever
 DOWN = np.array([1.0, 1.0, -1.0])  # a pressing force is along -z of the design
 
 
-def matrix(layout: PlanarLayout, kind: Kind) -> Array:
-    """The field by a force on the cell's own pad about rest, mT/N."""
-    return chip_matrix(layout, kind) * DOWN
-
-
 def bend(layout: PlanarLayout, kind: Kind, force: Array) -> Array:
-    """Difference of the field from `matrix` times forces, [n, 3]: the cell stiffens as it sinks, and a
-    magnet's field is nonlinear."""
+    """Difference of the field from the matrix at rest times forces, [n, 3]: the cell stiffens as it sinks,
+    and a magnet's field is nonlinear."""
     gap, lever = layout.design.hall.gap, magnet_lever(layout)
     change = felt(layout.magnet, gap, lever, _motion(layout, kind, force))
     change -= sensitivity(layout.magnet, gap, lever)[0]

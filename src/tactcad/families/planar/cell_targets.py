@@ -165,12 +165,12 @@ def designed(t: CellTarget, c: CellChoice) -> PlanarDesign | None:
     columns, rows = (min(40, floor(room / c.pitch + 1e-9)) for room in inside)
     if min(columns, rows) < 1 or columns * rows < m.cells:
         return None
+    title = "Planar array from a target"
+    own = replace(b.design, name=t.target.name, title=title, revision="A", unchanged={})
     planar = replace(b.planar, rows=rows, columns=columns, pitch=c.pitch, thickness=c.foil)
     d = replace(
         b,
-        design=replace(
-            b.design, name=t.target.name, title="Planar array from a target", revision="A", unchanged={}
-        ),
+        design=own,
         planar=planar,
         measuring=replace(b.measuring, beam_width=c.soft),
         reference=replace(b.reference, beam_width=c.stiff, island=c.island),
@@ -215,11 +215,11 @@ def of_kind(layout: PlanarLayout, name: str, rated: float | None = None) -> Cell
     return CellRead(float(1.0 / pad_compliance(kind, layout.pad_height)[2, 2]), rated, float(noise[2]))
 
 
-def fits(layout: PlanarLayout, name: str) -> bool:
-    """Whether a kind of cell keeps the rules on its contour and its beams: it has no figures otherwise."""
+def fits(layout: PlanarLayout, *names: str) -> bool:
+    """Whether these kinds of cells keep the rules on contours and beams: they have no figures otherwise."""
     rules = ("islands_fit_pitch", "beams_can_be_cut", "beams_in_range", "island_takes_post")
     found = (f for rule in rules for f in design_rules()[rule].find(layout))
-    return not any(f.part.startswith(f"{name}.") for f in found)
+    return not any(f.part.startswith(tuple(f"{name}." for name in names)) for f in found)
 
 
 def variances(
@@ -271,7 +271,7 @@ def evaluated(t: CellTarget, c: CellChoice) -> CellFound | Finding:
     if d is None:
         return wrong("planar.length", f"no room for {t.planar.cells} cells", t.planar.length, "more")
     layout: Any = PlanarLayout(d)
-    if all(fits(layout, name) for name in KINDS):
+    if fits(layout, *KINDS):
         d = with_stops(d)
         layout = PlanarLayout(d)
     if broken := misfit(layout, design_rules().values()):

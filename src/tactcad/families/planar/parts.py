@@ -346,15 +346,16 @@ def base(layout: PlanarLayout) -> Part:
     z = 0 its lower face."""
     t = base_plate(layout)
     wide = round(layout.design.planar.pitch - WEB, 9)  # a sunk land: WEB stays between neighbours
+    well = round(layout.design.magnet.diameter + 2.0 * layout.design.housing.well, 9)
     wells: list[Feature] = []
     for e in layout.elements:
         lower = round(e.kind.table.stop_gap + layout.base_z, 9)
         land = (wide, lower) if sunk(layout, e.kind) else None
         name = f"well_{e.kind.name}"
-        wells.append(Hole(name, (e.x, e.y, t), (0, 0, -1), layout.well, t, True, counterbore=land))
+        wells.append(Hole(name, (e.x, e.y, t), (0, 0, -1), well, t, True, counterbore=land))
     bore = pressed(float(DOWEL))
     names = [f"well_{kind.name}" for kind in layout.used]
-    bores = [_wider(name, layout.well) for name in names]
+    bores = [_wider(name, well) for name in names]
     deep = max((kind.table.stop_gap for kind in layout.used), default=0.0) + layout.base_z
     lands = f"counterbores {deep:.3g} ±{LAND_DEPTH:g} deep, milled in one setting with the upper face"
     holes, notes = [*_through(layout, t, bore), *wells], (lands,) if deep > 0.0 else ()

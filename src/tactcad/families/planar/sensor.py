@@ -297,16 +297,7 @@ def golden(design: PlanarDesign) -> dict[str, dict]:
     }
 
 
-STRENGTH = (
-    "kind",
-    "stiffness",
-    "rated_force",
-    "fatigue_factor",
-    "yield_force",
-    "stop_force",
-    "linear_force",
-    "stress",
-)
+STRENGTH = "kind stiffness rated_force fatigue_factor yield_force stop_force linear_force stress".split()
 
 
 def strength(layout: PlanarLayout) -> bytes:

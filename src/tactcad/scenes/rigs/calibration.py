@@ -6,7 +6,6 @@ from collections.abc import Iterable, Iterator
 from math import floor
 
 from tactcad.design.fields import present
-from tactcad.design.messages import InputError
 from tactcad.design.tree import Design
 from tactcad.parts import rigs
 from tactcad.parts.array.element import deflected_element, element_number
@@ -25,7 +24,7 @@ from tactcad.parts.rules.calibration_rules import FITS
 
 from ..builder import Builder
 from ..moves import APPROACH, driver
-from ..rig import Rig
+from ..rig import Rig, require_element
 from ..rig_requirements import roller
 from ..scene import (
     AGAINST_Y,
@@ -79,10 +78,7 @@ def calibration(design: Design, pose: Pose = REST) -> Scene:
     """
     rig = StandLayout(design)
     pads = pad_middles(rig.array)
-    if not 1 <= pose.element <= len(pads):
-        raise InputError(
-            "element", "the array has none of that number", value=pose.element, legal=f"1 to {len(pads)}"
-        )
+    require_element(pose, len(pads))
     px, py = pads[pose.element - 1]
     dx, dy = -px, py  # the array lies on its back: its y runs against the scene's
     b = Builder()
