@@ -31,7 +31,8 @@ def no_less(layout: PlanarLayout, field: str, what: str, least: float, legal: st
 
 
 def no_more(layout: PlanarLayout, field: str, what: str, most: float) -> Iterator[Finding]:
-    return at_most(field, what, attrgetter(field)(layout.design), most)
+    legal = "" if most > 0.0 else "none beside the design's other values"
+    return at_most(field, what, attrgetter(field)(layout.design), most, legal)
 
 
 def _up(length: float) -> float:
