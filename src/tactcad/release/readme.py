@@ -429,7 +429,7 @@ def table(heads: Sequence[str], groups: Sequence[tuple[str, Sequence[Sequence[st
     rows = [heads, *(row for _, group in groups for row in group)]
     widths = [min(WIDEST, max(len(row[i]) for row in rows)) for i in range(len(heads) - 1)]
     widths = [max([w, *(len(word) for row in rows for word in row[i].split())]) for i, w in enumerate(widths)]
-    widths.append(max(WIDTH - sum(w + 2 for w in widths) - 2, 22))
+    widths.append(max(WIDTH - sum(w + 2 for w in widths) - 2, 17))
 
     def line(row: Sequence[str]) -> list[str]:
         cells = [wrap(cell, w) or [""] for cell, w in zip(row, widths)]
