@@ -35,9 +35,17 @@ ROCKING_BLANK = {
     "holes.dowel_offsets": [3.5],
     "holes.screw_offsets": [9.1],
 }
-BARE_TEXT = (HARDWARE / "macro-array.toml").read_text("utf-8").split("\n[origin]\n")[
-    0
-] + '\n[origin]\n"material.youngs_modulus" = "paper: 69000 MPa"\n'
+
+
+def one_letter(text: str) -> str:
+    """A design's text without the letters that parts keep: of what is changed, parts may be gone."""
+    return re.sub(r"(?s)\n\[design\.unchanged\.\w+\]\n.*?(?=\n\[|\Z)", "", text)
+
+
+BARE_TEXT = (
+    one_letter((HARDWARE / "macro-array.toml").read_text("utf-8")).split("\n[origin]\n")[0]
+    + '\n[origin]\n"material.youngs_modulus" = "paper: 69000 MPa"\n'
+)
 
 
 def without_rigs(name: str) -> str:
@@ -47,6 +55,7 @@ def without_rigs(name: str) -> str:
 
 def array_only(text: str) -> str:
     """A design's text without the tables of rigs."""
+    text = one_letter(text)
     return re.sub(r"(?s)\n\[(calibration|sample|cart|holder|grasping|bonding)\]\n.*?(?=\n\[|\Z)", "", text)
 
 
@@ -60,7 +69,7 @@ TINY_TEXT = (
 
 @cache
 def _table(base: str) -> dict[str, Any]:
-    return tomllib.loads((HARDWARE / f"{base}.toml").read_text())
+    return tomllib.loads(one_letter((HARDWARE / f"{base}.toml").read_text("utf-8")))
 
 
 def table(changes: dict[str, Any] | None = None, base: str = "macro-array") -> dict[str, Any]:

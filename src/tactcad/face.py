@@ -368,7 +368,7 @@ class OpenScene:
         """The bill of materials."""
         from tactcad.scenes.bom import bom_rows
 
-        rows = bom_rows(self.made, self.of.design.design.revision, {})
+        rows = bom_rows(self.made, self.of.design.design, {})
         return Reply(f"{self.of.name}, {self.name}", rows, {"rows": [*map(_plain, rows)]})
 
     @_in_our_words

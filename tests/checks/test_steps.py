@@ -4,6 +4,7 @@ shipped scenes' moves as guide/SCENE.json tells them."""
 from __future__ import annotations
 
 import json
+import re
 from dataclasses import replace
 
 import pytest
@@ -113,6 +114,31 @@ def test_a_fingertip_reaches_what_it_lays():
     for walls in ((wall(4.5, 60), wall(-4.5, 60)), (deep,)):
         (said,) = beside(*walls)
         assert said.startswith("fingers") and "no fingertip, 12 x 10 mm, reaches it" in said
+
+
+@pytest.mark.parametrize("shelf", [False, True])
+@pytest.mark.parametrize(("beside", "over", "free"), [(45, 45, True), (35, 45, True), (35, 35, False)])
+def test_one_hand_holds_what_the_other_screws(beside, over, free, shelf):
+    """A cover of 30 x 30 on an upright plate, walls so far beside it and over and under it: fingers, 40 mm
+    long, hold it by two sides, or from above press it on a shelf."""
+    upright = ((1, 0, 0), (0, 0, -1), (0, 1, 0))  # local z to the front, -y
+    hole = Hole("screw", (0, 0, 10), (0, 0, -1), 3.4, 10, True)
+    cover = Placement("C1", block("COVER", 30, 30, 10, hole), (0, -10, 0), upright)
+    screw = Placement("SC1", cap_screw("M3", 16.0), (0, -20, 0), ((1, 0, 0), (0, 0, 1), (0, -1, 0)))
+    walls = [
+        *(Placement(f"W{s}", block("SIDE", 2, 60, 60), (s * (16 + beside), -10, -30)) for s in (-1, 1)),
+        Placement("W2", block("ROOF-60", 60, 60, 2), (0, -10, 15 + over)),
+        Placement("W3", block("ROOF-60", 60, 60, 2), (0, -10, -17 - (0 if shelf else over))),
+    ]
+    met = (Contact("SC1", "T1", "thread"), Contact("SC1", "C1", "touch"), Contact("C1", "T1", "touch"))
+    steps = (step("T1", *(w.designator for w in walls)), step("C1"), step("SC1"))
+    tapped = block("TAPPED-60", 60, 60, 10, *TAPPED.features)
+    back = Placement("T1", tapped, (0, 0, 0), upright)
+    on = (Contact("C1", "W3", "touch"),) if shelf else ()
+    made = Scene("held", (back, *walls, cover, screw), (*met, *on), steps=steps)
+    said = [f.message for f in found(made) if f.check == "fingers"]
+    none = "step 'SC1': C1: no fingertip presses it down, and no two hold it, 100 mm apart at most, while SC1"
+    assert [m.startswith(none) for m in said] == ([] if free else [True])
 
 
 def test_a_spanner_wants_room_to_turn():
@@ -299,3 +325,14 @@ def test_every_stage_sold_can_be_screwed_down(monkeypatch, stage):
     met = tuple(c for c in made.contacts if {c.first, c.second} <= names)
     stands = replace(made, placements=placed, contacts=met, steps=steps, groups=(), motions=(), ready=())
     assert found(stands) == []
+
+
+@pytest.mark.parametrize("name", ["macro-array", "planar-array", "jaw-array"])
+def test_a_step_on_the_bench_fixes_nothing_on_what_is_not_there(name):
+    design = load(name)
+    for scene_name in scene_names(design):
+        told, there = json.loads(guide_json(make_scene(design, scene_name))), set()
+        for one in (s for s in told["steps"] if s["bench"]):
+            there |= {move["designator"] for move in one["moves"]}
+            said = set(re.findall(r"\b[A-Z]{1,3}\d+\b", " ".join([*one["sets"], *one["leaves"]])))
+            assert said <= there, (scene_name, one["title"], said - there)

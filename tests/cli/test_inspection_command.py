@@ -22,6 +22,7 @@ from tactcad.parts.rules import load
 
 LAYOUT = Layout(load("macro-array"))
 BLANK = inspection_bytes(LAYOUT).decode()
+LETTER = BLANK.splitlines()[1].split(",")[1]
 
 
 def filled(values: dict[tuple[str, str], dict[str, str]], text: str = BLANK) -> str:
@@ -295,11 +296,8 @@ def replaced(line: int, old: str, new: str) -> str:
 
 BAD = {
     "another design": (BLANK.replace("macro-array,", "soft-tissue,"), ":2:1: design"),
-    "another revision": (BLANK.replace(f",{LAYOUT.design.design.revision},E", ",ZZ,E"), ":2:2: revision"),
-    "one row of another revision": (
-        replaced(E5, f",{LAYOUT.design.design.revision},", ",ZZ,"),
-        f":{E5}:2: revision",
-    ),
+    "another revision": (BLANK.replace(f",{LETTER},E", ",ZZ,E"), ":2:2: revision"),
+    "one row of another revision": (replaced(E5, f",{LETTER},", ",ZZ,"), f":{E5}:2: revision"),
     "changed nominal": (replaced(E5, ",0.25,", ",0.26,"), f":{E5}:{COLUMN['nominal']}: nominal"),
     "widened limit": (replaced(E5, ",0.255,", ",0.26,"), f":{E5}:{COLUMN['upper']}: upper"),
     "nominal that a spreadsheet took for a date": (

@@ -28,10 +28,10 @@ def test_only_identity_changes(source, folder):
     assert main(["new", "my-sensor.toml", "--from", source]) == 0
     old = tomllib.loads((HARDWARE / f"{source}.toml").read_text("utf-8"))
     new = tomllib.loads((folder / "my-sensor.toml").read_text("utf-8"))
-    assert "title" not in new["design"]
+    assert not {"title", "unchanged"} & {*new["design"]}
     assert new["design"].pop("name") == "my-sensor" and new["design"].pop("revision") == "A"
     for table in (old["design"], new["design"]):
-        for key in ("name", "revision", "date", "title"):
+        for key in ("name", "revision", "date", "title", "unchanged"):
             table.pop(key, None)
     identity = {"design.name", "design.revision", "design.date", "design.title"}
     origins = [{k: v for k, v in t.pop("origin", {}).items() if k not in identity} for t in (old, new)]

@@ -281,9 +281,9 @@ def test_text_beyond_ascii_is_kept():
 
 
 def test_a_toml_date_is_a_date_and_nothing_else():
-    dated = GOOD.replace('date = "2026-11-27"', "date = 2026-11-27")
+    dated = GOOD.replace('date = "2026-11-28"', "date = 2026-11-28")
     assert dated != GOOD
-    assert parse(dated, "x").design.date == "2026-11-27"
+    assert parse(dated, "x").design.date == "2026-11-28"
     wrong = GOOD.replace('title = "Macro tactile array 2 x 5"', "title = 2026-11-21")
     assert refused(parse, wrong, "x").where == "design.title"
 

@@ -58,6 +58,20 @@ PUBLISHED = {
         "tensile_strength": 190 * KSI,
     },
     "1.4310-C1300": {"youngs_modulus": 185e3, "yield_strength": 147 * KSI, "tensile_strength": 1300},
+    "1.4310-C1000": {  # elgiloy.com, 301 half hard
+        "youngs_modulus": 193e3,
+        "density": 7880,
+        "yield_strength": 110 * KSI,
+        "tensile_strength": 150 * KSI,
+        "conductivity": 16.2,
+    },
+    "1.4310-C1500": {"youngs_modulus": 185e3, "tensile_strength": 1500},  # EN 10151; at 1800 MPa
+    "17-7PH-TH1050": {  # azom.com 6779; ASTM A693
+        "youngs_modulus": 29588 * KSI,
+        "density": 0.282 * LB_PER_CUBIC_INCH,
+        "yield_strength": 150 * KSI,
+        "tensile_strength": 180 * KSI,
+    },
     "1.4034-hardened": {  # kooz.si; AK Steel's type 420 strip
         "youngs_modulus": 220e3,
         "density": 7730,
@@ -76,6 +90,11 @@ PUBLISHED = {
         "density": 8260,
         "yield_strength": 960,
         "tensile_strength": 1100,
+    },
+    "C17200-TH04": {  # ASTM B194
+        "youngs_modulus": 131e3,
+        "yield_strength": 165 * KSI,
+        "tensile_strength": 190 * KSI,
     },
 }
 
@@ -109,7 +128,7 @@ def test_the_modulus_falls_by_the_alloy_s_own_share_per_kelvin():
 
 
 def test_every_row_is_whole():
-    families = ["aluminium"] * 3 + ["titanium"] + ["steel"] * 4 + ["copper"]
+    families = ["aluminium"] * 3 + ["titanium"] + ["steel"] * 7 + ["copper"] * 2
     assert [family(row.density) for row in ALLOYS.values()] == families
     for row in ALLOYS.values():
         assert row.standard and row.temper and row.source

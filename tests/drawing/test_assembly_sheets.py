@@ -49,7 +49,7 @@ def drawn(base: str, name: str):
     design = variant(base=base)
     scene = make_scene(design, name)
     shapes = shapes_of(scene)
-    rows = bom_rows(scene, design.design.revision, {})
+    rows = bom_rows(scene, design.design, {})
     return design, scene, rows, shapes, assembly_sheets(design, scene, rows, shapes)
 
 
@@ -396,7 +396,7 @@ def test_one_svg_holds_all_sheets_below_each_other(assembly):
 
 def test_long_lists_go_over_several_columns_whole():
     scene = make_scene(variant(), "array")
-    rows = bom_rows(scene, "A", {}) * 7
+    rows = bom_rows(scene, None, {}) * 7
     list_ = laid(rows, 1.8)
     rooms = [200.0, 150.0]
     columns = laid_columns(list_, rooms)

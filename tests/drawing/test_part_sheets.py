@@ -16,7 +16,7 @@ from pathlib import Path
 
 import pytest
 from built import shape_of
-from variants import HARDWARE, IN_SLOT, variant
+from variants import HARDWARE, IN_SLOT, one_letter, variant
 
 import tactcad
 from tactcad.cli.main import main
@@ -290,7 +290,9 @@ def test_export_with_drawings(tmp_path, monkeypatch):
     hash that the manifest has for it; the same again rebuilds nothing and loads neither kernel nor PDF
     library."""
     (tmp_path / "d.toml").write_text(
-        (HARDWARE / "macro-array.toml").read_text().replace("[[4, 7, 6, 8, 6], [8, 5, 4, 5, 7]]", "[[4, 6]]")
+        one_letter((HARDWARE / "macro-array.toml").read_text()).replace(
+            "[[4, 7, 6, 8, 6], [8, 5, 4, 5, 7]]", "[[4, 6]]"
+        )
     )
     command = [
         sys.executable,

@@ -71,7 +71,7 @@ def test_where_no_exploded_view_finds_room_the_sheets_are_complete_all_the_same(
     monkeypatch.setattr(numbered, "exploded_page", lambda *_: None)
     design = variant(base="soft-tissue")
     scene = make_scene(design, "array")
-    rows = bom_rows(scene, design.design.revision, {})
+    rows = bom_rows(scene, design.design, {})
     sheets = assembly_sheets(design, scene, rows, shapes_of(scene))
     assert (
         assembly_faults(

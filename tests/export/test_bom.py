@@ -10,6 +10,7 @@ from dataclasses import replace
 import pytest
 
 from tactcad.contour import circle, rectangle
+from tactcad.design.tree import Identity
 from tactcad.parts.bought.electronic_parts import Supply
 from tactcad.parts.language.description import Extrusion, Material, Part, Purchase
 from tactcad.scenes.bom import (
@@ -75,7 +76,8 @@ SCENE = Scene(
     supplies=(GLUE, WIRE),
 )
 FILES = {"X-a4": ("dxf/X-a4.dxf", "ab" * 32)}
-ROWS = bom_rows(SCENE, "B", FILES)
+ISSUED = Identity("macro", "B", "2026-01-01")
+ROWS = bom_rows(SCENE, ISSUED, FILES)
 
 
 def written(rows) -> tuple[bytes, bytes]:

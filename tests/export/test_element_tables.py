@@ -34,7 +34,7 @@ def test_every_dimension_of_every_element_stands_once_blank_and_with_its_limits(
     elements = {f"E{n}" for n in range(1, sum(map(len, d.array.row_arms)) + 1)}
     assert {e for e, _ in count} == elements
     assert {(r["design"], r["revision"], r["unit"], r["measured"], r["uncertainty_k2"]) for r in rows} == {
-        (d.name, d.design.revision, "mm", "", "")
+        (d.name, d.design.of_part(r["part_no"]).revision, "mm", "", "") for r in rows
     }
     assert all(r["where"] and r["how"] for r in rows)
     assert not [r for r in rows if r["where"].startswith("as dimensioned")]  # each says how by itself

@@ -10,7 +10,7 @@ import tomllib
 from pathlib import Path
 
 import pytest
-from variants import without_rigs
+from variants import variant, without_rigs
 
 from tactcad.cli.main import main
 from tactcad.contour import Line
@@ -40,7 +40,7 @@ NEXT = "Z"
 
 @pytest.fixture(scope="module")
 def record():
-    return golden_record(load("macro-array"))
+    return golden_record(variant())
 
 
 def edited(record, path, change):
@@ -87,11 +87,11 @@ def test_it_holds_no_digest_and_reads_back(record):
 
 
 def test_equal_designs_give_equal_bytes(record):
-    assert golden_bytes(golden_record(load("macro-array"))) == golden_bytes(record)
+    assert golden_bytes(golden_record(variant())) == golden_bytes(record)
 
 
 def test_same_revision_with_other_geometry_fails_with_old_and_new_value(record):
-    design = load("macro-array")
+    design = variant()
     thicker = dataclasses.replace(design, sheet=dataclasses.replace(design.sheet, thickness=2.9))
     findings = judge(record, golden_record(thicker))
     assert severities(findings) == {"fail"}
@@ -101,7 +101,7 @@ def test_same_revision_with_other_geometry_fails_with_old_and_new_value(record):
 
 
 def test_a_new_revision_is_flagged_until_it_is_taken_up(record):
-    design = load("macro-array")
+    design = variant()
     changed = dataclasses.replace(
         design,
         sheet=dataclasses.replace(design.sheet, thickness=2.9),
@@ -157,7 +157,7 @@ def test_a_hole_that_moved_is_seen(record):
 
 
 def test_a_contour_is_compared_as_a_curve():
-    layout = Layout(load("macro-array"))
+    layout = Layout(variant())
     outer = contours(element(layout, layout.elements[0]))[0]
     rows = contour_record(outer)
     n = next(i for i, s in enumerate(outer) if isinstance(s, Line) and s.name == "rear_top")
@@ -186,10 +186,10 @@ def test_a_contour_is_compared_as_a_curve():
 def test_a_damaged_golden_file_is_no_agreement(record, tmp_path, spoil):
     path = tmp_path / "macro-array.json"
     path.write_bytes(spoil(golden_bytes(record)))
-    [finding] = check_golden(load("macro-array"), path)
+    [finding] = check_golden(variant(), path)
     assert finding.severity == "fail" and "cannot be used" in finding.message
     with pytest.raises(CheckFailure):
-        accept(load("macro-array"), path, [])
+        accept(variant(), path, [])
 
 
 def test_only_a_design_in_a_hardware_folder_has_one(tmp_path):
@@ -210,7 +210,7 @@ def test_a_link_in_a_hardware_folder_has_one(tmp_path):
 
 def test_accept_writes_a_new_revision_and_refuses_the_rest(tmp_path):
     path = tmp_path / "exports" / "golden" / "macro-array.json"
-    design = load("macro-array")
+    design = variant()
     wrong = Finding("overlap", "fail", "E1", (), 1, 0, "E1 and E2 overlap")
     with pytest.raises(CheckFailure, match="checks failed"):
         accept(design, path, [wrong])

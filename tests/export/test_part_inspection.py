@@ -14,7 +14,11 @@ from tactcad.stacks.virtual_build import sensor
 
 @pytest.fixture(scope="module", params=["macro-array", "soft-tissue"])
 def made(request):
-    design = load(request.param)
+    return sheet_of(request.param)
+
+
+def sheet_of(name):
+    design = load(name)
     scenes = [make_scene(design, name) for name in scene_names(design)]
     built = sensor(design, scenes)
     lines = built.stack()
@@ -35,7 +39,7 @@ def test_rows_are_the_parts_own_limits_each_once(made):
         assert limits == pytest.approx((sizes | zones)[r["characteristic"]])
         assert (r["design"], r["revision"], r["unit"], r["measured"]) == (
             design.name,
-            design.design.revision,
+            design.design.of_part(r["part_no"]).revision,
             "mm",
             "",
         )
@@ -79,3 +83,15 @@ def test_every_part_on_which_the_array_depends_is_in_it(made):
     design, _, _, rows = made
     listed = {r["part_no"].removeprefix(f"{design.name}-") for r in rows}
     assert {"end-plate-head", "end-plate-tapped", "carrier", "stop-plate", "spacer"} <= listed
+
+
+def test_a_turned_post_is_no_hole():
+    """Plug gauges for bores and holes, a micrometer across pad and spigot; the posts' length is listed."""
+    *_, rows = sheet_of("jaw-array")
+    how = {
+        (r["part_no"].removeprefix("jaw-array-"), r["characteristic"]): r["how"].split(",")[0] for r in rows
+    }
+    inside = {name for name, told in how.items() if told == "plug gauges"}
+    assert {("cap", "bore diameter"), ("foil", "spigot diameter")} <= inside
+    assert how["post", "pad side diameter"] == how["post", "spigot diameter"] == "micrometer"
+    assert ("post", "length over the shoulder") in how

@@ -110,7 +110,7 @@ class Export:
         part = next(p for p in scene.parts if p.process == "wire-cut")
         record = geometry(design)["parts"][part.part_no]
         named = {name: record[name] for name in sides.IN_EXPORTS if name != "contours"}
-        rows = bom.bom_rows(scene, "A", {})
+        rows = bom.bom_rows(scene, None, {})
         self.files = {
             "part.dxf": ("dxf", part.part_no, dxf_bytes(part)),
             "bom.json": ("bom", "", bom.json_bytes(rows, design.name, "A", "array")),

@@ -56,7 +56,7 @@ NO_GATES = {
     "_own_folder",  # another export takes too long
     "replacing",  # somebody wrote to the zips meanwhile
     "publish",  # somebody wrote to the earlier folder meanwhile
-    "changes_against",  # a golden file that cannot be read
+    "compared",  # a golden file that cannot be read
     "written",  # the kernel says itself that it failed
     "side_by_side",  # a process was killed
     "_faces",  # a feature that other features have cut away

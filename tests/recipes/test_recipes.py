@@ -86,7 +86,7 @@ from tactcad.scenes.bom import bom_rows
 
 scene = make_scene(load("tiny.toml"), "array")
 print(*(s.title for s in scene.steps if "CO1" in s.designators))
-print(*(r.qty for r in bom_rows(scene, "A", {}) if r.part_no == "tiny-cover"))
+print(*(r.qty for r in bom_rows(scene, None, {}) if r.part_no == "tiny-cover"))
 """
 
 

@@ -165,7 +165,7 @@ def test_what_comes_with_another_part_is_no_line_of_an_order(macro):
     scenes = [make_scene(macro, name) for name in scene_names(macro)]
     halves = {p.part.part_no for s in scenes for p in s.placements if p.part.part_no.startswith("STAGE-")}
     assert {n.rsplit("-", 1)[1] for n in halves} == {"FIXED", "MOVING"}
-    lines = {line.row.part_no for line in ordered(scenes, "A", "all")}
+    lines = {line.row.part_no for line in ordered(scenes, None, "all")}
     assert {n for n in halves if n in lines} == {n for n in halves if n.endswith("-FIXED")}
 
 
@@ -243,7 +243,7 @@ def test_one_set_or_all(macro):
     rigs = [c - counts["array"] if n in holds_the_array else c for n, c in counts.items() if n != "array"]
     counts = {n: Counter({p: k for p, k in c.items() if "-MOVING" not in p}) for n, c in counts.items()}
     for sets, count in (("one", lambda n: max(c[n] for c in counts.values())), ("all", None)):
-        lines = {line.row.part_no: line for line in ordered(scenes, "A", sets)}
+        lines = {line.row.part_no: line for line in ordered(scenes, None, sets)}
         for number in set().union(*counts.values()) - {f"{macro.name}-fitted-board"}:  # ordered as its parts
             meant = count(number) if count else counts["array"][number] + sum(c[number] for c in rigs)
             assert lines[number].qty == meant, (sets, number)
@@ -255,7 +255,7 @@ def test_one_set_or_all(macro):
 def test_the_element_in_the_bonding_fixture_is_one_of_the_arrays():
     design = variant()
     scenes = [make_scene(design, name) for name in ("array", "bonding")]
-    lines = {line.row.part_no: line.qty for line in ordered(scenes, "A", "all")}
+    lines = {line.row.part_no: line.qty for line in ordered(scenes, None, "all")}
     elements = [n for n in lines if "-element-" in n]
     assert sum(lines[n] for n in elements) == len(Layout(design).elements) == 10
     assert lines[f"{design.name}-bonding-nest"] == 1
@@ -263,7 +263,7 @@ def test_the_element_in_the_bonding_fixture_is_one_of_the_arrays():
 
 def test_one_element_of_every_ten_of_a_kind_is_spare():
     scene = make_scene(variant({"array.row_arms": [[5] * 21 + [4], [5]]}), "array")
-    lines = {line.row.part_no: line for line in ordered([scene], "A", "one")}
+    lines = {line.row.part_no: line for line in ordered([scene], None, "one")}
     for arm, count, spares in ((5, 22, 3), (4, 1, 1)):
         line = lines[f"macro-array-element-a{arm}mm"]
         assert (line.qty, line.row.spares, line.order) == (count, spares, count + spares)

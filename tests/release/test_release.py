@@ -139,6 +139,7 @@ def test_the_bill_and_the_folders_agree(files):
     for row in made:  # what to make, how many, of what: a material may take several lines
         (first,) = (i for i, line in enumerate(lines) if line.startswith(f"  {row['part_no']}  "))
         assert lines[first][:of].split()[1:] == [
+            row["rev"],
             row["qty"],
             *([row["spares"]] if row["spares"] != "0" else []),
         ]
@@ -290,8 +291,8 @@ SAYS = {  # what is then among the faults; several gates may see one change
     "assembly drawing of a draft": f"pdf/tiny-array_{REVISION}.pdf, sheet 1: with PRELIMINARY",
     "assembly drawing missing": f"pdf/tiny-array_{REVISION}.pdf: missing",
     "cut file changed with everything that names it but the drawing": "does not have the SHA-256 of dxf/",
-    "inspection sheet of another revision": "inspection.csv: not of tiny revision",
-    "strength summary of another design": "strength.csv: not of tiny revision",
+    "inspection sheet of another revision": "inspection.csv: a row of tiny revision ZZ",
+    "strength summary of another design": "strength.csv: a row of large revision",
     "README of another revision": "README.txt: does not name tiny revision",
     "README of a sample": "README.txt: says that it is a sample",
     "guide missing": "guide/array.html: missing",
@@ -426,7 +427,7 @@ def copy(project, tmp_path):
 
 WIDER = TINY_TEXT.replace("hinge_length = 0.88", "hinge_length = 0.90")
 BY_GOLDEN = {
-    "other geometry under the same revision": (WIDER, "other geometry than its golden file"),
+    "other geometry under the same revision": (WIDER, "other content than its golden file"),
     "a revision not taken up": (
         TINY_TEXT.replace(f'revision = "{REVISION}"', 'revision = "ZZ"'),
         "`make golden` takes it up",

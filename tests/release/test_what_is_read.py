@@ -49,7 +49,7 @@ def guide(scene: str) -> dict[str, str]:
 @cache
 def bill(scene: str) -> dict[str, dict[str, str]]:
     made = make_scene(load("macro-array"), scene)
-    return {row["part_no"]: row for row in rows(csv_bytes(bom_rows(made, "A", {})))}
+    return {row["part_no"]: row for row in rows(csv_bytes(bom_rows(made, None, {})))}
 
 
 @cache
@@ -83,7 +83,7 @@ def packages(name: str) -> dict[str, tuple[dict[str, dict[str, str]], str]]:
         ("grasping", "thin oil", "GUIDE-OIL"),
         ("array", "oil every thread", "ASSEMBLY-OIL"),
         ("array", "thread lacquer", "THREAD-LACQUER"),
-        ("setting", "bar of rubber", "RUBBER-BAR"),
+        ("setting", "bar of rubber for each row", "RUBBER-BAR"),
     ],
 )
 def test_what_a_guide_uses_up_is_in_its_bill(scene, said, part_no):
@@ -166,6 +166,33 @@ def test_a_stage_whose_drawing_nobody_read_says_so_to_its_buyer():
     assert stages
     for row in stages:
         assert row["source_verified"] == "unread" and "no maker's drawing read" in row["standard_designation"]
+
+
+@pytest.mark.parametrize("name", DESIGNS)
+def test_what_no_standard_names_has_one_make_as_an_example(name):
+    design = load(name)
+    for row in (row for s in scene_names(design) for row in bom_rows(make_scene(design, s), None, {})):
+        told = row.mpn or row.process != "bought" or not row.has_solid
+        if told or re.match(r"(ISO|DIN) \d", row.standard_designation):
+            assert "example" not in row.alternates, row.part_no
+            continue
+        make = r"example: \S.*; drawing (read|unread)(?=;|$)|no example found(?=;|$)"
+        said = re.match(make, row.alternates)
+        assert said and (said[1] == "read") == row.source_verified, row.part_no
+
+
+def test_the_guide_has_the_dimensions_of_the_make_whose_drawing_was_read():
+    """HIWIN G99TE20-1808, section 2-4-18: MGN 9C and its rail, H, H1, W, B, C, L, M x l, HR, D, h, d, P."""
+    parts = make_scene(load("macro-array"), "grasping").parts
+    rail, carriage = (next(p for p in parts if p.part_no.startswith(kind)) for kind in ("RAIL", "CARRIAGE"))
+    x0, y0, x1, y1 = carriage.body.outer.box
+    assert (y1, y0, x1 - x0, carriage.body.thickness, carriage.mass) == (10, 2, 20, 28.9, 16)
+    at = sorted((h.at[0], h.at[2]) for h in carriage.features)
+    assert (at[-1][0] - at[0][0], at[1][1] - at[0][1]) == pytest.approx((15, 10))
+    assert {(h.thread, h.depth) for h in carriage.features} == {("M3", 3)}
+    ys = [h.at[1] for h in rail.features]
+    assert {b - a for a, b in zip(ys, ys[1:])} == {20} and rail.body.thickness == 6.5
+    assert {(h.counterbore, h.diameter) for h in rail.features} == {((6, 3.5), 3.5)}
 
 
 @cache

@@ -77,7 +77,14 @@ def test_an_export_of_one_scene_builds_its_parts_once_each_and_no_others(scene, 
     bill = json.loads((tmp_path / f"out/bom-{scene}.json").read_text())["rows"]
     assert sum(row["qty"] for row in bill if row["has_solid"]) == len(make_scene(design, scene).placements)
     read = {row["part_no"] for row in bill if row["make_buy"] == "buy" and row["source_verified"]}
-    assert read <= {"ADHESIVE", "GAUGE-TAPE", "SURFACE-PREPARATION"}  # numbers read at the maker's
+    # numbers and dimensions read at the maker's
+    assert read <= {
+        "ADHESIVE",
+        "GAUGE-TAPE",
+        "SURFACE-PREPARATION",
+        "CARRIAGE-9-UNSEALED",
+        "RAIL-9x100-guide",
+    }
     cut = {
         p.part_no
         for p in make_scene(design, scene).parts

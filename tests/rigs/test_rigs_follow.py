@@ -125,7 +125,7 @@ def test_a_stage_s_travel_is_at_least_what_the_design_asks_for():
 def test_the_catalogue_can_be_what_it_says():
     assert [s.size for s in STAGES] == sorted(s.size for s in STAGES)
     for s in STAGES:
-        assert s.hole + 4 < s.size / 2 and s.travel < s.size / 2 and s.verified == bool(s.part_no)
+        assert s.hole + 4 < s.size / 2 and s.travel < s.size / 2
 
 
 # what is said, and the exit status

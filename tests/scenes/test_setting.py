@@ -69,7 +69,7 @@ def test_every_design_has_it_in_bill_and_guide():
         design = variant(ROWS[name])
         assert "setting" in scene_names(design)
         scene = make_scene(design, "setting")
-        assert "Setting fixture" in {row.description for row in bom_rows(scene, "A", {})}
+        assert "Setting fixture" in {row.description for row in bom_rows(scene, None, {})}
         text = " ".join(s.text for s in make_scene(design, "array").steps)
         assert "setting fixture" in text and "mrad" in text
         assert ("every blank on the strip" in text) == (name == "one row")

@@ -51,7 +51,7 @@ def test_every_board_has_a_plate_of_its_own(kind):
     """Counted off the boards; a plate's threads and the board's holes, as routed, lie over each other."""
     design = variant(KINDS[kind])
     scene, n = make_scene(design, "wiring"), len(boards(Layout(design)))
-    rows = {row.part_no: row.qty for row in bom_rows(scene, "A", {})}
+    rows = {row.part_no: row.qty for row in bom_rows(scene, None, {})}
     own = {f"{design.name}-{part}": 1 for part in ("board-plate", "lead-clamp", "fitted-board")}
     own |= {
         "SOCKET-LEADS-26-strip": 1,
@@ -59,7 +59,7 @@ def test_every_board_has_a_plate_of_its_own(kind):
         f"{CAP}6-A2-70-screw": 4,
         f"{CAP}12-A2-70-screw": 2,
     }
-    extra = {row.part_no: row.qty for row in bom_rows(make_scene(design, "array"), "A", {})}
+    extra = {row.part_no: row.qty for row in bom_rows(make_scene(design, "array"), None, {})}
     assert {part: rows[part] - extra.get(part, 0) for part in own} == {p: n * k for p, k in own.items()}
     plate = next(p.part for p in scene.placements if p.designator == "BH1")
     threads = sorted(f.at[:2] for f in plate.features if f.name == "stand_off")

@@ -134,7 +134,7 @@ def test_it_stands_in_a_scene_with_all_that_comes_of_it(bought, macro_scene, mac
     assert "NEXT_ASSEMBLY_USAGE_OCCURRENCE('PL1','PL1'" in text
     assert step.part_step(bought, shapes[bought.part_no], HEADER)
 
-    row = next(r for r in bom.bom_rows(scene, "A", {}) if r.part_no == "PLUNGER-M3")
+    row = next(r for r in bom.bom_rows(scene, None, {}) if r.part_no == "PLUNGER-M3")
     assert (row.qty, row.make_buy, row.has_solid) == (1, "buy", True)
     assert [c.name for c in assembly(scene).children][-1] == "PL1"
 

@@ -93,6 +93,7 @@ def _record(builds: Builds, lines: list[StackLine], seconds: float, refusal: str
         "yield_interval": list(builds.interval),
         "distribution": builds.worse,
         "failures": builds.failures[builds.worse],
+        "stiffness_within_10_percent": builds.near,
         "distributions": {
             name: {"yield": builds.kept[name], "failures": builds.failures[name]} for name in builds.kept
         },
@@ -116,6 +117,8 @@ def _record(builds: Builds, lines: list[StackLine], seconds: float, refusal: str
 
 
 def _print(layout: Layout, builds: Builds, lines: list[StackLine]) -> None:
+    from tactcad.stacks.virtual_build import NEAR
+
     print(f"{layout.design.name}: {builds.count} arrays of each distribution, seed {builds.seed}")
     for which, share in builds.kept.items():
         failed = builds.failures[which]
@@ -123,6 +126,7 @@ def _print(layout: Layout, builds: Builds, lines: list[StackLine]) -> None:
         print(f"  {which:8} {100 * share:6.2f} % meet all requirements{f' ({why})' if why else ''}")
     low, high = builds.interval
     print(f"  yield    {100 * builds.share:6.2f} % ({100 * low:.4g} to {100 * high:.4g} %)")
+    print(f"  K        {100 * builds.near:6.2f} % have every K within {100 * NEAR:g} % of the drawn one")
     named = {line.requirement.name: _with_unit(line) for line in lines}
     wide = max(map(len, named.values()), default=0)
     print(f"  {'requirement':{wide}} {'nominal':>9} {'worst case':>21} {'sigma':>8}  largest contributor")

@@ -119,13 +119,14 @@ def _checked(source: str, args: argparse.Namespace, shop: Path, meshing: Meshing
     from tactcad.export.golden_file import check_golden, golden_path
     from tactcad.parts.language.finding import Finding
     from tactcad.parts.rules import load
-    from tactcad.scenes import chosen_scenes
+    from tactcad.scenes import chosen_scenes, refuse_unknown_parts
 
     from .streams import progress
 
     try:
         design = load(source)
         names = chosen_scenes(design, args.scene)
+        refuse_unknown_parts(design)
     except InputError as error:
         if len(args.design) == 1:
             raise

@@ -56,14 +56,19 @@ def run(args: argparse.Namespace) -> int:
 
     started = time.perf_counter()
     asked = allowance(args)
+    picked = pick(yield_grades(), Allowance(asked.within), YIELD) if asked.within else None
+    count = arrays_of(picked.grade) if picked else ARRAYS
     tables = parse_toml(read_text(args.target, MOST_BYTES, "a target file (TOML)"), args.target)
     for family in all_families().values():
         if family.targets and family.name in tables:
-            return int(family.targets.design(args, asked, lambda: _next(args.out)))
+            status = int(
+                family.targets.design(args, asked.seconds, picked and count, lambda: _next(args.out))
+            )
+            if picked and not args.json:
+                print(picked.text())
+            return status
     target = read_target(args.target)
     report.refuse_unwritable(args.out)
-    picked = pick(yield_grades(), Allowance(asked.within), YIELD) if asked.within else None
-    count = arrays_of(picked.grade) if picked else ARRAYS
     writing = 0.0
 
     def is_written(got: Synthesis) -> bool:

@@ -111,7 +111,8 @@ def _exported(source: str, args: argparse.Namespace, say: Progress) -> tuple[dic
     from tactcad.design.load import find, read
     from tactcad.export.formats import ExportOptions
     from tactcad.export.pipeline import export
-    from tactcad.scenes import chosen_scenes, left_out
+    from tactcad.parts.rules import broken_rules
+    from tactcad.scenes import chosen_scenes, left_out, refuse_unknown_parts
     from tactcad.scenes.rig import pose_of
 
     asked = allowance(args)
@@ -132,6 +133,8 @@ def _exported(source: str, args: argparse.Namespace, say: Progress) -> tuple[dic
         for line in again.lines:
             say.line(line)
     scenes = chosen_scenes(design, args.scene)
+    if not args.scene and not broken_rules(design):
+        refuse_unknown_parts(design)
     out = args.out or f"exports/{design.name}" + ("" if args.detail == "full" else f"-{args.detail}")
     refuse_overwriting(out, find(source), *([args.measured] if args.measured else []))
     options = ExportOptions(tuple(scenes), pose_of(args.pose, design), args.guide, args.detail, args.drawings)

@@ -12,7 +12,9 @@ EXAMPLES = """\
   make golden                      those of every design in hardware/
 
 Runs every check first, prints what changed, and writes exports/golden/<design>.json only if nothing
-fails. Other geometry under the same revision letter is refused: give the design a new one."""
+fails. Other content under the same revision letter is refused: give the design a new one. Then the lines are
+printed by which parts that did not change keep their letters ([design.unchanged]); one that changed and keeps
+its letter is refused."""
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -36,9 +38,9 @@ def _renew(source: str) -> None:
     from tactcad.design.files import refuse_overwriting
     from tactcad.design.load import find
     from tactcad.design.messages import InputError
-    from tactcad.export.golden_file import accept, changes_against, golden_path
+    from tactcad.export.golden_file import accept, changes_of, compared, golden_path
     from tactcad.parts.rules import load
-    from tactcad.scenes import scene_names
+    from tactcad.scenes import refuse_unknown_parts, scene_names
 
     from .streams import progress
 
@@ -47,7 +49,9 @@ def _renew(source: str) -> None:
     if path is None:
         raise InputError(source, "has no golden file", legal="a design in a folder hardware/")
     refuse_overwriting(path, find(source), option=source)
-    changes = changes_against(path, design)
+    refuse_unknown_parts(design)
+    old, new = compared(path, design)
+    changes = changes_of(old, new) if old else None
 
     from tactcad.checks.run import run_checks
 
@@ -56,8 +60,8 @@ def _renew(source: str) -> None:
     report = run_checks(design, scene_names(design), say=progress(sys.stderr).step)
     for failure in report.failures:
         print(failure, file=sys.stderr)
-    accept(design, path, report.failures)
+    told = accept(design, path, report.failures)
     said = {None: "written, there was none before", 0: "unchanged"}.get(
         len(changes) if changes is not None else None, f"written, {len(changes or ())} differences"
     )
-    print(f"{path.name}: {said}")
+    print(f"{path.name}: {said}", *told, sep="\n")

@@ -65,6 +65,7 @@ def run(args: argparse.Namespace) -> int:
     from tactcad.parts.rules import load
     from tactcad.release.make import Terms, looked_up, release
     from tactcad.release.release_contents import owned
+    from tactcad.scenes import refuse_unknown_parts
 
     from .streams import progress
 
@@ -76,6 +77,7 @@ def run(args: argparse.Namespace) -> int:
     terms = Terms(args.draft, args.sample, args.sets, args.others)
     known: dict[tuple[str, str], Path] = {}
     for design, path in designs:
+        refuse_unknown_parts(design)
         looked_up(design, path, args.out, shop, terms)
         if (other := known.setdefault((design.name, design.design.revision), path)) is not path:
             what = f"has the name and revision of {other}, so one's zips would replace the other's"

@@ -124,7 +124,7 @@ def _cell(ratio: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return cell, at - cell
 
 
-@lru_cache(maxsize=32)
+@lru_cache(maxsize=64)  # 1.2 MB each
 def pad_law(poisson: float, thickness: float, base: str, length: float, width: float) -> PadLaw:
     """The law of one rectangular pad, by solving its patches at every knot."""
     one = patches(length, width, False)
@@ -307,7 +307,7 @@ class ManyPresses:
         g, d, off, size = state(r)
         close = (CLOSE * np.abs(b).max((-1, -2), initial=1e-9)) ** 2
         for _ in range(ROUNDS):
-            J = eye + _columns(M, d)
+            J = eye + columns(M, d)
             if (size <= close).all():
                 return r, g, d, J
             step = np.linalg.solve(J, off.reshape(*shape[:-2], n3, 1)).reshape(shape)
@@ -320,7 +320,7 @@ class ManyPresses:
                 share = np.where(worse, share / 2, share)
             r = r + share[..., None, None] * step
             g, d, off, size = tried
-        return r, g, d, eye + _columns(M, d)
+        return r, g, d, eye + columns(M, d)
 
     def near(self, M: np.ndarray, b: np.ndarray, r: np.ndarray) -> np.ndarray:
         """The law's forces at rest, of a body that hardly differs from one with the pads at rest at depths
@@ -329,13 +329,11 @@ class ManyPresses:
         g, d = self.law(r)
         n3 = 3 * r.shape[-2]
         off = b - r - (M @ g.reshape(*r.shape[:-2], n3, 1)).reshape(r.shape)
-        step = np.linalg.solve(np.eye(n3) + _columns(M, d), off.reshape(*r.shape[:-2], n3, 1)).reshape(
-            r.shape
-        )
+        step = np.linalg.solve(np.eye(n3) + columns(M, d), off.reshape(*r.shape[:-2], n3, 1)).reshape(r.shape)
         return g + (d @ step[..., None])[..., 0]
 
 
-def _columns(M: np.ndarray, d: np.ndarray) -> np.ndarray:
+def columns(M: np.ndarray, d: np.ndarray) -> np.ndarray:
     """M times the block diagonal of d, [..., 3 pad, 3 pad]."""
     n = d.shape[-3]
     parts = M.reshape(*M.shape[:-1], n, 3).swapaxes(-3, -2) @ d

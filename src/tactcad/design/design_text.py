@@ -8,15 +8,17 @@ import dataclasses
 import json
 import os
 import re
+from collections.abc import Mapping, Sequence
 from datetime import date
 from pathlib import Path
+from textwrap import wrap
 from typing import Any
 
 from .files import read_text
 from .load import MOST_BYTES, find, names, parse
 from .messages import InputError
 from .text_values import parse_toml
-from .tree import NO_TABLES, CommonTables, Identity
+from .tree import NO_TABLES, CommonTables, Identity, Issue
 
 
 def design_text(design: CommonTables, heading: str = "") -> str:
@@ -39,9 +41,29 @@ def design_text(design: CommonTables, heading: str = "") -> str:
             lines += ["", f"[{f.name}.override.{number}]", *_values(hinge)]
         if getattr(table, "gaps", None):
             lines += ["", f"[{f.name}.gaps]", *(f'"{arm!r}" = {gap!r}' for arm, gap in table.gaps.items())]
+        lines += unchanged_lines(getattr(table, "unchanged", {}))
     if design.origin:
         lines += ["", "[origin]", *(f"{json.dumps(path)} = {_text(v)}" for path, v in design.origin.items())]
     return "\n".join(lines).lstrip("\n") + "\n"
+
+
+def unchanged_lines(unchanged: Mapping[str, Issue]) -> list[str]:
+    """[design.unchanged] as lines of a design file, an empty one before each table."""
+    lines = []
+    for letter, issue in sorted(unchanged.items()):
+        names = wrap(", ".join(map(_text, issue.parts)), 100, break_on_hyphens=False)
+        rows = [f"    {row}" for row in names]
+        lines += ["", f"[design.unchanged.{letter}]", f'date = "{issue.date}"', "parts = [", *rows, "]"]
+    return lines
+
+
+def issues(letters: Mapping[str, Sequence[str]], name: str) -> dict[str, Issue]:
+    """[design.unchanged] of a design of that name, from letter and date by part number."""
+    found: dict[str, Issue] = {}
+    for number, (letter, day) in letters.items():
+        others = found[letter].parts if letter in found else ()
+        found[letter] = Issue(day, (*others, number.removeprefix(f"{name}-")))
+    return found
 
 
 def _values(table: Any) -> list[str]:
@@ -103,10 +125,11 @@ def started(source: str, name: str, today: date) -> str:
     values = {"name": name, "revision": "A", "date": today.isoformat()}
     origins = {key: f"chosen: tactcad new, from {source} revision {revision}" for key in values}
     origins = {f"design.{k}": v for k, v in origins.items() if f"design.{k}" in old.get("origin", {})}
-    new = _with_values(_without(text, "design", "title"), "design", values)
+    new = _with_values(_without(text, "design", "title", "unchanged"), "design", values)
     new = _with_values(_without(new, "origin", "design.title"), "origin", origins)
     new = f"# {name}: started from {source}, revision {revision}, by `tactcad new`.\n{new}"
-    wanted = old | {"design": {k: v for k, v in old["design"].items() if k != "title"} | values}
+    wanted = old | {"design": {k: v for k, v in old["design"].items() if k not in ("title", "unchanged")}}
+    wanted["design"] |= values
     if "origin" in old:
         wanted["origin"] = {k: v for k, v in old["origin"].items() if k != "design.title"} | origins
     if parse_toml(new, source) != wanted:  # inline tables, dotted keys: legal, but nothing to edit by lines
@@ -116,14 +139,15 @@ def started(source: str, name: str, today: date) -> str:
     return new
 
 
-def _without(text: str, table: str, name: str) -> str:
-    """TOML text without a key on a line of its own below [table]."""
+def _without(text: str, table: str, name: str, inner: str = "") -> str:
+    """TOML text without a key on a line of its own below [table], and without tables [table.inner...]."""
     here, lines = "", []
     for line in text.split("\n"):
         if header := re.match(r"\s*\[\s*([^\[\]]+?)\s*\]", line):
             here = header[1]
         key = re.match(r'\s*"?([\w.-]+)"?\s*=', line)
-        if not (here == table and key and key[1] == name):
+        below = bool(inner) and f"{here}.".startswith(f"{table}.{inner}.")
+        if not below and not (here == table and key and key[1] == name):
             lines.append(line)
     return "\n".join(lines)
 

@@ -149,7 +149,7 @@ class FamilyRobot:
 class FamilyTargets:
     """Target files of the family's own: those with a table of its name.
 
-    design  `tactcad design`: (arguments, time allowed, what to do next as text) to the exit status
+    design  `tactcad design`: (arguments, s and arrays or None, what to do next as text) to the exit status
     tables  () to the class of every table of a target file by name, all of which it must have
     """
 

@@ -80,12 +80,8 @@ class OneOf:
 
     def read(self, value: Any, where: str) -> str:
         if not isinstance(value, str) or value not in self.options:
-            raise InputError(
-                where,
-                "unknown choice",
-                value=value,
-                legal=self.legal + in_brackets(did_you_mean(str(value), self.options)),
-            )
+            legal = self.legal + in_brackets(did_you_mean(str(value), self.options))
+            raise InputError(where, "unknown choice", value=value, legal=legal)
         return value
 
     def schema(self) -> dict:
@@ -194,6 +190,27 @@ class SomeOf:
 
 
 @dataclass(frozen=True)
+class TextLines:
+    """A list of one or more different texts, each as `item`."""
+
+    item: TextLine
+    meaning: str
+    unit: str = ""
+
+    @property
+    def legal(self) -> str:
+        return f"a list of one or more different texts, each {self.item.legal}"
+
+    def read(self, value: Any, where: str) -> tuple[str, ...]:
+        if not isinstance(value, list) or not value or len(set(map(str, value))) < len(value):
+            raise InputError(where, "not a list of different texts", value=value, legal=self.legal)
+        return tuple(self.item.read(v, f"{where}[{i}]") for i, v in enumerate(value))
+
+    def schema(self) -> dict:
+        return {"type": "array", "items": self.item.schema(), "minItems": 1}
+
+
+@dataclass(frozen=True)
 class NumberRows:
     """One or two rows of numbers; a third row is refused with the reason."""
 
@@ -244,7 +261,7 @@ class Values:
         return {"type": "array", "minItems": 1}
 
 
-Spec = Number | Whole | OneOf | TextLine | Day | Numbers | SomeOf | NumberRows | Values
+Spec = Number | Whole | OneOf | TextLine | Day | Numbers | SomeOf | TextLines | NumberRows | Values
 
 
 def given(spec: Spec, default: Any = REQUIRED, derived: str = "") -> Any:

@@ -17,7 +17,7 @@ from .files import read_text
 from .materials import completed
 from .messages import InputError, nearest, one_of
 from .text_values import as_number, parse_toml
-from .tree import NO_TABLES, CommonTables, Element, Hinge, SheetMaterial, Stop
+from .tree import NO_TABLES, CommonTables, Element, Hinge, Identity, Issue, SheetMaterial, Stop
 
 # A design is a page of text; a larger file is a mistake or an attack, and is refused without parsing.
 MOST_BYTES = 1_000_000
@@ -125,6 +125,8 @@ def read_table(kind: type, table: dict[str, Any], path: str) -> Any:
             values[name] = _overrides(table[name], where)
         elif kind is Stop and name == "gaps":
             values[name] = _gaps(table[name], where, f.metadata["spec"])
+        elif kind is Identity and name == "unchanged":
+            values[name] = _unchanged(table[name], where, values)
         else:
             values[name] = f.metadata["spec"].read(table[name], where)
     return kind(**values)
@@ -160,6 +162,30 @@ def _gaps(table: Any, where: str, spec: Number) -> dict[float, float]:
             )
         gaps[arm] = spec.read(value, f"{where}.{key}")
     return dict(sorted(gaps.items()))
+
+
+def _unchanged(table: Any, where: str, design: dict[str, Any]) -> dict[str, Issue]:
+    """[design.unchanged]; `design`: the fields before it."""
+    if not isinstance(table, dict):
+        raise InputError(where, "not a table", value=table, legal=f"tables [{where}.LETTER]")
+    kept: dict[str, Issue] = {}
+    for letter, value in table.items():
+        at, own = f"{where}.{letter}", design["revision"]
+        _ = Identity.__dataclass_fields__["revision"].metadata["spec"].read(letter, at)
+        if (len(letter), letter) >= (len(own), own):
+            raise InputError(at, "not before the design's revision", value=letter, legal=f"before {own}")
+        if not isinstance(value, dict):
+            raise InputError(at, "not a table", value=value, legal=f"a table [{at}]")
+        issue = read_table(Issue, value, at)
+        if issue.date > design["date"]:
+            legal = f"no day after design.date, {design['date']}"
+            raise InputError(f"{at}.date", "later than the design", value=issue.date, legal=legal)
+        if twice := [p for p in issue.parts if any(p in other.parts for other in kept.values())]:
+            raise InputError(
+                f"{at}.parts", "has another letter too", value=twice[0], legal="one letter a part"
+            )
+        kept[letter] = issue
+    return kept
 
 
 def _material(given: SheetMaterial) -> SheetMaterial:

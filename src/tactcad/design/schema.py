@@ -9,8 +9,13 @@ from typing import Any
 from .family import Family, all_families, optional_tables
 from .fields import Spec
 from .messages import InputError, one_of
-from .tree import CommonTables, Element, Hinge
+from .tree import CommonTables, Element, Hinge, Identity, Issue
 
+# Tables within tables: the name in texts, the class, and the names in the file.
+INNER: dict[type, tuple[str, type, str]] = {
+    Element: ("element.override.N", Hinge, "^[1-9][0-9]{0,3}$"),
+    Identity: ("design.unchanged.LETTER", Issue, "^[A-Z]{1,2}$"),
+}
 _TEXT_ORIGIN = (
     '[origin] holds the source of any value by its path, as "element.pad_length" = "paper: 2 x 3 mm2".'
 )
@@ -40,7 +45,7 @@ def _one(table: str) -> tuple[type, bool]:
     known: dict[str, tuple[type, bool]] = {}
     for f in all_families().values():  # of tables of one name the first family's
         known |= {n: (kind, n in optional_tables(f.spec)) for n, kind in f.tables.items() if n not in known}
-    known["element.override"] = (Hinge, True)
+    known |= {name.rpartition(".")[0]: (kind, True) for name, kind, _ in INNER.values()}
     if table not in known:
         raise InputError("TABLE", "unknown", value=table, legal=one_of(table, (*known, "target", "study")))
     return known[table]
@@ -61,8 +66,8 @@ def text_schema(table: str | None = None) -> str:
             lines += [f"Tables of {family.name}, besides those of every family:", ""]
         for name, kind in _own(family, first=not lines[2:]).items():
             lines += table_text(name, kind, optional=name in optional)
-            if kind is Element:
-                lines += table_text("element.override.N", Hinge, optional=True)
+            if kind in INNER:
+                lines += table_text(*INNER[kind][:2], optional=True)
     return "\n".join([*lines, *textwrap.wrap(_TEXT_ORIGIN, 100)])
 
 
@@ -86,8 +91,9 @@ def markdown_schema() -> str:
     tables: list[tuple[str, type, bool]] = []
     for family in all_families().values():
         optional = optional_tables(family.spec)
-        tables += [(name, kind, name in optional) for name, kind in _own(family, not tables).items()]
-    tables.insert([kind for _, kind, _ in tables].index(Element) + 1, ("element.override.N", Hinge, True))
+        for name, kind in _own(family, not tables).items():
+            tables.append((name, kind, name in optional))
+            tables += [(*INNER[kind][:2], True)] if kind in INNER else []
     lines = []
     for name, kind, may_be_left_out in tables:
         lines += [f"## [{name}]", "", "May be left out.", ""] if may_be_left_out else [f"## [{name}]", ""]
@@ -113,13 +119,12 @@ def json_schema(table: str | None = None) -> dict[str, Any]:
 
 def _file_schema(family: Family) -> dict[str, Any]:
     tables = {name: table_schema(kind) for name, kind in family.tables.items()}
+    for name, kind in family.tables.items():
+        if kind in INNER:
+            field, (_, inner, pattern) = INNER[kind][0].split(".")[1], INNER[kind]
+            of = {"patternProperties": {pattern: table_schema(inner)}, "additionalProperties": False}
+            tables[name]["properties"][field] = {"type": "object", **of}
     if family.tables.get("element") is Element:
-        override = {
-            "type": "object",
-            "patternProperties": {"^[1-9][0-9]{0,3}$": table_schema(Hinge)},
-            "additionalProperties": False,
-        }
-        tables["element"]["properties"]["override"] = override
         gaps = tables["stop"]["properties"]["gaps"]
         tables["stop"]["properties"]["gaps"] = {"type": "object", "additionalProperties": gaps}
     tables["origin"] = {"type": "object"}

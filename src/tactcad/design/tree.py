@@ -12,7 +12,7 @@ from dataclasses import dataclass, field, replace
 from math import ceil
 from typing import Any
 
-from .fields import Day, Number, NumberRows, Numbers, OneOf, TextLine, Whole, given
+from .fields import Day, Number, NumberRows, Numbers, OneOf, TextLine, TextLines, Whole, given
 from .materials import (
     ALLOYS,
     LOT_SPREAD,
@@ -226,6 +226,19 @@ def _line(meaning: str) -> TextLine:
 
 
 @dataclass(frozen=True)
+class Issue:
+    """[design.unchanged.LETTER]: parts whose sheets and files are still those of that revision."""
+
+    date: str = given(Day("date of issue of that revision"))
+    parts: tuple[str, ...] = given(
+        TextLines(
+            TextLine(r"[A-Za-z0-9][A-Za-z0-9._+-]{0,79}", "a part number without the design's name", ""),
+            "parts that keep that letter and date; all others have the design's",
+        )
+    )
+
+
+@dataclass(frozen=True)
 class Identity:
     """[design]: who made which revision of what."""
 
@@ -248,6 +261,24 @@ class Identity:
     contact: str | None = given(
         _line("contact for shops: name, mail or telephone; a release needs one"), None, "not stated"
     )
+    unchanged: dict[str, Issue] = field(default_factory=dict)
+
+    def of_part(self, part_no: str) -> Identity:
+        """Its sheet's and files': with the letter and date of the revision since which it has not changed."""
+        own = part_no.removeprefix(f"{self.name}-")
+        letter = next((letter for letter, issue in self.unchanged.items() if own in issue.parts), None)
+        if letter is None:
+            return replace(self, unchanged={})
+        return replace(self, unchanged={}, revision=letter, date=self.unchanged[letter].date)
+
+    @property
+    def board_no(self) -> str:
+        """What is printed on the circuit boards, which have one letter."""
+        return f"{self.name}-board"
+
+    @property
+    def of_board(self) -> Identity:
+        return self.of_part(self.board_no)
 
 
 def _property(spec: Number | OneOf, optional: bool = False) -> Any:

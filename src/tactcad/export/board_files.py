@@ -14,6 +14,7 @@ import io
 import re
 from collections import Counter
 from collections.abc import Iterable, Sequence
+from typing import Any
 
 from tactcad.circuit.copper import BoardCopper
 from tactcad.circuit.footprints import Footprint
@@ -122,7 +123,7 @@ def files_of(
     board: BoardCopper, design: CommonTables, supplies: Iterable[Supply], shapes: Shapes, header: Header
 ) -> tuple[bytes, ...]:
     """The files of a fitted board, in the order of ENDS; `header` of its STEP file."""
-    d = design.design
+    d = design.design.of_board
     kicad = board_bytes(board, printed_name(design), d.title, d.date, d.revision)
     check_nets("KiCad's board", nets_in_board(kicad), board.netlist)
     tables = kicad_file(design, board.netlist), bill_csv(board, supplies), places_csv(board)
@@ -131,13 +132,44 @@ def files_of(
 
 def bare_files(board: BoardCopper, design: CommonTables) -> list[bytes]:
     """The files of the bare board, in the order of BARE."""
-    made = gerber_files(board, printed_name(design), design.design.date)
+    made = gerber_files(board, printed_name(design), design.design.of_board.date)
     check_flashes(board, made)
     return [*(made[path.removeprefix("gerber/")] for path in BARE[:-1]), outline_dxf(board)]
 
 
+def board_record(design: CommonTables) -> dict[str, Any]:
+    """All boards as plain data, for golden files: bill, nets, places, holes, tracks and vias by board."""
+    family = family_of(design)
+    if family.boards is None:
+        return {}
+    layout = family.layout(design)
+    supplies = family.boards.supplies(layout)
+    found: dict[str, Any] = {}
+    for board in family.boards.made(layout):
+        copper: dict[str, list] = {}
+        for t in board.tracks:
+            copper.setdefault(f"{t.net} {t.layer}", []).append([*t.start, *t.end, t.width])
+        for v in board.vias:
+            copper.setdefault(f"{v.net} vias", []).append([*v.at])
+        found[board.netlist.name] = {
+            "size_mm": [board.width, board.height, board.thickness],
+            "holes_mm": [[*hole] for hole in board.holes],
+            "bill": _by(bill_csv(board, supplies), "part_no", "value", "footprint", "fitted"),
+            "nets": _by(netlist_csv(board.netlist), "designator", "pin"),
+            "places": _by(places_csv(board), "designator"),
+            "copper": copper,
+        }
+    return {design.design.board_no: found} if found else {}
+
+
+def _by(table: bytes, *names: str) -> dict[str, str]:
+    """Rows of a table as text, by these of their columns."""
+    rows = csv.DictReader(io.StringIO(table.decode(), newline=""))
+    return {" ".join(row[n] for n in names): ", ".join(row.values()) for row in rows}
+
+
 def printed_name(design: CommonTables) -> str:
-    return f"{design.name}-board {design.design.revision}"
+    return f"{design.design.board_no} {design.design.of_board.revision}"
 
 
 def nets_in_board(data: bytes) -> Nets:
@@ -211,7 +243,7 @@ Nets = dict[str, frozenset[tuple[str, str]]]  # designators and pins by net
 
 def kicad_file(design: CommonTables, circuit: Netlist) -> bytes:
     """KiCad's netlist. Raises CheckFailure if it does not read back as the circuit."""
-    d = design.design
+    d = design.design.of_board
     data = kicad_bytes(circuit, d.title, d.organisation, d.date, d.revision)
     check_nets("KiCad's netlist", nets_in_kicad(data), circuit)
     return data

@@ -18,6 +18,7 @@ from .geometry import Record, contour_of
 
 LENGTH_MM = 1e-6
 SHARE = 1e-6
+MOST_ROWS = 8  # of a list of lists that are printed
 BY_SHARE = ("_mm2", "_mm3", "_g", "_n_per_mm", "_n")
 
 
@@ -128,6 +129,8 @@ def shown(value: Any) -> str:
             if not isinstance(v, dict | list) and v not in (None, "")
         ]
         return ", ".join(plain[:6])
+    if isinstance(value, list) and len(value) > MOST_ROWS and isinstance(value[0], list):
+        return f"{len(value)} rows"
     if isinstance(value, list):
         return "[" + ", ".join(shown(v) for v in value) + "]"
     if isinstance(value, bool):

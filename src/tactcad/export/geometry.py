@@ -14,7 +14,8 @@ from tactcad.contour import Arc, Contour, Line, Segment
 from tactcad.design.family import family_of
 from tactcad.design.tree import CommonTables
 from tactcad.drawing.engine.boxes import part_box
-from tactcad.parts.language.description import Extrusion, Hole, ModelFile, Part, section
+from tactcad.drawing.parts.part_sheet import notes_of
+from tactcad.parts.language.description import NOT_MADE, Extrusion, Hole, ModelFile, Part, section
 from tactcad.parts.language.stock import cut_section
 from tactcad.parts.language.surface import surface_area
 from tactcad.scenes import make_scene, scene_names
@@ -81,7 +82,19 @@ def part_record(part: Part, qty: int) -> Record:
         },
         "contours": [contour_record(c) for c in contours(part)],
     }
-    return _rounded(record)
+    return _rounded(record if part.process in NOT_MADE else record | {"sheet": _sheet(part)})
+
+
+def _sheet(part: Part) -> Record:
+    """What its sheet says besides shape and limits."""
+    return {
+        "material": str(part.material),
+        "finish": part.finish,
+        "notes": notes_of(part, ()),
+        "features": [(c.name, c.between, c.remark) for c in part.characteristics],
+        "datums": [(d.letter, d.feature) for d in part.datums],
+        "zones": [(g.name, g.symbol, g.zone, g.round, g.features, g.datums) for g in part.geometric],
+    }
 
 
 def contours(part: Part) -> tuple[Contour, ...]:
@@ -120,7 +133,7 @@ def contour_of(rows: list[list[float]]) -> Contour:
 
 def bill(scene: Scene) -> Record:
     """The scene's bill of materials by part number, without files and digests."""
-    rows = bom_rows(scene, "", {})
+    rows = bom_rows(scene, None, {})
     return {row.part_no: _rounded(bill_line(asdict(row))) for row in rows}
 
 

@@ -16,8 +16,10 @@ from tactcad.design.messages import CheckFailure, InputError
 from tactcad.design.tree import CommonTables
 from tactcad.parts.language.finding import Finding
 
+from .board_files import board_record
 from .difference import Change, differences
 from .geometry import Record, contour_of, geometry
+from .part_letters import kept_letters, since, to_paste, with_letters, wrong_letters
 
 Severity = Literal["fail", "flag"]
 
@@ -35,8 +37,16 @@ def golden_path(design_file: Path, design: CommonTables) -> Path | None:
 
 
 def golden_record(design: CommonTables) -> Record:
-    """The record that a golden file holds."""
-    return {"schema": SCHEMA, "design": design.name, "revision": design.design.revision, **geometry(design)}
+    """The record that a golden file holds.
+
+    `kept`: letters of parts that keep an earlier one; `unchanged`: those that could, as far as known, of
+    which `accept` knows more.
+    """
+    identity, told, boards = design.design, geometry(design), board_record(design)
+    kept = kept_letters(identity, [*with_letters({**told, "boards": boards})])
+    head: Record = {"schema": SCHEMA, "design": design.name, "revision": identity.revision}
+    head |= {"date": identity.date, "title": identity.title, "kept": kept, "unchanged": kept}
+    return {**head, **told, "boards": boards}
 
 
 def golden_bytes(record: Record) -> bytes:
@@ -77,8 +87,8 @@ def check_golden(design: CommonTables, path: Path) -> list[Finding]:
     Returns
     -------
     list of Finding
-        Geometry that the golden file's revision does not have fails; under a new revision, and if there is
-        no golden file yet, what `make golden` would take up is flagged.
+        Content that the golden file's revision does not have fails, and a letter kept by a part that changed;
+        under a new revision, and if there is no golden file yet, what `make golden` would take up is flagged.
     """
     if not path.exists():
         return [
@@ -91,33 +101,45 @@ def check_golden(design: CommonTables, path: Path) -> list[Finding]:
     return judge(old, golden_record(design))
 
 
+def changes_of(old: Record, new: Record) -> list[Change]:
+    """Differences from a golden file; of one that holds no sheets and letters yet, of the geometry."""
+    old, new = ({k: v for k, v in record.items() if k != "unchanged"} for record in (old, new))
+    if "kept" not in old:
+        parts = {n: {k: v for k, v in p.items() if k != "sheet"} for n, p in new["parts"].items()}
+        new = {name: new[name] for name in old} | {"parts": parts}
+    return differences(old, new)
+
+
 def judge(old: Record, new: Record) -> list[Finding]:
     """Judgement of the differences between golden file and design."""
-    changes = [c for c in differences(old, new) if c.path[0] != "revision"]
-    same_revision = old["revision"] == new["revision"]
+    changes = [c for c in changes_of(old, new) if c.path[0] != "revision"]
+    same_revision, name = old["revision"] == new["revision"], new["design"]
+    wrong = [Finding("golden", "fail", name, (), 0, 0, said) for said in wrong_letters(old, new)]
     if not changes and same_revision:
-        return []
-    geometric, count = [c for c in changes if not from_models(c)], len(changes)
-    name, letter = new["design"], new["revision"]
+        return wrong
+    content, count = [*filter(asks_for_letter, changes)], len(changes)
+    letter = new["revision"]
     if not same_revision:
         said = f"revision {old['revision']} -> {letter} with {count} differences: `make golden` takes it up"
-    elif geometric:
-        count = len(geometric)
+    elif content:
+        count = len(content)
         said = (
-            f"revision {letter} has other geometry than its golden file, {count} differences: "
+            f"revision {letter} has other content than its golden file, {count} differences: "
             "give the design a new revision letter"
         )
     else:
-        said = "the geometry is the same, but the models give "
-        said += f"{count} other figures: `make golden` takes them up"
+        said = "the content is the same, but the models give other figures, or [design] other dates or "
+        said += f"letters, {count} differences: `make golden` takes them up"
     severity: Severity = "fail" if same_revision else "flag"
     head = Finding("golden", severity, name, (), count, 0, said)
-    return [head, *(_about(severity, c) for c in changes)]
+    return [head, *wrong, *(_about(severity, c) for c in changes)]
 
 
-def from_models(change: Change) -> bool:
-    """Whether the figure comes from the mechanics and not from the geometry."""
-    return change.path[0] == "elements" and change.path[-1] in ("stiffness_n_per_mm", "yield_force_n")
+def asks_for_letter(change: Change) -> bool:
+    """Whether parts, boards, scenes or bills differ, and not figures of the mechanics or fields of
+    [design]."""
+    figure = change.path[-1] in ("stiffness_n_per_mm", "yield_force_n")
+    return not (change.path[0] in ("date", "title", "kept") or (change.path[0] == "elements" and figure))
 
 
 def _about(severity: Severity, change: Change) -> Finding:
@@ -130,21 +152,24 @@ def _finding(severity: Severity, design: CommonTables, message: str) -> Finding:
     return Finding("golden", severity, design.name, (), 0, 0, message)
 
 
-def changes_against(path: Path, design: CommonTables) -> list[Change] | None:
-    """Changes by writing the golden file, the revision included; None if there is no file yet.
+def compared(path: Path, design: CommonTables) -> tuple[Record | None, Record]:
+    """The golden file's record, None if there is no file yet, and the design's.
 
-    Raises CheckFailure if the file there cannot be read.
+    Raises CheckFailure if the file there cannot be read, or refutes a letter that the design keeps.
     """
+    new = golden_record(design)
     if not path.exists():
-        return None
+        return None, new
     try:
         old = read_golden(path)
     except ValueError as error:
         raise CheckFailure(f"{error}; remove it or take it back from git") from None
-    return differences(old, golden_record(design))
+    if wrong := wrong_letters(old, new):
+        raise CheckFailure(f"{design.name}: {'; '.join(wrong)}; {path.name} is left as it was")
+    return old, new
 
 
-def accept(design: CommonTables, path: Path, failures: Sequence[Finding]) -> None:
+def accept(design: CommonTables, path: Path, failures: Sequence[Finding]) -> list[str]:
     """Write the golden file where anything changed.
 
     Parameters
@@ -154,30 +179,42 @@ def accept(design: CommonTables, path: Path, failures: Sequence[Finding]) -> Non
     failures
         Failures found by the design's checks.
 
+    Returns
+    -------
+    list of str
+        Lines by which parts that did not change keep their letters; none if the letter stays, or it has them.
+
     Raises
     ------
     CheckFailure
-        If a check failed, or the golden file's own revision has other geometry; nothing is then written.
+        If a check failed, or the golden file's own revision has other content; nothing is then written. Also
+        as `compared`.
     InputError
         If the file cannot be written.
     """
     left = f"{path.name} is left as it was"
     if failures:
         raise CheckFailure(f"{design.name}: {len(failures)} of the checks failed; {left}")
-    changes = changes_against(path, design)
-    if changes and not any(c.path == ("revision",) for c in changes) and not all(map(from_models, changes)):
+    old, new = compared(path, design)
+    changes = changes_of(old, new) if old else []
+    risen = old is not None and old["revision"] != new["revision"]
+    if not risen and any(map(asks_for_letter, changes)):
         letter = design.design.revision
         raise CheckFailure(
-            f"{design.name}: revision {letter} has other geometry than its golden file; "
+            f"{design.name}: revision {letter} has other content than its golden file; "
             f"give the design a new revision letter; {left}"
         )
-    if changes != []:
+    unchanged = new["kept"] | (since(old, new) if old else {})
+    if old is None or changes or "kept" not in old:
         make_folder(path.parent)
-        write_whole(path, golden_bytes(golden_record(design)))
+        write_whole(path, golden_bytes(new | {"unchanged": unchanged}))
+    return to_paste(unchanged, design.design) if risen else []
 
 
 # Entries of a part's record that are no plain values.
 TABLES = ("holes", "pockets", "limits")
+# What golden files hold since parts have letters of their own.
+LETTERS = ("date", "title", "kept", "unchanged", "boards")
 
 
 def faults(record: Any, schema: str) -> str:
@@ -186,11 +223,13 @@ def faults(record: Any, schema: str) -> str:
         return f"its schema is not {schema}"
     if not all(isinstance(record.get(k), str) for k in ("design", "revision")):
         return "it has no design or no revision"
-    for section in ("parts", "scenes", "elements"):
+    for section in ("parts", "scenes", "elements", *({"boards"} & {*record})):
         if not _is_table_of(record.get(section), dict):
             return f"{section} is no table of tables"
-    if unknown := set(record) - {"schema", "design", "revision", "parts", "scenes", "elements"}:
+    if unknown := set(record) - {"schema", "design", "revision", "parts", "scenes", "elements", *LETTERS}:
         return f"{sorted(unknown)[0]!r} is not known"
+    if any(name in record for name in LETTERS) and (wrong := _letters_fault(record)):
+        return wrong
     for number, part in record["parts"].items():
         if wrong := _part_fault(part):
             return f"part {number}: {wrong}"
@@ -201,6 +240,25 @@ def faults(record: Any, schema: str) -> str:
             return f"scene {name}: a row holds more than plain values"
     deep = next((name for name, row in record["elements"].items() if not _is_flat(row)), None)
     return "" if deep is None else f"element {deep}: holds more than plain values"
+
+
+def _letters_fault(record: Record) -> str:
+    if lacking := [name for name in LETTERS if name not in record]:
+        return f"it has no {lacking[0]}"
+    if not all(isinstance(record[name], str) for name in ("date", "title")):
+        return "its date or title is no text"
+    for name in ("kept", "unchanged"):
+        table = record[name]
+        if not _is_table_of(table, list) or not all(map(_is_issue, table.values())):
+            return f"{name} is no table of letters and dates"
+    whole = (_is_table_of(boards, dict) for boards in record["boards"].values())
+    tables = (t for boards in record["boards"].values() for board in boards.values() for t in board.items())
+    plain = (_is_flat(t) if isinstance(t, dict) else _is_flat({name: t}) for name, t in tables)
+    return "" if all(whole) and all(plain) else "a board holds more than plain values"
+
+
+def _is_issue(row: list[Any]) -> bool:
+    return len(row) == 2 and all(isinstance(text, str) for text in row)
 
 
 def _part_fault(part: dict[str, Any]) -> str:
@@ -220,7 +278,9 @@ def _part_fault(part: dict[str, Any]) -> str:
             contour_of(rows)
         except ValueError as error:
             return f"a contour cannot be read: {error}"
-    rest = {k: v for k, v in part.items() if k not in (*TABLES, "contours")}
+    if not isinstance(part.get("sheet", {}), dict) or not _is_flat(part.get("sheet", {})):
+        return "sheet is no plain row"
+    rest = {k: v for k, v in part.items() if k not in (*TABLES, "contours", "sheet")}
     return "" if _is_flat(rest) else "it holds more than plain values"
 
 
@@ -229,7 +289,7 @@ def _is_table_of(value: Any, kind: type) -> bool:
 
 
 def _is_flat(row: dict[str, Any]) -> bool:
-    return all(_is_plain(value) for value in row.values())
+    return "contours" not in row and all(_is_plain(value) for value in row.values())
 
 
 def _is_plain(value: Any) -> bool:

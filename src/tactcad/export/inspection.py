@@ -30,12 +30,13 @@ UNIT = "mm"
 def inspection_bytes(layout: Any) -> bytes:
     """The sheet of the numbered elements (RFC 4180, UTF-8), rows by element number."""
     identity = layout.design.design
-    head = (identity.name, identity.revision)
     rows: list[tuple[object, ...]] = [COLUMNS]
     for place, part_no, dimensions in family_of(layout.design).parts(layout):
+        head = (identity.name, identity.of_part(part_no).revision)
         for m in dimensions:
             name = (place.designator, part_no, m.name, "yes" if m.key else "")
-            rows.append((*head, *name, m.nominal, m.lower, m.upper, UNIT, "", "", m.where, m.how))
+            limits = (round(v, 6) for v in (m.nominal, m.lower, m.upper))  # 0.25 - 0.005 is a binary fraction
+            rows.append((*head, *name, *limits, UNIT, "", "", m.where, m.how))
     return _csv(rows)
 
 
@@ -71,8 +72,8 @@ def part_inspection_bytes(
     for (part_no, name), (share, requirement) in ranked(variables, lines):
         if part_no in known:
             limits = _limits(known[part_no], name)
-            row = (identity.name, identity.revision, part_no, name, *limits[:3], UNIT, "", "", *limits[3:])
-            rows.append((*row, requirement, f"{share:.3f}"))
+            head = (identity.name, identity.of_part(part_no).revision, part_no, name)
+            rows.append((*head, *limits[:3], UNIT, "", "", *limits[3:], requirement, f"{share:.3f}"))
     return _csv(rows)
 
 
@@ -118,7 +119,12 @@ def _size(part: Part, c: Characteristic) -> tuple[str, str]:
     if len(c.between) == 2:
         a, b = (_plain(f) for f in c.between)
         return f"from {a} to {b}, at both faces", f"measuring microscope or height gauge, {_reads(width)}"
-    return "across the hole, at both faces", f"plug gauges, {c.lower:g} goes and {c.upper:g} does not"
+    if {*c.between} & {"bore", *(f.name for f in part.features)}:
+        return "across the hole, at both faces", f"plug gauges, {c.lower:g} goes and {c.upper:g} does not"
+    return (
+        f"across the {_plain(c.between[0]).removesuffix(' side')}, at both ends",
+        f"micrometer, {_reads(width)}",
+    )
 
 
 def _zone(part: Part, g: Geometric) -> tuple[str, str]:

@@ -250,7 +250,9 @@ def made_files(
 
 def _record(folder: Path, product: Output, design: CommonTables) -> FileRecord:
     sha256 = manifests.sha256_of((folder / product.path).read_bytes())
-    return FileRecord(product.path, product.kind, product.part_no, design.design.revision, sha256)
+    of_board = product.kind in ("board", "gerber")
+    of = design.design.of_part(design.design.board_no if of_board else product.part_no)
+    return FileRecord(product.path, product.kind, product.part_no, of.revision, sha256)
 
 
 def _write_bills(
@@ -264,7 +266,7 @@ def _write_bills(
     files = {r.part_no: (r.path, r.sha256) for form in ranked for r in records if r.kind == form.kind}
     written = []
     for scene in scenes:
-        rows = bom.bom_rows(scene, revision, files)
+        rows = bom.bom_rows(scene, design.design, files)
         if scene.name == "array":
             rows = tuple(replace(r, designators=soldered.get(r.part_no, r.designators)) for r in rows)
         as_csv, as_json = bom.csv_bytes(rows), bom.json_bytes(rows, design.name, revision, scene.name)

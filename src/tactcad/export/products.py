@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from typing import TYPE_CHECKING
 
@@ -74,8 +74,8 @@ class Plan:
         return self.design.design.revision
 
     def header(self, name: str, description: str) -> Header:
-        """Header of a STEP file."""
-        d = self.design.design
+        """Header of a STEP file: of a part, the circuit boards or a scene, by its name."""
+        d = self.design.design.of_part(name)
         return Header(name, description, d.revision, d.date, d.author or "", d.organisation or "")
 
     def jobs(self) -> list[Batch]:
@@ -232,7 +232,8 @@ def board_files(plan: Plan) -> Iterator[Batch]:
     layout = family.layout(design)
     boards = family.must("boards", "export")
     made, supplies = boards.made(layout), boards.supplies(layout)
-    key = digest(("boards", plan.shapes.made_by, made, supplies, design.design))
+    of = design.design.of_board
+    key = digest(("boards", plan.shapes.made_by, made, supplies, of))
 
     def batch(stem: str, ends: Sequence[str], make: Callable[[], Sequence[bytes]]) -> Batch:
         paths = [f"circuit/boards/{stem}{end}" for end in ends]
@@ -241,9 +242,10 @@ def board_files(plan: Plan) -> Iterator[Batch]:
         return Batch(tuple(outputs), make, FILES, 10)
 
     for board in made:
-        head = plan.header(board.netlist.name, f"{design.design.title}: {board.netlist.name}")
+        head = plan.header(of.board_no, f"{of.title}: {board.netlist.name}")
+        head = replace(head, name=board.netlist.name)
         make = partial(files.files_of, board, design, supplies, plan.shapes, head)
-        yield batch(f"{board.netlist.name}_{plan.revision}", files.ENDS, make)
+        yield batch(f"{board.netlist.name}_{of.revision}", files.ENDS, make)
     if made:
         yield batch("", files.BARE, partial(files.bare_files, made[0], design))
 
@@ -329,9 +331,10 @@ def part_sheets(plan: Plan) -> Iterator[Batch]:
         kinds = ("dxf",) if part.by_contour else ("step-part", "dxf")
         files = [known[part.part_no, kind] for kind in kinds if (part.part_no, kind) in known]
         made_from = [job.files[0].key for job in files]
-        common = (identity, _tables(design, "tolerance", "holes"), options.draft, options.sample)
+        of = identity.of_part(part.part_no)
+        common = (of, _tables(design, "tolerance", "holes"), options.draft, options.sample)
         key = digest(("drawing", shapes.made_by, part, made_from, *common))
-        stem = f"{part.part_no}_{plan.revision}"
+        stem = f"{part.part_no}_{of.revision}"
         yield _drawing(stem, part.part_no, key, partial(make, part, files), SHEETS)
 
 
@@ -345,7 +348,7 @@ def assembly_sheets(plan: Plan) -> Iterator[Batch]:
         from tactcad.scenes.bom import bom_rows
         from tactcad.solids.step import to_bytes
 
-        rows = bom_rows(scene, plan.revision, {})
+        rows = bom_rows(scene, design.design, {})
         solids = {part.part_no: to_bytes(shapes.of(part)) for part in scene.parts}
         return assembly_written(AssemblyOrder(design, scene, rows, solids, options.draft, options.sample))
 

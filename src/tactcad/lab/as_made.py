@@ -158,10 +158,8 @@ def _half_widths(
 
     limits, measured = [], []
     for dimension, half in (halves | unmeasured).items():
-        low, high = (
-            at(section.with_(**{dimension: getattr(section, dimension) + sign * half}))
-            for sign in (-1.0, 1.0)
-        )
+        middle = getattr(section, dimension)
+        low, high = (at(section.with_(**{dimension: middle + sign * half})) for sign in (-1.0, 1.0))
         read = known.get(dimension, np.zeros(len(layout.elements), bool))
         limits.append(np.where(read, 0.0, (high - low) / 2))
         measured.append(np.where(read, (high - low) / 2, 0.0))
@@ -273,16 +271,6 @@ def document(design: Design, rung: str, rows: Sequence[AsMade]) -> dict[str, Any
 
 
 def _record(r: Reading) -> dict[str, Any]:
-    d = r.dimension
-    return {
-        "number": r.number,
-        "characteristic": d.name,
-        "key": d.key,
-        "nominal": d.nominal,
-        "lower": d.lower,
-        "upper": d.upper,
-        "measured": r.measured,
-        "uncertainty": r.uncertainty,
-        "verdict": r.verdict,
-        "line": r.line,
-    }
+    drawn = {name: getattr(r.dimension, name) for name in ("key", "nominal", "lower", "upper")}
+    read = {name: getattr(r, name) for name in ("measured", "uncertainty", "verdict", "line")}
+    return {"number": r.number, "characteristic": r.dimension.name, **drawn, **read}

@@ -190,22 +190,15 @@ def calibrate(
         for k, w in enumerate((by_force, by_signal))
     ]
     of_all = [common(bows) for bows in own]
-    return [
-        _element(
-            e,
-            (by_force[i], by_signal[i]),
-            load_cell,
-            level,
-            drop_outliers,
-            run_scatter,
-            alarm,
-            [_height(own[k][i], of_all[k], alarm) for k in (0, 1)],
-            [min(b.most if b else HYSTERESIS, HYSTERESIS) for b in (own[0][i], own[1][i])]
-            if len(parts) == 1 and _up_only(e)
-            else [0.0, 0.0],
-        )
-        for i, e in enumerate(ready)
-    ]
+    out = []
+    for i, (e, *bows) in enumerate(zip(ready, *own)):
+        heights = [_height(b, all_, alarm) for b, all_ in zip(bows, of_all)]
+        unseen = [0.0, 0.0]
+        if len(parts) == 1 and _up_only(e):
+            unseen = [min(b.most if b else HYSTERESIS, HYSTERESIS) for b in bows]
+        told = (load_cell, level, drop_outliers, run_scatter, alarm, heights, unseen)
+        out.append(_element(e, (by_force[i], by_signal[i]), *told))
+    return out
 
 
 def _height(own: Bow | None, of_all: Bow | None, alarm: float) -> float:
@@ -367,12 +360,9 @@ def _touching(all_: CalibrationReadings, rows: np.ndarray, notes: list[str]) -> 
 def _require_line(where: str, x: np.ndarray, run: np.ndarray) -> None:
     """Raise InputError if the readings in contact are too few to show any scatter about their line."""
     if spare_steps(x, run) < 1:
-        raise InputError(
-            where,
-            "too few readings in contact",
-            value=f"{len(x)} in {len(np.unique(run))} runs",
-            legal="after the first displacement two more than runs, in one run at two displacements at least",
-        )
+        value = f"{len(x)} in {len(np.unique(run))} runs"
+        legal = "after the first displacement two more than runs, in one run at two displacements at least"
+        raise InputError(where, "too few readings in contact", value=value, legal=legal)
 
 
 def _covariance(lines: Lines, run_scatter: float | None, notes: list[str]) -> tuple[np.ndarray, float]:

@@ -23,34 +23,16 @@ SCHEMA = "tactcad-calibration-1"
 LEAST_SENSITIVITY = 1e-6  # V/mm: a microvolt at a millimetre
 # Figures that the terminal's table has; those of an estimate are followed by its interval.
 SHOWN = (
-    "element",
-    "runs",
-    "stiffness.value",
-    "stiffness_as_paper.value",
-    "signal_per_deflection.value",
-    "signal_per_force.value",
-    "zero_signal",
-    "max_deflection",
-    "max_force",
-    "max_signal_change",
-    "linearity_force",
-    "linearity_signal",
-)
+    "element runs stiffness.value stiffness_as_paper.value signal_per_deflection.value "
+    "signal_per_force.value zero_signal max_deflection max_force max_signal_change linearity_force "
+    "linearity_signal"
+).split()
 UNBOUNDED = "stiffness_as_paper.value"  # shown for comparison, without its interval and unit
 WRITTEN = (
-    "element",
-    "stiffness.value",
-    "stiffness.standard_error",
-    "max_deflection",
-    "max_force",
-    "max_signal_change",
-    "signal_per_deflection.value",
-    "signal_per_deflection.standard_error",
-    "correlation",
-    "dof",
-    "signal_per_force.value",
-    "zero_signal",
-)
+    "element stiffness.value stiffness.standard_error max_deflection max_force max_signal_change "
+    "signal_per_deflection.value signal_per_deflection.standard_error correlation dof "
+    "signal_per_force.value zero_signal"
+).split()
 # Fields read back for each element, and their legal ranges.
 READ = {
     "element": (1, 100_000),
@@ -109,12 +91,9 @@ class Sensitivity:
         k, v = self.stiffness * old, self.signal_per_deflection * old
         soft = cell <= k
         if soft.any():
-            raise InputError(
-                self.path,
-                "the softest load cell within its limits is no stiffer than cell and element together",
-                value=float(cell[soft][0]),
-                legal=f"above {float(k[soft].max()):.4g} N/mm",
-            )
+            what = "the softest load cell within its limits is no stiffer than cell and element together"
+            legal = f"above {float(k[soft].max()):.4g} N/mm"
+            raise InputError(self.path, what, value=float(cell[soft][0]), legal=legal)
         new = 1 - k / cell
         return replace(
             self,
@@ -134,9 +113,8 @@ def to_text(rows: list[ElementCalibration], load_cell: LoadCell, level: float) -
         columns.append([told, *map(f.text, rows)])
         if kind and f.name != UNBOUNDED:
             low, high = ELEMENT.some(f"{estimate}.low", f"{estimate}.high")
-            columns.append(
-                [f"{100 * level:.10g}% interval", *(f"{low.text(r)} to {high.text(r)}" for r in rows)]
-            )
+            ends = (f"{low.text(r)} to {high.text(r)}" for r in rows)
+            columns.append([f"{100 * level:.10g}% interval", *ends])
     lines = aligned([*zip(*columns)])
     lines += [
         "",
@@ -217,11 +195,8 @@ def read(path: str) -> Sensitivity:
     """
     if path.endswith(".json"):
         return _from_json(path)
-    rows = read_table(
-        path,
-        (NUMBER, STIFFNESS, SENSITIVITY),
-        (STIFFNESS_SE, SENSITIVITY_SE, CORRELATION, DOF, LOAD_CELL, LOAD_CELL_HALF_WIDTH, ZERO),
-    )
+    other = (STIFFNESS_SE, SENSITIVITY_SE, CORRELATION, DOF, LOAD_CELL, LOAD_CELL_HALF_WIDTH, ZERO)
+    rows = read_table(path, (NUMBER, STIFFNESS, SENSITIVITY), other)
     refuse_duplicates(rows, ("element",))
     for i in np.flatnonzero(np.abs(rows.values(SENSITIVITY.name)) < LEAST_SENSITIVITY)[:1]:
         raise _no_sensitivity(rows.where(i, SENSITIVITY.name))
@@ -270,8 +245,5 @@ def _sensitivity(columns: list[np.ndarray], path: str, zero: np.ndarray | None) 
 
 
 def _no_sensitivity(where: str) -> InputError:
-    return InputError(
-        where,
-        "a sensitivity of zero gives no deflection",
-        legal=f"{LEAST_SENSITIVITY:g} V/mm or more, of either sign",
-    )
+    legal = f"{LEAST_SENSITIVITY:g} V/mm or more, of either sign"
+    return InputError(where, "a sensitivity of zero gives no deflection", legal=legal)

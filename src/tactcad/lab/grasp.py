@@ -33,6 +33,7 @@ from tactcad.lab.column_units import LOAD, unlikely
 from tactcad.lab.combine import Interval, Slopes, combine, hull, scatter
 from tactcad.lab.readings import GraspReadings
 from tactcad.lab.regression import TOLD_FROM_TIME, require_level, t_quantile
+from tactcad.report.figures import aligned
 from tactcad.report.report import plain
 
 from .calibration_file import Sensitivity
@@ -156,12 +157,9 @@ def evaluate(
     touching, where = readings.load > 0, f"{readings.path}: sample {readings.sample}"
     _refuse_swapped(readings, calibration)
     if touching.sum() < 3 or len(readings.element) < 2:
-        raise InputError(
-            where,
-            "too little to tell a slope from noise",
-            value=f"{len(readings.element)} elements at {int(touching.sum())} loads above zero",
-            legal="two elements and three loads at least",
-        )
+        value = f"{len(readings.element)} elements at {int(touching.sum())} loads above zero"
+        legal = "two elements and three loads at least"
+        raise InputError(where, "too little to tell a slope from noise", value=value, legal=legal)
     signal, terms = readings.signal[:, touching], None
     notes = []
     if readings.time is not None:
@@ -179,12 +177,8 @@ def evaluate(
         raise InputError(where, f"element {constant}: its signal does not change with the load")
     number = int(readings.element[np.argmax(slopes.f / slopes.s)]) if reference is None else reference
     if number not in readings.element:
-        raise InputError(
-            f"{readings.path}: reference",
-            "was not read in this grasp",
-            value=number,
-            legal=str(readings.element.tolist()),
-        )
+        what, legal = "was not read in this grasp", str(readings.element.tolist())
+        raise InputError(f"{readings.path}: reference", what, value=number, legal=legal)
     r = int(np.flatnonzero(readings.element == number)[0])
     others = [i for i in np.argsort(-slopes.f / slopes.s, kind="stable") if i != r]
     limits = _limits(readings.element, signal, calibration, slopes, coupling, terms)
@@ -492,7 +486,7 @@ def common_slopes(
     u, size, vt = np.linalg.svd(centred, full_matrices=False)
     dof = (len(element) - 1) * (signal.shape[1] - 1 - _count(terms))
     variance = float((size[1:] ** 2).sum()) / dof
-    k_v = calibration.signal_per_deflection[[_row(calibration, int(n)) for n in element]]
+    k_v = calibration.of(element).signal_per_deflection
     p = vt[0] * np.sign((u[:, 0] / k_v).sum() or 1.0)
     g = centred @ p  # V per unit approach; p has unit length, so each g has the variance of one signal
     return slopes_of(element, g, calibration, variance, dof), variance**0.5
@@ -514,11 +508,9 @@ def _refuse_exchanged(
             agree.append((int(number[i]), int(number[j])))
     if len(agree) == 1:
         n, m = agree[0]
-        raise InputError(
-            f"{readings.path}: sample {readings.sample}",
-            f"elements disagree, but not once the signals of {n} and {m} are exchanged: swapped channels?",
-            legal="each element's own signal",
-        )
+        what = f"elements disagree, but not once the signals of {n} and {m} are exchanged: swapped channels?"
+        legal = "each element's own signal"
+        raise InputError(f"{readings.path}: sample {readings.sample}", what, legal=legal)
 
 
 def _count(terms: np.ndarray | None) -> int:
@@ -530,17 +522,17 @@ def slopes_of(
 ) -> Slopes:
     """Slopes of force and deflection from those of the signals, g (V per unit approach), each with that
     variance (V2) and its degrees of freedom. Raises InputError for an element without calibration."""
-    rows = [_row(calibration, int(n)) for n in element]
-    k_v, k = calibration.signal_per_deflection[rows], calibration.stiffness[rows]
+    own = calibration.of(element)
+    k_v, k = own.signal_per_deflection, own.stiffness
     s, f = g / k_v, g * k / k_v
     signal_part = np.array([[[b * b, b * a], [a * b, a * a]] for a, b in zip(1 / k_v, k / k_v)]) * variance
-    se_k, se_v = calibration.stiffness_se[rows], calibration.signal_per_deflection_se[rows]
-    cross = calibration.correlation[rows] * se_k * se_v
+    se_k, se_v = own.stiffness_se, own.signal_per_deflection_se
+    cross = own.correlation * se_k * se_v
     part = np.empty_like(signal_part)
-    for i in range(len(rows)):
+    for i in range(len(element)):
         jacobian = np.array([[g[i] / k_v[i], -f[i] / k_v[i]], [0.0, -s[i] / k_v[i]]])  # of (f, s) in (K, K_v)
         part[i] = jacobian @ np.array([[se_k[i] ** 2, cross[i]], [cross[i], se_v[i] ** 2]]) @ jacobian.T
-    return Slopes(element, s, f, signal_part, part, dof, calibration.dof[rows])
+    return Slopes(element, s, f, signal_part, part, dof, own.dof)
 
 
 def _strays(element: np.ndarray, signal: np.ndarray, terms: np.ndarray | None) -> list[str]:
@@ -584,8 +576,8 @@ def _wrong_forces(
     if not span:
         return [], 0.0
     away = (load - load.mean()) / span
-    rows = [_row(calibration, int(n)) for n in slopes.element]
-    per_signal = calibration.stiffness[rows] / calibration.signal_per_deflection[rows] / (away @ away)
+    own = calibration.of(slopes.element)
+    per_signal = own.stiffness / own.signal_per_deflection / (away @ away)
     rise, error = per_signal * (signal @ away), np.abs(per_signal) * noise * (away @ away) ** 0.5
     telling = np.abs(rise) > np.maximum(SURELY * error, REVERSED * np.median(np.abs(rise)))
     if (falls := telling & (rise < 0)).any() and (telling & (rise > 0)).any():
@@ -621,13 +613,8 @@ def _pair(slopes: Slopes, limits: list[Slopes], m: int, r: int, level: float) ->
     _, dof = scatter(slopes, [m, r], slopes.covariance[[m, r]], 0.0)
     half = t_quantile(level, dof) * sum(var) ** 0.5 * abs(ratio)
     x = object_.estimate
-    condition = (
-        inf
-        if x == 0 or k_r == k_m
-        else abs((k_r + x) * (k_m + x) / (x * (k_r - k_m)))
-        if not isinf(x)
-        else inf
-    )
+    open_ = x == 0 or isinf(x) or k_r == k_m
+    condition = inf if open_ else abs((k_r + x) * (k_m + x) / (x * (k_r - k_m)))
     return Pair(
         int(slopes.element[m]),
         int(slopes.element[r]),
@@ -640,39 +627,19 @@ def _pair(slopes: Slopes, limits: list[Slopes], m: int, r: int, level: float) ->
     )
 
 
-def _row(calibration: Sensitivity, number: int) -> int:
-    rows = np.flatnonzero(calibration.element == number)
-    if not len(rows):
-        raise InputError(
-            calibration.path,
-            f"element {number} of the grasp is not in it",
-            legal=str(calibration.element.tolist()),
-        )
-    return int(rows[0])
-
-
 def to_text(samples: list[Grasp], level: float) -> str:
     """For each sample K_obj of all elements, a table of its pairs, then limits and notes; `level` is that of
     the intervals."""
-    lines = []
+    lines, held = [], f"{100 * level:.10g}% interval"
     for g in samples:
         c = g.combined
         lines += [
             *(f"warning: {warning}" for warning in g.warnings),
-            f"sample {g.sample}: K_obj = {_number(c.estimate)} N/mm, {100 * level:.10g}% interval "
-            f"{_interval(c)} ({c.verdict})",
+            f"sample {g.sample}: K_obj = {_number(c.estimate)} N/mm, {held} {_interval(c)} ({c.verdict})",
             "",
         ]
-        head = (
-            "measuring",
-            "reference",
-            "R",
-            f"{100 * level:.10g}% interval",
-            "K_obj N/mm",
-            f"{100 * level:.10g}% interval",
-            "condition",
-            "verdict",
-        )
+        held = f"{100 * level:.10g}% interval"
+        head = ("measuring", "reference", "R", held, "K_obj N/mm", held, "condition", "verdict")
         body = [
             (
                 str(p.measuring),
@@ -686,11 +653,7 @@ def to_text(samples: list[Grasp], level: float) -> str:
             )
             for p in g.pairs
         ]
-        width = [max(len(line[i]) for line in [head, *body]) for i in range(len(head))]
-        lines += [
-            "  ".join(cell.rjust(w) for cell, w in zip(line[:-1], width)) + "  " + line[-1]
-            for line in [head, *body]
-        ]
+        lines += aligned([head, *body], left=7)
         lines += [
             "",
             f"slopes over {g.loads} loads; noise of one signal {g.noise * 1e3:.3g} mV ({g.dof} degrees "

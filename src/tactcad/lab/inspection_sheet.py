@@ -101,11 +101,9 @@ def read_sheet(path: str | Path, layout: Layout) -> list[Reading]:
         readings[key] = _reading(row, number, dimension, commas)
     for designator, name in known:
         if (designator, name) not in readings:
-            raise InputError(
-                f"{table.path}:{rows[-1].line + 1}:1",
-                f"the row {name!r} of element {designator} is missing",
-                legal="every row of the sheet, in any order; leave cells blank where nothing was measured",
-            )
+            what = f"the row {name!r} of element {designator} is missing"
+            legal = "every row of the sheet, in any order; leave cells blank where nothing was measured"
+            raise InputError(f"{table.path}:{rows[-1].line + 1}:1", what, legal=legal)
     return [readings[key] for key in known]
 
 
@@ -126,12 +124,13 @@ def _identified(row: _Row, layout: Layout, known: dict) -> tuple[str, str]:
     design = layout.design
     if row["design"] != design.name:
         raise row.refusal("design", "a sheet of another design", legal=design.name)
-    if row["revision"] != design.design.revision:
-        raise row.refusal("revision", "a sheet of another revision", legal=design.design.revision)
+    key = (row["element"], row["characteristic"])
+    of = design.design.of_part(known[key][1]) if key in known else None
+    if of and row["revision"] != of.revision:
+        raise row.refusal("revision", "a sheet of another revision", legal=of.revision)
     last = layout.elements[-1].designator
     if row["element"] not in {designator for designator, _ in known}:
         raise row.refusal("element", "no such element", legal="E1" if last == "E1" else f"E1 to {last}")
-    key = (row["element"], row["characteristic"])
     if key not in known:
         raise row.refusal(
             "characteristic",
@@ -247,11 +246,8 @@ def reissued(design: Design, path: str | Path) -> Reissued:
         r.measured for r in readings if r.dimension.name == "sheet thickness" and r.measured is not None
     ]
     if not sheets:
-        raise InputError(
-            str(path),
-            "no sheet thickness is measured",
-            legal="at least one element's row `sheet thickness`, mm",
-        )
+        legal = "at least one element's row `sheet thickness`, mm"
+        raise InputError(str(path), "no sheet thickness is measured", legal=legal)
     sheet = round(sum(sheets) / len(sheets), 6)
     spacer = round(design.array.pitch - round(sheet / STEP) * STEP, 6)
     said = (
@@ -260,7 +256,7 @@ def reissued(design: Design, path: str | Path) -> Reissued:
     )
     made = replace(
         design,
-        design=replace(design.design, revision=f"{design.design.revision}M"),
+        design=replace(design.design, revision=f"{design.design.revision}M", unchanged={}),
         sheet=replace(design.sheet, thickness=round(sheet / STEP) * STEP),
         array=replace(design.array, spacer=spacer),
         origin={**design.origin, "array.spacer": said, "sheet.thickness": said},

@@ -25,7 +25,7 @@ from scipy.special import fdtrc
 
 from tactcad.contact.elastic_body import Body
 from tactcad.contact.press import Pads, pad_stiffness
-from tactcad.contact.rigid_pads import ManyPresses
+from tactcad.contact.rigid_pads import CLOSE, ManyPresses, columns
 from tactcad.lab.combine import DISAGREE, PRIOR_DOF
 from tactcad.lab.regression import KNOWN, t_quantile
 
@@ -64,7 +64,8 @@ SAME = 1e-6  # relative difference of stiffness below which two elements are no 
 LOOSE = 1e-4  # share of a prior's weight that leaves the parameter practically free
 THICKER = 0.02  # relative step by which the layer's part in the sinks is found
 BATCH = 250  # grasps at once: 0.3 GB
-NEWTON, LOADED = 30, 1e-6  # steps at most to the approach of a load, and its relative error
+# steps at most to the approach of a load, halvings of one, and the load's relative error
+NEWTON, HALVINGS, LOADED = 30, 12, 1e-6
 
 
 @dataclass(frozen=True)
@@ -157,18 +158,8 @@ class _Model:
         self.K[rows] = calibration.stiffness
         self.K_v = calibration.signal_per_deflection
         n, m, t = len(at.number), len(rows), len(load)
-        sizes = {
-            "E": 1,
-            "slope": 2,
-            "offset": m,
-            "rate": 0 if time is None else m,
-            "approach": t,
-            "height": n,
-            "K": n,
-            "K_v": m,
-            "thickness": 1,
-            "own": m,
-        }
+        sizes = {"E": 1, "slope": 2, "offset": m, "rate": 0 if time is None else m, "approach": t}
+        sizes |= {"height": n, "K": n, "K_v": m, "thickness": 1, "own": m}
         ends = np.cumsum([0, *sizes.values()])
         self.part = {name: slice(a, b) for name, a, b in zip(sizes, ends, ends[1:])}
         self.size = int(ends[-1])
@@ -720,30 +711,60 @@ def expected(
 
 
 def _approaches(model: _Model, q: np.ndarray) -> np.ndarray:
-    """Sets the approaches at which the pads bear the loads, by Newton's method; the pads' depths there."""
+    """Sets the approaches at which the pads bear the loads; the pads' depths there.
+
+    Newton's method for depths and approach at once, [pose], a pose that is solved left out. Where no step
+    lessens what is left, as between two cells of the pads' law, a pose keeps its place.
+    """
     at, part, contact = model.at, model.part, model.at.contact
     G, T, n = len(q), len(model.load), len(model.at.number)
-    spread = lambda v: np.repeat(v[:, None], T, 1)  # noqa: E731
-    E, K = spread(np.exp(q[:, 0])), spread(model.K * np.exp(q[:, part["K"]]))
-    slope, height = spread(q[:, part["slope"]]), spread(q[:, part["height"]])
-    M, along = contact.system(E, K), np.zeros((3 * n, 1))
-    along[::3] = 1.0
+    each = lambda v: np.repeat(v, T, 0)  # noqa: E731
+    E, K = each(np.exp(q[:, 0])), each(model.K * np.exp(q[:, part["K"]]))
+    slope, height, load = each(q[:, part["slope"]]), each(q[:, part["height"]]), np.tile(model.load, G)
+    M, level = contact.system(E, K), contact.approached(np.zeros(G * T), slope, height)
     alone = 1 / (1 / (E * at.unit) + 1 / K.mean(-1))
-    back = height + slope[..., :1] * at.contact.x + slope[..., 1:] * at.contact.y
-    ready = np.sort(back, -1)
     # the approach on separate, equal springs
-    number = np.arange(1, n + 1)
-    each = (model.load[:, None] / alone[..., None] + np.cumsum(ready, -1)) / number
-    approach = np.take_along_axis(each, np.maximum((each > ready).sum(-1, keepdims=True) - 1, 0), -1)[..., 0]
-    depth = contact.approached(approach, slope, height)
+    ready = np.sort(-level[..., 0], -1)
+    springs = ((load / alone)[:, None] + np.cumsum(ready, -1)) / np.arange(1, n + 1)
+    last = np.maximum((springs > ready).sum(-1, keepdims=True) - 1, 0)
+    approach = np.take_along_axis(springs, last, -1)[:, 0]
+    depth = level.copy()
+    depth[..., 0] += approach[:, None]
+
+    def state(i: np.ndarray, depth: np.ndarray, approach: np.ndarray) -> list[np.ndarray]:
+        """Derivatives of the law's forces, what is left of depths (mm) and load (N), and both by one."""
+        g, d = contact.law(depth)
+        off = level[i] - depth - (M[i] @ g.reshape(len(i), 3 * n, 1)).reshape(depth.shape)
+        off[..., 0] += approach[:, None]
+        miss = load[i] - E[i] * g[..., 0].sum(-1)
+        return [d, off, miss, (off**2).sum((-1, -2)) + (miss / alone[i]) ** 2]
+
+    todo = np.arange(G * T)
+    now, close = state(todo, depth, approach), CLOSE * np.abs(depth).max((-1, -2))
     for _ in range(NEWTON):
-        depth, g, d, J = contact.rest(M, contact.approached(approach, slope, height), depth)
-        off = model.load - E * g[..., 0].sum(-1)
-        if (np.abs(off) < LOADED * model.load).all():
+        d, off, miss, size = now
+        rough = (np.abs(off).max((-1, -2)) > close[todo]) | (np.abs(miss) > LOADED * load[todo])
+        todo, d, off, miss, size = todo[rough], d[rough], off[rough], miss[rough], size[rough]
+        if not len(todo):
             break
-        move = np.linalg.solve(J, np.broadcast_to(along, (G, T, 3 * n, 1))).reshape(depth.shape)
-        steep = E * np.einsum("gtnj,gtnj->gt", d[..., 0, :], move)
-        step = off / np.maximum(steep, 1e-3 * alone)
-        approach, depth = approach + step, depth + step[..., None, None] * move
-    q[:, part["approach"]] = approach
-    return depth
+        right = np.zeros((len(todo), 3 * n, 2))
+        right[..., 0], right[:, ::3, 1] = off.reshape(len(todo), -1), 1.0  # as is, and by the approach
+        step = np.linalg.solve(np.eye(3 * n) + columns(M[todo], d), right).reshape(*off.shape, 2)
+        bears = E[todo, None] * np.einsum("gnj,gnjk->gk", d[..., 0, :], step)
+        by = (miss - bears[:, 0]) / np.maximum(bears[:, 1], 1e-3 * alone[todo])
+        deeper, share, left = step[..., 0] + by[:, None, None] * step[..., 1], 1.0, np.arange(len(todo))
+        now = [d, off, miss, size]
+        for _ in range(HALVINGS):
+            i = todo[left]
+            tried = depth[i] + share * deeper[left], approach[i] + share * by[left]
+            found = state(i, *tried)
+            better = found[3] <= size[left]
+            depth[i[better]], approach[i[better]] = (v[better] for v in tried)
+            for old, new in zip(now, found):
+                old[left[better]] = new[better]
+            left, share = left[~better], share / 2
+            if not len(left):
+                break
+        todo, now = np.delete(todo, left), [np.delete(v, left, 0) for v in now]
+    q[:, part["approach"]] = approach.reshape(G, T)
+    return depth.reshape(G, T, n, 3)

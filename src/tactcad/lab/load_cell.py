@@ -137,18 +137,12 @@ def require_spring(
     constant = np.abs(slope) * np.ptp(x) <= rounding(y)
     for name, unit, unchanged in zip(("force", "signal"), "NV", constant):
         if unchanged:
-            raise InputError(
-                where,
-                f"the {name} does not change with displacement",
-                legal=f"{name} in {unit} that {'rises' if unit == 'N' else 'changes'} with displacement",
-            )
+            legal = f"{name} in {unit} that {'rises' if unit == 'N' else 'changes'} with displacement"
+            raise InputError(where, f"the {name} does not change with displacement", legal=legal)
     k = float(slope[0])
     if k + half_width < 0:
-        raise InputError(
-            where,
-            f"the force falls with displacement, by {-k:.4g} N/mm: the sign of one column is reversed",
-            legal="force and displacement both grow as the element is pressed",
-        )
+        what = f"the force falls with displacement, by {-k:.4g} N/mm: the sign of one column is reversed"
+        raise InputError(where, what, legal="force and displacement both grow as the element is pressed")
     if k - half_width >= load_cell.ends[1]:
         raise InputError(
             where,
@@ -158,12 +152,9 @@ def require_spring(
         )
     if far and not 0 < k < load_cell.ends[1]:  # without outliers noise alone can bring k there: no refusal
         does = "falls with displacement" if k <= 0 else "rises by more than the load cell can"
-        raise InputError(
-            where,
-            f"the force {does}, because of what lies far from the other readings: line {', '.join(far)}",
-            value=f"{k:.4g} +-{half_width:.4g} N/mm",
-            legal="force in N that rises with displacement; --drop-outliers leaves those lines out",
-        )
+        what = f"the force {does}, because of what lies far from the other readings: line {', '.join(far)}"
+        legal = "force in N that rises with displacement; --drop-outliers leaves those lines out"
+        raise InputError(where, what, value=f"{k:.4g} +-{half_width:.4g} N/mm", legal=legal)
 
 
 def element_stiffness(k: float, se: float, load_cell: LoadCell, t: float, notes: list[str]) -> Estimate:

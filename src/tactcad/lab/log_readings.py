@@ -210,12 +210,8 @@ def _spans(log: LabLog, by: LogMap, time: np.ndarray, drive: np.ndarray | None) 
             raise InputError(f"{log.path}: {rule.column}", what, legal=legal)
         if np.nanmax(drive) - np.nanmin(drive) < (rule.apart or 0.0):
             what = "never changes by steps.apart: constant, or saturated"
-            raise InputError(
-                f"{log.path}: {rule.column}",
-                what,
-                value=float(np.ptp(drive)),
-                legal=f"{rule.apart:g} at least",
-            )
+            legal = f"{rule.apart:g} at least"
+            raise InputError(f"{log.path}: {rule.column}", what, value=float(np.ptp(drive)), legal=legal)
     interval = np.diff(time)
     longest = sorted(float(interval[a:b].max()) for a, b in found if b > a)  # bursts: pauses in every step
     usual = longest[(len(longest) - 1) // 2] if longest else 0.0

@@ -71,12 +71,10 @@ def refuse_strangers(source: str, readings: GraspReadings) -> None:
     number = _pads(source)[2]
     for n in readings.element:
         if n not in number:
-            raise InputError(
-                f"{readings.path}: sample {readings.sample}, element",
-                f"design {source} has no such element, so the place of its pad is unknown",
-                value=int(n),
-                legal=f"{number.tolist()}, another --design, or --coupling 0",
-            )
+            where = f"{readings.path}: sample {readings.sample}, element"
+            what = f"design {source} has no such element, so the place of its pad is unknown"
+            legal = f"{number.tolist()}, another --design, or --coupling 0"
+            raise InputError(where, what, value=int(n), legal=legal)
 
 
 def layers(design: CommonTables, thickness: str | None, poisson: float | None) -> list[LayeredArray]:

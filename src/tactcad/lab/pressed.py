@@ -135,18 +135,17 @@ def press_array(
             raise InputError("--angle", "out of range", value=a, legal=legal)
     of = family_of(design).must("pads", "grasp")
     number = of.places(design)[2]
+    if len(number) < 2:
+        raise InputError(design.name, "one pad makes no pair", value=1, legal="two elements or more")
     pads, per_sink = of.springs(design)
     alone = pad_stiffness(body, pads.length, pads.width, pads.disc)
     K = 1 / pads.compliance[:, 0, 0]
     candidates = (rung,) if rung else CHOSEN_FROM if within else (DEFAULT_RUNG,)
     rung, pressed, error = _chosen(candidates, within, pads, body, alone, load, angle)
     if (touching := int((pressed.contact > 0).sum())) < 2:
-        raise InputError(
-            "--angle",
-            f"only {touching} of {len(number)} pads touches, so no pair tells anything",
-            value=f"{angle[0]:g},{angle[1]:g}",
-            legal="less inclined, or a larger --load",
-        )
+        what = f"only {touching} of {len(number)} pads touches, so no pair tells anything"
+        legal = "less inclined, or a larger --load"
+        raise InputError("--angle", what, value=f"{angle[0]:g},{angle[1]:g}", legal=legal)
     elements = [
         PressedElement(
             number=int(number[i]),
@@ -195,12 +194,9 @@ def _chosen(
         if rung != "large" and deep > LINEAR_REACH:
             if rung != candidates[-1]:
                 continue
-            raise InputError(
-                "--load",
-                f"presses a pad {deep:.2g} of its radius or the thickness deep, too deep for rung {rung}",
-                value=load,
-                legal=f"at most {LINEAR_REACH:g}; rung large reaches {REACH:g}",
-            )
+            what = f"presses a pad {deep:.2g} of its radius or the thickness deep, too deep for rung {rung}"
+            legal = f"at most {LINEAR_REACH:g}; rung large reaches {REACH:g}"
+            raise InputError("--load", what, value=load, legal=legal)
         error = stated_error(rung, pads, body, pressed.force)
         if rung != "springs":  # whose climbs were of tilted pads
             error += tilt_error(pads, body, pressed, angle)

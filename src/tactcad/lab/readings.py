@@ -88,43 +88,30 @@ def calibration_of(table: Table) -> CalibrationReadings:
     rows, scaled = _read(table, (ELEMENT, RUN), ("displacement", "force", "signal"), (TIME,))
     timed = TIME.name in rows.columns
     if not timed:
-        refuse_duplicates(
-            rows,
-            ("element", "run", scaled["displacement"][0]),
-            "each displacement once a run; number the ways up and down as two runs, or give time_s",
-        )
+        legal = "each displacement once a run; number the ways up and down as two runs, or give time_s"
+        refuse_duplicates(rows, ("element", "run", scaled["displacement"][0]), legal)
     displacement, force, signal = (rows.values(name) * factor for name, factor in scaled.values())
     element, run = (rows.values(name).astype(int) for name in ("element", "run"))
-    out = CalibrationReadings(
-        element,
-        run,
-        displacement,
-        force,
-        signal,
-        rows.lines,
-        rows.path,
-        tuple(rows.columns)[2:5],  # behind element and run
+    time, named = (
         rows.values(TIME.name) if timed else None,
-    )
+        tuple(rows.columns)[2:5],
+    )  # behind element and run
+    read = (element, run, displacement, force, signal)
+    out = CalibrationReadings(*read, rows.lines, rows.path, named, time)
     if timed:
         out = _averaged(out)
     for number, own in groups(out.element):
         runs, at = len(np.unique(out.run[own])), np.unique(steps(out.displacement[own]))
         if len(own) < runs + 3 or len(at) < 3:
-            raise InputError(
-                table.where(int(out.line[own[-1]]), "element"),
-                f"too few readings of element {number}",
-                value=len(own),
-                legal="three more than runs, at three displacements at least",
-            )
+            what, value = f"too few readings of element {number}", len(own)
+            legal = "three more than runs, at three displacements at least"
+            raise InputError(table.where(int(out.line[own[-1]]), "element"), what, value=value, legal=legal)
         least = int(own[np.argmin(out.displacement[own])])
         if -out.displacement[least] > out.displacement[own].max():
-            raise InputError(
-                table.where(int(out.line[least]), scaled["displacement"][0]),
-                f"element {number} is pressed to negative displacements: the column's sign is reversed",
-                value=f"{out.displacement[least]:g} mm",
-                legal="displacement and force both grow as the element is pressed",
-            )
+            where = table.where(int(out.line[least]), scaled["displacement"][0])
+            what = f"element {number} is pressed to negative displacements: the column's sign is reversed"
+            legal = "displacement and force both grow as the element is pressed"
+            raise InputError(where, what, value=f"{out.displacement[least]:g} mm", legal=legal)
     return out
 
 
@@ -141,16 +128,8 @@ def _averaged(r: CalibrationReadings) -> CalibrationReadings:
         return (np.bincount(visit, v[order]) / count)[back]
 
     kept = order[first][back]
-    return replace(
-        r,
-        element=r.element[kept],
-        run=r.run[kept],
-        displacement=r.displacement[kept],
-        force=mean(r.force),
-        signal=mean(r.signal),
-        line=r.line[kept],
-        time=mean(r.time),
-    )
+    of_first = {name: getattr(r, name)[kept] for name in ("element", "run", "displacement", "line")}
+    return replace(r, **of_first, force=mean(r.force), signal=mean(r.signal), time=mean(r.time))
 
 
 def groups(number: np.ndarray) -> list[tuple[int, np.ndarray]]:
@@ -186,10 +165,8 @@ def grasps(path: str | Path) -> list[GraspReadings]:
 def grasps_of(table: Table) -> list[GraspReadings]:
     """`grasps` of a table that was read."""
     rows, scaled = _read(table, (ELEMENT,), ("load", "signal"), (RUN, SAMPLE, TIME))
-    run, sample = (
-        rows.values(n).astype(int) if n in rows.columns else np.ones(len(rows), int)
-        for n in ("run", "sample")
-    )
+    one = np.ones(len(rows))
+    run, sample = (rows.columns.get(n, one).astype(int) for n in ("run", "sample"))
     element = rows.values("element").astype(int)
     load, signal = (rows.values(name) * factor for name, factor in scaled.values())
     timed = TIME.name in rows.columns
@@ -230,11 +207,8 @@ def _grasp(
         grid = (np.bincount(place, signal, len(count)) / count).reshape(len(elements), len(states))
     if np.isnan(grid).any():
         e, s = np.argwhere(np.isnan(grid))[0]
-        raise InputError(
-            rows.where(int(own[-1]), "element"),
-            f"element {elements[e]} has no signal at load {states['load'][s]:g} N",
-            legal="every element at every load",
-        )
+        what = f"element {elements[e]} has no signal at load {states['load'][s]:g} N"
+        raise InputError(rows.where(int(own[-1]), "element"), what, legal="every element at every load")
     columns = tuple(rows.columns)[1:3]  # behind the element
     at = None if time is None else np.bincount(column, time) / np.bincount(column)
     return GraspReadings(sample, elements, states["load"], states["run"], grid, rows.path, columns, at)
@@ -283,11 +257,8 @@ def _column_of(table: Table, quantity: str) -> tuple[str, float]:
     known = {quantity + suffix: factor for suffix, factor in UNITS[quantity][0].items()}
     names = [name for name in table.header if name in known]
     if len(names) > 1:
-        raise InputError(
-            f"{table.path}:{table.header_line}:{table.header.index(names[1]) + 1}",
-            f"{names[0]} and {names[1]} are both the {quantity}",
-            value=names[1],
-            legal="one of " + ", ".join(known),
-        )
+        where = f"{table.path}:{table.header_line}:{table.header.index(names[1]) + 1}"
+        what = f"{names[0]} and {names[1]} are both the {quantity}"
+        raise InputError(where, what, value=names[1], legal="one of " + ", ".join(known))
     name = names[0] if names else quantity
     return name, known[name]

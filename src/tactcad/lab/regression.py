@@ -133,18 +133,9 @@ def fit_lines(
     share = sxx[has_slope] / sxx.sum()
     off = run_slope - slope
     between = (off * share[:, None]).T @ off / max(len(share) - 1, 1) if len(share) > 1 else scatter * np.nan
-    return Lines(
-        slope,
-        scatter / sxx.sum(),
-        (y_mean - np.outer(x_mean, slope)).mean(0),
-        residual,
-        w / total[index] + w * xc * xc / sxx.sum() + of_time,
-        w,
-        dof,
-        run_slope,
-        share,
-        between,
-    )
+    intercept, covariance = (y_mean - np.outer(x_mean, slope)).mean(0), scatter / sxx.sum()
+    leverage = w / total[index] + w * xc * xc / sxx.sum() + of_time
+    return Lines(slope, covariance, intercept, residual, leverage, w, dof, run_slope, share, between)
 
 
 # Largest factor on the variance of a slope by fitting drift too. Beyond that factor, displacement or load

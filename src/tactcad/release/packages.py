@@ -123,12 +123,11 @@ def _files_of(
     package: Package, line: OrderLine, design: CommonTables, files: Mapping[str, bytes]
 ) -> dict[str, str]:
     """The part's files that the package takes, by kind; of the board all that it is made and fitted from."""
-    revision = design.design.revision
     if line.row.part_no == BOARD:
         made = {path.removeprefix(BOARDS): path for path in sorted(files) if path.startswith(BOARDS)}
-        sheets = f"pdf/{design.name}-circuit_{revision}.pdf"
+        sheets = f"pdf/{design.name}-circuit_{design.design.revision}.pdf"
         return made | ({"sheets": sheets} if sheets in files else {})
-    stem = f"{line.row.part_no}_{revision}"
+    stem = f"{line.row.part_no}_{line.row.rev}"
     paths = {
         "dxf": f"dxf/{stem}.dxf",
         "pdf": f"pdf/{stem}.pdf",

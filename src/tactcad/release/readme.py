@@ -82,7 +82,8 @@ def first_lines(contents: ReleaseContents, title: str) -> list[str]:
     people = ", ".join(dict.fromkeys(p for p in (identity.author, identity.organisation) if p))
     return lines + paragraph(
         f"Issued {identity.date}{f' by {people}' if people else ''}. Made with tactcad {__version__}. "
-        f"Every file here is revision {identity.revision}; do not mix it with files of another."
+        f"This is revision {identity.revision} as a whole; the tables name each part's own (rev): one that "
+        "has not changed since an earlier revision keeps that letter. Use no file of another letter."
     )
 
 
@@ -138,12 +139,13 @@ def _to_make(contents: ReleaseContents) -> list[str]:
 
 
 def parts_table(contents: ReleaseContents, parts: Sequence[Part]) -> list[str]:
-    heads = ("part", "qty", "spares", "material", "size, mm", "finish")
+    heads = ("part", "rev", "qty", "spares", "material", "size, mm", "finish")
     groups: dict[str, list[tuple[str, ...]]] = {}
     for part in parts:
         low, high = part_box(part)
         row = (
             part.part_no,
+            contents.design.design.of_part(part.part_no).revision,
             f"{contents.quantity(part):g}",
             str(part.spares or ""),
             str(part.material),
@@ -204,7 +206,7 @@ def _files(paths: Sequence[str], known: Mapping[str, str]) -> list[str]:
 
 
 AGREE = (
-    "A part's files carry its part number and the revision. Drawing and STEP file agree; where you find "
+    "A part's files carry its part number and its revision. Drawing and STEP file agree; where you find "
     "that they do not, the drawing holds and we want to know."
 )
 QUOTE = ("Price and delivery for the quantities above, and for twice the elements.",)
@@ -302,7 +304,7 @@ def _parts(one: Packed) -> list[Part]:
 
 
 def _to_order(contents: ReleaseContents, one: Packed) -> list[str]:
-    if one.package in (WIRE, MACHINING):
+    if one.package in (WIRE, ETCHING, MACHINING):
         lines = parts_table(contents, _parts(one))
     elif one.package is SHEET:
         lines = _sheet_table(one)
@@ -318,7 +320,8 @@ def _to_order(contents: ReleaseContents, one: Packed) -> list[str]:
 def _sections(contents: ReleaseContents, one: Packed, shop: Shop) -> Sequence[tuple[str, list[str]]]:
     parts = _parts(one)
     if any(line.row.part_no == BOARD for line in one.lines):
-        return (("CIRCUIT BOARD", paragraph(BOARDS)),)
+        of = contents.design.design.of_board
+        return (("CIRCUIT BOARD", paragraph(f"{of.board_no}, revision {of.revision}. {BOARDS}")),)
     if one.package is WIRE:
         return (
             ("TIME ON THE MACHINE", _wire_time(one, shop)),
@@ -372,12 +375,13 @@ def _sheet_table(one: Packed) -> list[str]:
             sheets[title] = f", nested on {pack}{size} mm"
         blank = float(row["length_mm"]) * float(row["width_mm"])
         area[title] = area.get(title, 0.0) + blank * float(row["order"])
-        cells = (row["part_no"], row["order"], f"{row['length_mm']} x {row['width_mm']}", _blank_for(row))
+        size = f"{row['length_mm']} x {row['width_mm']}"
+        cells = (row["part_no"], row["rev"], row["order"], size, _blank_for(row))
         groups.setdefault(title, []).append(cells)
     titled = [
         (f"{title} ({area[title] / 100:.0f} cm2 net{sheets[title]})", rows) for title, rows in groups.items()
     ]
-    lines = table(("for part", "pieces", "at least, mm", "how"), titled)
+    lines = table(("for part", "rev", "pieces", "at least, mm", "how"), titled)
     return lines + paragraph(
         "Thickness is that of the stock as sold, with its limits; for closer limits, pick rolled sheet that "
         "measures within them. Sizes of blanks include what is machined off each edge. Sheet for the wire "
@@ -425,7 +429,7 @@ def table(heads: Sequence[str], groups: Sequence[tuple[str, Sequence[Sequence[st
     rows = [heads, *(row for _, group in groups for row in group)]
     widths = [min(WIDEST, max(len(row[i]) for row in rows)) for i in range(len(heads) - 1)]
     widths = [max([w, *(len(word) for row in rows for word in row[i].split())]) for i, w in enumerate(widths)]
-    widths.append(max(WIDTH - sum(w + 2 for w in widths) - 2, 22))
+    widths.append(max(WIDTH - sum(w + 2 for w in widths) - 2, 17))
 
     def line(row: Sequence[str]) -> list[str]:
         cells = [wrap(cell, w) or [""] for cell, w in zip(row, widths)]

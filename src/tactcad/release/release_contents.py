@@ -47,7 +47,7 @@ class ReleaseContents:
     @cached_property
     def lines(self) -> tuple[OrderLine, ...]:
         """The order, made and bought."""
-        return ordered(self.scenes, self.design.design.revision, self.sets)
+        return ordered(self.scenes, self.design.design, self.sets)
 
     def quantity(self, part: Part) -> float:
         """Number of a made part that the set-ups need; spares come on top."""
@@ -87,19 +87,19 @@ class OrderLine:
         return round(self.qty + self.row.spares, 6)
 
 
-def ordered(scenes: Sequence[Scene], revision: str, sets: Sets) -> tuple[OrderLine, ...]:
+def ordered(scenes: Sequence[Scene], identity: Identity | None, sets: Sets) -> tuple[OrderLine, ...]:
     """The lines that the scenes need, in order of first placement; what comes with another part, and
     reference parts, need no order.
 
     Parameters
     ----------
-    scenes, revision
-        Of the design.
+    scenes, identity
+        Of the design; None: without letters.
     sets
         What is ordered (SETS).
     """
     parts = {part.part_no: part for scene in scenes for part in scene.parts}
-    bills = {scene.name: {row.part_no: row for row in bom_rows(scene, revision, {})} for scene in scenes}
+    bills = {scene.name: {row.part_no: row for row in bom_rows(scene, identity, {})} for scene in scenes}
     rows = {number: row for bill in bills.values() for number, row in reversed(bill.items())}
     array = {n for n, row in bills.get("array", {}).items() if row.make_buy == "make"}
     whole = {(p.designator, p.part.part_no) for s in scenes if s.name == "array" for p in s.placements}
@@ -120,7 +120,7 @@ def _own(
     (`array`), one of which is in the bonding fixture, and those in the setting fixture (`whole`: designators
     and part numbers) while the array is screwed."""
     ready: list[Mapping[str, float]] = [
-        {row.part_no: row.qty for row in bom_rows(s, "", {})} for s in scene.ready
+        {row.part_no: row.qty for row in bom_rows(s, None, {})} for s in scene.ready
     ]
     if scene.ready and scene.name != "array":
         there = {(p.designator, p.part.part_no) for s in scene.ready for p in s.placements}

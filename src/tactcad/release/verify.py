@@ -95,10 +95,11 @@ def _checksum_faults(files: Mapping[str, bytes], exported: Mapping[str, str]) ->
 
 def _part_faults(files: Mapping[str, bytes], contents: ReleaseContents) -> Iterator[str]:
     """One STEP file of one solid a part, one more a part with limits, one cut file a part that is cut from
-    sheet or plate; their names and headers name the revision."""
-    revision = contents.design.design.revision
+    sheet or plate; their names and headers name its revision."""
+    identity = contents.design.design
     parts = {p.part_no: p for scene in contents.scenes for p in scene.parts}
     for part in parts.values():
+        revision = identity.of_part(part.part_no).revision
         yield from _step_part_faults(files, f"step/{part.part_no}_{revision}.step", revision)
         if has_limits(part):
             yield from _step_part_faults(files, f"step/{part.part_no}_{revision}{AP242}.step", revision)
@@ -106,10 +107,9 @@ def _part_faults(files: Mapping[str, bytes], contents: ReleaseContents) -> Itera
             yield from _dxf_faults(files, f"dxf/{part.part_no}_{revision}.dxf", part)
     for folder in sorted({"pdf/", *(form.folder for form in part_formats() if form.released)}):
         for path in files:
-            if path.startswith(folder) and not PurePosixPath(path).stem.removesuffix(AP242).endswith(
-                f"_{revision}"
-            ):
-                yield f"{path}: its name does not end in revision {revision}"
+            number, _, letter = PurePosixPath(path).stem.removesuffix(AP242).rpartition("_")
+            if path.startswith(folder) and letter != (own := identity.of_part(number).revision):
+                yield f"{path}: its name does not end in revision {own}"
     cut = {p.part_no for p in parts.values() if cut_section(p) is not None}
     for path in files:
         if path.startswith("dxf/") and PurePosixPath(path).stem.rpartition("_")[0] not in cut:
@@ -161,7 +161,7 @@ def _scene_faults(files: Mapping[str, bytes], contents: ReleaseContents, scene: 
     if solids != meant:
         yield f"{path}: {solids} solids, {bill} has {meant:g}"
     for row in rows:
-        if row.make_buy == "make" and row.rev != revision:
+        if row.make_buy == "make" and row.rev != contents.design.design.of_part(row.part_no).revision:
             yield f"{bill}: {row.part_no} is of revision {row.rev!r}"
         if row.file and _checksums(files).get(row.file) != row.sha256:
             yield f"{bill}: {row.file} is missing or differs from the bill"
@@ -171,8 +171,9 @@ def _sheet_faults(files: Mapping[str, bytes], contents: ReleaseContents) -> Iter
     """A sheet for every part made and an assembly drawing for every scene: number and revision on every page,
     key characteristics once and with the model's values, the digest of the file that the part is made from,
     balloons and parts list as in the bill; PRELIMINARY on every page of a draft and on none of a release."""
-    design, revision = contents.design, contents.design.design.revision
+    design = contents.design
     for part in contents.made:
+        revision = design.design.of_part(part.part_no).revision
         path = f"pdf/{part.part_no}_{revision}.pdf"
         pages = _pages(files, path)
         if len(pages) != 1:
@@ -190,6 +191,7 @@ def _sheet_faults(files: Mapping[str, bytes], contents: ReleaseContents) -> Iter
         if _checksums(files).get(source, "no file") not in "".join(pages[0]).replace(" ", ""):
             yield f"{path}: does not have the SHA-256 of {source}"
         yield from _page_faults(path, pages, contents)
+    revision = design.design.revision
     for scene in contents.scenes:
         path = f"pdf/{design.name}-{scene.name}_{revision}.pdf"
         rows = bom.rows_from_csv(files[bill_of(scene)]) if bill_of(scene) in files else ()
@@ -253,10 +255,13 @@ def bill_of(scene: Scene) -> str:
 
 def _table_faults(files: Mapping[str, bytes], contents: ReleaseContents) -> Iterator[str]:
     identity = contents.design.design
-    for name in (inspection.NAME, strength.NAME):
-        rows = table_rows(files.get(name, b""))
-        if {(row["design"], row["revision"]) for row in rows} != {(identity.name, identity.revision)}:
-            yield f"{name}: not of {identity.name} revision {identity.revision} alone"
+    for name in (inspection.NAME, PART_INSPECTION, strength.NAME):
+        if name not in files and name != PART_INSPECTION:
+            yield f"{name}: missing"
+        for row in table_rows(files.get(name, b"")):
+            of = identity if name == strength.NAME else identity.of_part(row["part_no"])
+            if (row["design"], row["revision"]) != (of.name, of.revision):
+                yield f"{name}: a row of {row['design']} revision {row['revision']}"
     if (
         f"{identity.name}, revision {identity.revision}:"
         not in files.get(README, b"").decode().splitlines()[0]

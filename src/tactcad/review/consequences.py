@@ -14,7 +14,9 @@ from typing import Any, Literal
 from tactcad.design.load import from_table
 from tactcad.design.messages import CheckFailure, InputError
 from tactcad.design.tree import CommonTables
+from tactcad.export.board_files import board_record
 from tactcad.export.difference import Change
+from tactcad.export.part_letters import lines_since
 from tactcad.export.sides import Side, comparable
 from tactcad.parts.rules import refuse_broken
 
@@ -69,6 +71,7 @@ class Meaning:
     together      all causes at once; None if the sides' records lack the data
     checked       whether `together` includes checks: both sides have their design
     interactions  elements on which the causes act differently together than one by one, one line each
+    unchanged     lines by which parts that did not change keep their letters, where the design's rises
     untold        reasons for missing consequences, one line each
     """
 
@@ -76,6 +79,7 @@ class Meaning:
     together: SensorEffect | None = None
     checked: bool = False
     interactions: tuple[str, ...] = ()
+    unchanged: tuple[str, ...] = ()
     untold: tuple[str, ...] = ()
 
     @property
@@ -113,8 +117,29 @@ def meaning(old: Side, new: Side) -> Meaning:
     found = causes(old.table, new.table)
     each = _Each(old.table, new.table, before, after, together)
     told = each.grouped(found)
+    # the letters are those after all causes, whichever one is told
+    of = [r.design.design.of_part for r in (before, after)]
+    same = {n for n in after.parts if of[0](n).revision == of[1](n).revision}
+    together = _with_letters(together, same)
+    told = [replace(c, effect=_with_letters(c.effect, same)) for c in told]
     ranked = sorted([*code, *told], key=lambda c: c.weight, reverse=True)
-    return Meaning(tuple(ranked), together, True, tuple(_interactions(told, together)))
+    return Meaning(
+        tuple(ranked), together, True, tuple(_interactions(told, together)), tuple(_unchanged(before, after))
+    )
+
+
+def _with_letters(effect: SensorEffect, same: Collection[str]) -> SensorEffect:
+    """With the revised parts that have the same letter before and after."""
+    return replace(effect, same_letter=tuple(n for n in effect.parts_revised if n in same))
+
+
+def _unchanged(before: Reviewed, after: Reviewed) -> list[str]:
+    """Lines for the new design's file, by which parts that did not change keep their letters."""
+    old, new = before.design.design, after.design.design
+    if (old.name, old.title) != (new.name, new.title) or old.revision == new.revision:
+        return []
+    records = [r.record | {"boards": board_record(r.design)} for r in (before, after)]
+    return lines_since(records[0], old, records[1], new)
 
 
 def kept_designs(old: Side, new: Side) -> tuple[CommonTables, CommonTables]:
@@ -169,7 +194,9 @@ class _Each:
         if cause.kind == "note":
             return Consequence(said, cause.kind, "alone", SensorEffect())
         if cause.kind == "title block":
-            sheets = (*self.after.state.made, *(f"assembly {name}" for name in self.after.state.scenes))
+            old, new = (r.design.design for r in (self.before, self.after))
+            made = [n for n in self.after.state.made if old.of_part(n) != new.of_part(n)]
+            sheets = (*made, *(f"assembly {name}" for name in self.after.state.scenes))
             return Consequence(said, cause.kind, "alone", SensorEffect(sheets=sheets))
         if only:
             return Consequence(said, cause.kind, "alone", self.together)
@@ -222,7 +249,8 @@ def _difference(old: Side, new: Side, design: CommonTables | None) -> SensorEffe
     """Difference of two records, of one design if it is given; None if one of them lacks the data."""
     try:
         before, after = (recorded_state(record, design) for record in comparable(old, new))
-        return effect(before, after, by_name(before, after))
+        found = effect(before, after, by_name(before, after))
+        return _with_letters(found, after.made if old.revision == new.revision else ())
     except (LookupError, TypeError, AttributeError):  # a file may hold less than this code writes
         return None
 
@@ -291,8 +319,7 @@ def _checks(c: Compared) -> bool:
 
 def _revision(c: Compared) -> bool:
     """The letter identifies one content of every part number."""
-    same_letter = (c.old.design, c.old.revision) == (c.new.design, c.new.revision)
-    return same_letter and any(effect.parts_revised for effect in c.meaning.effects)
+    return c.old.design == c.new.design and any(effect.same_letter for effect in c.meaning.effects)
 
 
 KINDS: dict[str, Callable[[Compared], bool]] = {

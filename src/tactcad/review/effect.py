@@ -21,11 +21,12 @@ from tactcad.design.messages import CheckFailure
 from tactcad.design.tree import CommonTables, Design
 from tactcad.export.difference import SHARE, differences
 from tactcad.export.geometry import Record, all_scenes, geometry
+from tactcad.export.part_letters import with_letters
 from tactcad.mechanics import readout
 from tactcad.mechanics.ladder import DEFAULT_RUNG
 from tactcad.parts.array.hinge_section import design_gauge, design_readout, hinge_section
 from tactcad.parts.array.layout import Layout
-from tactcad.parts.language.description import NOT_MADE, Part, Vector
+from tactcad.parts.language.description import Part, Vector
 from tactcad.parts.language.finding import Finding
 from tactcad.scenes import left_out
 from tactcad.scenes.rig import ARRAY
@@ -51,16 +52,6 @@ class ElementFigures:
     stop_gap: float | None  # mm
 
 
-@dataclass(frozen=True)
-class MadePart:
-    """A part that is made: all that its sheet shows, and its shape, each a description or plain data."""
-
-    sheet: Part | Record
-    shape: tuple | Record
-
-
-# Of a line of a bill, what belongs to the scene and not to the part; of a part's record too.
-OF_USE = ("qty", "spares", "designators")
 SHAPE = ("contours", "holes", "pockets", "volume_mm3", "box_mm")
 
 
@@ -71,7 +62,7 @@ class SensorState:
     elements     by designator
     mass         of the array with its fasteners, g
     cut_length   of all wire-cut pieces of the array, mm
-    made         every part that is made and has a sheet, by number
+    made         every part that is made and has a sheet, by number: its record without its count
     scenes       by name: placements and bill of the record of geometry
     size         of the array as built, mm; None if only a record of geometry is there
     """
@@ -79,7 +70,7 @@ class SensorState:
     elements: Mapping[str, ElementFigures]
     mass: float
     cut_length: float
-    made: Mapping[str, MadePart]
+    made: Mapping[str, Record]
     scenes: Mapping[str, Record]
     size: Vector | None = None
 
@@ -97,20 +88,13 @@ def recorded_state(record: Record, design: CommonTables | None) -> SensorState:
 
     scenes = record["scenes"]
     rows = scenes["array"]["bom"]
-    lines = {number: line for scene in scenes.values() for number, line in scene["bom"].items()}
     return SensorState(
         {name: figures(element) for name, element in record.get("elements", {}).items()},
         sum(row["qty"] * (row["mass_g"] or 0.0) for row in rows.values()),
         sum(row["qty"] * (parts[n]["cut_length_mm"] or 0.0) for n, row in rows.items() if n in parts),
-        {n: _made(part, lines.get(n, {})) for n, part in parts.items() if part["process"] not in NOT_MADE},
+        with_letters({"parts": parts}),
         scenes,
     )
-
-
-def _made(part: Record, line: Record) -> MadePart:
-    own = {name: value for name, value in part.items() if name not in OF_USE}
-    listed = {name: value for name, value in line.items() if name not in OF_USE}
-    return MadePart({"part": own, "listed": listed}, {name: part[name] for name in SHAPE if name in part})
 
 
 @dataclass(frozen=True)
@@ -140,14 +124,12 @@ class Reviewed:
     @cached_property
     def state(self) -> SensorState:
         told = recorded_state(self.record, self.design)
-        made = {n: p for n, p in self.parts.items() if p.process not in NOT_MADE}
         return replace(
             told,
             elements={
                 name: replace(figures, signal_per_force=volts)
                 for (name, figures), volts in zip(told.elements.items(), self._signals(len(told.elements)))
             },
-            made={number: MadePart(part, (part.body, part.features)) for number, part in made.items()},
             size=next(scene.size for scene in self.scenes if scene.name == ARRAY),
         )
 
@@ -251,7 +233,8 @@ class SensorEffect:
     bill             part number -> pieces before and after, the most that one scene holds
     parts_added, parts_removed
                      part numbers of parts that are made
-    parts_revised    made, under the same number with other content: their revision must change
+    parts_revised    made, under the same number with other content
+    same_letter      those of them whose letter is the same too: it must change
     sheets           drawings that must be issued anew, by name without revision
     scenes_added, scenes_removed
                      what the array has rigs for
@@ -270,6 +253,7 @@ class SensorEffect:
     parts_added: tuple[str, ...] = ()
     parts_removed: tuple[str, ...] = ()
     parts_revised: tuple[str, ...] = ()
+    same_letter: tuple[str, ...] = ()
     sheets: tuple[str, ...] = ()
     scenes_added: tuple[str, ...] = ()
     scenes_removed: tuple[str, ...] = ()
@@ -316,7 +300,7 @@ def by_name(old: SensorState, new: SensorState) -> Pairs:
 def effect(old: SensorState, new: SensorState, pairs: Pairs) -> SensorEffect:
     """Effects between two states, from any code."""
     shared = [n for n in new.made if n in old.made]
-    revised = [n for n in shared if not _same(old.made[n].sheet, new.made[n].sheet)]
+    revised = [n for n in shared if differences(old.made[n], new.made[n])]
     added = [n for n in new.made if n not in old.made]
     return SensorEffect(
         elements=tuple(_elements(old.elements, new.elements, pairs)),
@@ -397,15 +381,9 @@ def _bill(old: SensorState, new: SensorState) -> dict[str, tuple[float, float]]:
 
 def _assemblies(old: SensorState, new: SensorState) -> Iterator[str]:
     """Scenes whose assembly drawing changes."""
-    kept = {n for n, part in new.made.items() if n in old.made and _same(old.made[n].shape, part.shape)}
+    shapes = [{n: {k: p[k] for k in SHAPE if k in p} for n, p in s.made.items()} for s in (old, new)]
+    kept = {n for n, shape in shapes[1].items() if n in shapes[0] and not differences(shapes[0][n], shape)}
     for name, scene in new.scenes.items():
         shown = [n for n in scene["bom"] if n in new.made]
         if name not in old.scenes or differences(old.scenes[name], scene) or not kept.issuperset(shown):
             yield f"assembly {name}"
-
-
-def _same(old: object, new: object) -> bool:
-    """Descriptions are equal; records agree within their tolerances."""
-    if isinstance(old, dict) and isinstance(new, dict):
-        return not differences(old, new)
-    return old == new

@@ -108,7 +108,7 @@ def scene_facts(design: CommonTables, scene: Scene) -> SceneFacts:
         tuple(_motion(m, groups) for m in scene.motions),
         tuple(_pose(design, scene, pose) for pose in rig_of(design, scene.name).under_sensor(design)),
         tuple(sorted(scene.cover)),
-        tuple(asdict(row) for row in bom_rows(scene, design.design.revision, {})),
+        tuple(asdict(row) for row in bom_rows(scene, design.design, {})),
     )
 
 

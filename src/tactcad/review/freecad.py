@@ -123,7 +123,7 @@ def freecad_record(
                 "file": part_file(n),
                 "colour": p.colour,
                 "transparency": 0,
-                "properties": _properties(p, identity.revision),
+                "properties": _properties(p, identity.of_part(p.part_no).revision),
             }
             for n, p in enumerate(parts.values())
         ],
@@ -144,8 +144,9 @@ def parameter_rows(design: CommonTables) -> list[Row]:
         if section.name in NO_TABLES or table is None:
             continue
         rows += _fields(section.name, table, design.origin)
-        for number, hinge in getattr(table, "override", {}).items():
-            rows += _fields(f"{section.name}.override.{number}", hinge, design.origin)
+        for inner in ("override", "unchanged"):
+            for key, own in getattr(table, inner, {}).items():
+                rows += _fields(f"{section.name}.{inner}.{key}", own, design.origin)
     return rows
 
 

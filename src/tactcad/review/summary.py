@@ -38,6 +38,7 @@ def lines(meaning: Meaning) -> Iterator[str]:
         yield "  all together"
         yield from (f"      {line}" for line in effect_lines(meaning.together))
     yield from (f"  not the sum: {line}" for line in meaning.interactions)
+    yield from meaning.unchanged
 
 
 def as_record(meaning: Meaning) -> dict[str, Any]:
@@ -137,7 +138,7 @@ def effect_lines(effect: SensorEffect, title: bool = False) -> Iterator[str]:
 def _words(effect: SensorEffect, title: bool) -> Iterator[str]:
     """The effects without a column."""
     if title:
-        yield "title block of every sheet"
+        yield f"title blocks of {len(effect.sheets)} sheets"
         return
     if effect.size and len({*map(stated_size, effect.size)}) > 1:
         yield "overall size: " + " -> ".join(map(stated_size, effect.size))
@@ -153,7 +154,7 @@ def _lists(effect: SensorEffect) -> Iterator[tuple[str, Sequence[str]]]:
     yield "scenes removed", effect.scenes_removed
     yield "new parts", effect.parts_added
     yield "parts no longer made", effect.parts_removed
-    yield "same number, other content: revision must change", effect.parts_revised
+    yield "same number, other content: revision must change", effect.same_letter
     yield "sheets to issue anew", effect.sheets
     yield "bill", [f"{number} {a:g} -> {b:g}" for number, (a, b) in effect.bill.items()]
 

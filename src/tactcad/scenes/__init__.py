@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from tactcad.design.family import family_of
 from tactcad.design.messages import InputError, one_of
 from tactcad.design.tree import CommonTables
-from tactcad.parts.language.description import Vector
+from tactcad.parts.language.description import NOT_MADE, Vector
 from tactcad.parts.language.finding import Finding
 from tactcad.parts.rules.rule import misfit
 from tactcad.profiling import making
@@ -73,6 +73,21 @@ def chosen_scenes(design: CommonTables, wanted: list[str] | None) -> tuple[str, 
                 "--scene", why or "no such scene in this design", value=name, legal=one_of(name, names)
             )
     return tuple(name for name in names if not wanted or name in wanted)
+
+
+def refuse_unknown_parts(design: CommonTables) -> None:
+    """Raise InputError if [design.unchanged] names what is no part made for any scene, nor the boards."""
+    if not (unchanged := design.design.unchanged):
+        return
+    scenes = (make_scene(design, name) for name in scene_names(design))
+    made = {part.part_no for scene in scenes for part in scene.parts if part.process not in NOT_MADE}
+    made |= {design.design.board_no} if family_of(design).boards else set()
+    known = sorted(number.removeprefix(f"{design.name}-") for number in made)
+    for letter, issue in unchanged.items():
+        for name in issue.parts:
+            if name not in known:
+                where, what = f"design.unchanged.{letter}.parts", "no part that is made"
+                raise InputError(where, what, value=name, legal=one_of(name, known))
 
 
 def make_scene(design: CommonTables, name: str, pose: Pose | None = None) -> Scene:

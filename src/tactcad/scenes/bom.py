@@ -15,7 +15,9 @@ from dataclasses import asdict, dataclass, fields
 from typing import Any
 
 from tactcad.design.text_values import as_number, as_whole
+from tactcad.design.tree import Identity
 from tactcad.parts.bought.electronic_parts import Supply
+from tactcad.parts.bought.example_makes import example
 from tactcad.parts.language.description import Part, Purchase
 from tactcad.scenes.scene import Scene
 
@@ -64,21 +66,24 @@ class BomRow:
 COLUMNS = tuple(f.name for f in fields(BomRow))
 
 
-def bom_rows(scene: Scene, revision: str, files: Mapping[str, tuple[str, str]]) -> tuple[BomRow, ...]:
+def bom_rows(
+    scene: Scene, identity: Identity | None, files: Mapping[str, tuple[str, str]]
+) -> tuple[BomRow, ...]:
     """The lines of a scene: made parts, then bought ones, then supplies; each in order of first placement.
 
     Parameters
     ----------
     scene
         Its placements and supplies.
-    revision
-        Of the design, for made parts.
+    identity
+        Of the design, which knows the letters of made parts; None: without letters.
     files
         By part number: path and SHA-256 of the file that the part is made from.
     """
     parts = sorted(scene.parts, key=lambda part: part.bought)
+    letter = lambda p: identity.of_part(p.part_no).revision if identity and not p.bought else ""  # noqa: E731
     rows = [
-        _part_row(item, part, scene, "" if part.bought else revision, *files.get(part.part_no, ("", "")))
+        _part_row(item, part, scene, letter(part), *files.get(part.part_no, ("", "")))
         for item, part in enumerate(parts, start=1)
     ]
     return (*rows, *(_supply_row(len(rows) + n, supply) for n, supply in enumerate(scene.supplies, start=1)))
@@ -98,6 +103,7 @@ def _part_row(item: int, part: Part, scene: Scene, revision: str, file: str, sha
         make_buy="buy" if part.bought else "make",
         material=str(part.material),
         standard_designation=order.designation,
+        alternates="; ".join(filter(None, (example(part), order.alternates))),
         consumable=False,
         file=file,
         sha256=sha256,

@@ -71,12 +71,15 @@ class Builder:
         return f"{prefix}{self._numbers[prefix]}"
 
     def place(
-        self, prefix: str, part: Part, origin: Vector, rotation: Rotation = UPRIGHT, step: str = ""
+        self, prefix: str, part: Part, at: Vector, turned: Rotation = UPRIGHT, step: str = "", on: str = ""
     ) -> str:
-        """Put a part in place, in the step of that title if one is given; returns its designator."""
-        name = self.put(Placement(self.name(prefix), part, origin, rotation))
+        """Put a part in place, in the step of that title if one is given, where it touches `on`; returns its
+        designator."""
+        name = self.put(Placement(self.name(prefix), part, at, turned))
         if step:
             self.placed_in.setdefault(step, []).append(name)
+        if on:
+            self.meet(name, on)
         return name
 
     def put(self, placement: Placement) -> str:
@@ -95,8 +98,8 @@ class Builder:
         self, thread: str, length: float, under_head: Vector, direction: Vector, head_on: str, into: str
     ) -> str:
         """A cap screw with its head's bearing face at `under_head`, pointing in `direction`."""
-        name = self.place("RS", screws.cap_screw(thread, length), under_head, POINTING[direction])
-        self.meet(name, head_on)
+        made = screws.cap_screw(thread, length)
+        name = self.place("RS", made, under_head, POINTING[direction], on=head_on)
         self.meet(name, into, "thread")
         return name
 

@@ -236,7 +236,9 @@ def settles(scene: Scene, number: int) -> tuple[tuple[str, ...], tuple[str, ...]
     """Freedoms that a step fixes and leaves: as it states, or by the contacts that it closes."""
     step = scene.steps[number]
     placed = {p.designator: p for p in scene.placements}
-    there = {d for s in scene.steps[: number + 1] for d in s.designators}
+    before = scene.steps[: number + 1]
+    near = [s for s in before if s.bench and s.unit == step.unit] if step.bench else before
+    there = {d for s in near for d in s.designators}
     new = set(step.designators)
     ready = {d for s in scene.steps for d in s.ready}
     screwed: dict[tuple[str, str], list[str]] = {}

@@ -71,6 +71,16 @@ def none(*_: Any) -> tuple[()]:
     return ()
 
 
+def plain_rig(
+    name: str,
+    make: Callable[[Any, Pose], Scene],
+    rules: tuple[Rule, ...] = (),
+    requirements: Callable[[Any, dict[str, DimensionLimits]], list[Requirement]] = lambda *_: [],
+) -> Rig:
+    """A rig that needs no table, has one pose, and neither a part that deflects nor checks of its own."""
+    return Rig(name, (), make, none, none, rules, lambda _design: iter(()), requirements, ())
+
+
 def all_rigs(spec: type[CommonTables]) -> dict[str, Rig]:
     """Every rig of the family whose designs are of that class, by name: the array, then in the order of their
     tables in a design."""
@@ -101,6 +111,13 @@ def _rigs(name: str) -> dict[str, Rig]:
 def rig_of(design: CommonTables, scene: str) -> Rig:
     """The rig that declares a scene of this design."""
     return all_rigs(type(design))[scene]
+
+
+def require_element(pose: Pose, count: int) -> None:
+    """Raise InputError if an array of so many elements has none of the pose's number."""
+    if not 1 <= pose.element <= count:
+        what = "the array has none of that number"
+        raise InputError("element", what, value=pose.element, legal=f"1 to {count}")
 
 
 LEAST = 1e-3  # mm; less is more likely a typing error, and the CAD kernel drops edges that short

@@ -70,9 +70,9 @@ def place_stand(b: Builder, rig: StandLayout, stages: bool) -> str:
     b.step(
         "Stand",
         (0, 0, 0) if stages else (0, 0, -60),
-        "Screw the post on the base plate from below. Before the last turn, check with a square on the upper "
-        "face that the post's front stands square within 0.02 mm on 100 mm, both "
-        "ways; where it does not, lay shim foil under its foot.",
+        "Screw the post on the base plate from below, the plate over the bench's edge. Before the last turn, "
+        "check with a square on the upper face that the post's front stands square within 0.02 mm on "
+        "100 mm, both ways; where it does not, lay shim foil under its foot.",
         tools=(SQUARE, SHIMS),
     )
     return post
@@ -252,7 +252,7 @@ def place_force_axis(
     designator, and the moves that put jam nut and tip on its shaft."""
     b.unit("force axis")
     travel = present(rig.design.calibration).axis_travel
-    stage = replace(STAGES[0], travel=travel, maker="", part_no="", verified=False)
+    stage = replace(STAGES[0], travel=travel)
     resolution = present(rig.design.calibration).micrometer_resolution
     aside = min(travel, STAGE / 2)  # the screws are free by then; further down is the base
     zs, z = rig.stage_middle(touch), rig.axis_middle(touch) + height
@@ -277,9 +277,9 @@ def place_force_axis(
     b.step(
         "Vertical stage",
         (0, -40, AXIS_LIFT),
-        "Turn the moving half up by its micrometer until two screws are free, fix the fixed half on the "
-        f"post's rows at z = {zs - STAGE_HOLE:g} and {zs + STAGE_HOLE:g} mm, then drive it down and fix "
-        "the other two. It must run square to the base plate: 0.01 mm on the whole travel against a "
+        "Turn the moving half up by its micrometer until the two lower holes are free, fix the fixed half on "
+        f"the post's rows at z = {zs - STAGE_HOLE:g} and {zs + STAGE_HOLE:g} mm, then drive it down and fix "
+        "it by the upper two. It must run square to the base plate: 0.01 mm on the whole travel against a "
         "square; where it does not, lay shim foil between post and fixed half.",
         order=[(fixed, moving, head), *driven((moving,), fixings, (0.0, 0.0, 1.0), aside, z - height - zs)],
         tools=(SQUARE, SHIMS, "lever indicator, 1 um, on a stand"),

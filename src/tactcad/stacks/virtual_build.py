@@ -28,6 +28,7 @@ from .variables import Distribution, made, of_element
 LEAST_YIELD = 0.995
 # The worse of these decides. Corners are also reported.
 DECIDING: tuple[Distribution, ...] = ("normal", "uniform")
+NEAR = 0.1  # of K, for which arrays are counted
 AT_ONCE = 20_000  # elements in memory at a time
 
 
@@ -63,6 +64,7 @@ class Builds:
     kept         by distribution: share of arrays that meet every requirement
     failures     by distribution: how many arrays miss a requirement, by its name
     elements     as built
+    near         share of arrays of normal parts with every K within NEAR of the drawn one
     """
 
     count: int
@@ -70,6 +72,7 @@ class Builds:
     kept: dict[str, float]
     failures: dict[str, dict[str, int]]
     elements: tuple[ElementBuilt, ...]
+    near: float = 0.0
 
     @property
     def worse(self) -> Distribution:
@@ -104,13 +107,22 @@ class Sensor:
         kept: dict[str, float] = {}
         failures: dict[str, dict[str, int]] = {}
         elements: tuple[ElementBuilt, ...] = ()
+        near = 0.0
         for name in (*DECIDING, "corners"):
             missed, arrays = self._all(count, name, np.random.default_rng(seed))
             kept[name] = float(1.0 - np.logical_or.reduce(list(missed.values())).mean())
             failures[name] = {r: int(m.sum()) for r, m in missed.items() if m.any()}
             if name == "normal":
                 elements = self._family.stack.elements(self.layout, arrays)
-        return Builds(count, seed, kept, failures, elements)
+                off = np.abs(arrays["stiffness"] / self._drawn() - 1.0).max(axis=1)
+                near = float((off <= NEAR).mean())
+        return Builds(count, seed, kept, failures, elements, near)
+
+    def _drawn(self) -> Array:
+        """K of every element as drawn, N/mm."""
+        middle = {name: np.zeros((1, v.pieces)) for name, v in self.variables.items()}
+        stack = self._family.stack
+        return np.asarray(stack.figures(stack.built(self.layout, middle))["stiffness"])
 
     def missed(self, arrays: Assembled, count: int) -> dict[str, Array]:
         """For each requirement a mask of `count` arrays that miss it."""
@@ -153,7 +165,9 @@ class Sensor:
         (line,) = self.stack(worst)
         most = line.contributors[0] if line.contributors else None
         values = paths(self.layout.design)
-        looked_at = " and ".join(f"{path} = {values[path]:g}" for path in line.requirement.fields)
+        looked_at = " and ".join(
+            path if values[path] is None else f"{path} = {values[path]:g}" for path in line.requirement.fields
+        )
         missed = f"{line.shortfall:.3g} {line.requirement.unit}".rstrip()
         return (
             f"{100 * builds.share:.1f} % of {builds.count} virtual arrays ({builds.worse} parts, seed "

@@ -164,7 +164,7 @@ class Synthesis:
     def as_design(self, found: Found, name: str) -> Design:
         """A found candidate as a design of that name."""
         d, wish = found.design, self.target.target
-        identity = replace(d.design, name=name, title=wish.title, revision="A")
+        identity = replace(d.design, name=name, title=wish.title, revision="A", unchanged={})
         on = f"on bounds: {', '.join(b.field for b in self.bounds) or 'none'}"
         return replace(d, design=identity, origin={**d.origin, **origins(self.target.base, d, on)})
 

@@ -60,7 +60,6 @@ def test_the_simulator_and_the_program_agree_on_a_perfect_array():
     every = cell_response.neighbours(small(), small().elements).reshape(4, 3, 4, 3)
     for i, e in enumerate(small().elements):
         own = perfect.straight[i, :, i]
-        assert own == pytest.approx(cell_response.matrix(small(), e.kind), abs=1e-4 * np.abs(own).max())
         assert own == pytest.approx(chip_matrix(small(), e.kind) * [1, 1, -1], abs=1e-4 * np.abs(own).max())
         force = np.zeros((1, 4, 3))
         force[0, i] = (0.05, -0.03, 0.3)
@@ -303,7 +302,7 @@ def test_grasp_says_what_the_chips_feel(bench, capsys):
     done = json.loads(capsys.readouterr().out)
     assert done["signal_unit"] == "mT" and sum(e["force"] for e in done["elements"]) == pytest.approx(0.2)
     for place, e in zip(small().elements, done["elements"]):
-        felt = cell_response.matrix(small(), place.kind)[2, 2] * e["force"]
+        felt = -chip_matrix(small(), place.kind)[2, 2] * e["force"]
         assert e["signal"] == pytest.approx(abs(felt), rel=1e-9)
     assert run(asked[0], folder / "small.toml", *asked[1:]) == 0
     assert " uT " in capsys.readouterr().out
@@ -314,6 +313,30 @@ def test_a_square_of_a_pad_s_area_is_nearly_as_stiff(thickness):
     body, side = Body(1.0, 0.49, thickness), cell_pads.side(small().design)
     square, disc = pad_stiffness(body, side, side), pad_stiffness(body, 2.4, 2.4, disc=True)
     assert 1.0 <= square / disc < 1.03
+
+
+def test_one_cell_feels_forces_and_no_object(bench, tmp_path, capsys, recwarn):
+    folder, _ = bench
+    text = (
+        (folder / "small.toml")
+        .read_text()
+        .replace("rows = 2", "rows = 1")
+        .replace("columns = 2", "columns = 1")
+    )
+    (tmp_path / "one.toml").write_text(text)
+    for name in ("calibration", "grasp"):
+        header, *rows = (folder / f"{name}.csv").read_text().splitlines()
+        own = [r for r in rows if r.split(",")[header.split(",").index("element")] == "1"]
+        (tmp_path / f"{name}.csv").write_text("\n".join([header, *own]) + "\n")
+    of = ("--design", tmp_path / "one.toml")
+    assert run("calibrate", tmp_path / "calibration.csv", *of, "--out", tmp_path / "cal.csv") == 0
+    asked = ("stiffness", tmp_path / "grasp.csv", "--calibration", tmp_path / "cal.csv", *of)
+    assert run(*asked, "--picture", tmp_path / "map.svg") == 0
+    assert "K_obj of all cells wants 3 loads above zero, and two cells or more" in capsys.readouterr().out
+    assert not [w for w in recwarn if issubclass(w.category, RuntimeWarning)]
+    body = ("--object", "E=0.1,nu=0.49,thickness=8", "--load", "0.2")
+    assert run("grasp", tmp_path / "one.toml", *body) == 2
+    assert "one pad makes no pair" in capsys.readouterr().err
 
 
 def changed(text: str, line: int, **cells: str) -> str:

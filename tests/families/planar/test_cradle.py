@@ -28,6 +28,7 @@ from tactcad.parts.rules import load
 from tactcad.scenes import left_out, make_scene, scene_names
 from tactcad.scenes.moves import guide_json
 from tactcad.scenes.scene import Pose
+from tactcad.stacks.virtual_build import sensor
 
 DESIGNS = Path(__file__).parents[3] / "hardware"
 DOWN = {"x": (1, 0, 0), "y": (0, 1, 0), "z": (0, 0, -1)}  # of the array's axes, by the scene's load
@@ -195,6 +196,7 @@ def test_angles_by_hand(lay):
         ("pad = 2.4", "pad = 7.0", "cap_fits_pads"),
         ("rows = 6", "rows = 12", "cradle_holds_array"),
         ("border = 5.0", "border = 5.0\nside = 30.0", "cradle_holds_array"),
+        ("rows = 6\ncolumns = 6", "rows = 1\ncolumns = 1", "cradle_holds_array"),
         ("force = 0.8", "force = 0.02", "cells_bear_hangers"),
     ],
 )
@@ -214,7 +216,12 @@ def test_a_single_cell_is_calibrated_too():
         .replace("columns = 6", "columns = 1")
         .replace("buses = 3", "buses = 1")
     )
-    design = parse(one, "one.toml")
+    (said, *_) = [str(left) for left in left_out(parse(one, "one.toml"))]
+    assert "do not hold the array square" in said
+    border = re.search(r"at least (\S+) mm", said)[1]
+    design = parse(one.replace("border = 5.0", f"border = {border}"), "one.toml")
+    (line,) = sensor(design).stack("calibration: load across, in the pads' plane")
+    assert 0.7 * OFF_AXIS < line.worst_high <= OFF_AXIS
     assert scene_names(design) == ("array", "bonding", "calibration-z", "calibration-x", "calibration-y")
     assert {p.designator for p in make_scene(design, "calibration-x").placements} >= {"CR1", "CA1", "LI1"}
 

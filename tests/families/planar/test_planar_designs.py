@@ -4,22 +4,38 @@ from __future__ import annotations
 
 import csv
 import io
+import re
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+from cell_labs import loops_field
+from scipy.optimize import brentq
+from scipy.spatial.transform import Rotation
+from scipy.stats import truncnorm
 
 from tactcad.contour.inside import side
 from tactcad.design.family import family_of
 from tactcad.design.load import parse
 from tactcad.design.messages import InputError
+from tactcad.export.inspection import inspection_bytes
 from tactcad.families.planar import cell_array, parts
 from tactcad.families.planar.cell_layout import PlanarLayout
+from tactcad.families.planar.checks import check_strength
 from tactcad.families.planar.rules import design_rules
-from tactcad.families.planar.sensor import chip_matrix, closing_force, rows, strength
+from tactcad.families.planar.sensor import (
+    chip_matrix,
+    closing_force,
+    object_errors,
+    rows,
+    stop_stress,
+    strength,
+)
+from tactcad.parts.bought.standard_parts import dowel_limits
 from tactcad.parts.rules import load
 from tactcad.review.effect import Reviewed, same_elements
+from tactcad.stacks.virtual_build import sensor
 
 DESIGNS = Path(__file__).parents[3] / "hardware"
 PLANAR, JAW = (DESIGNS / f"{name}-array.toml" for name in ("planar", "jaw"))
@@ -99,14 +115,48 @@ def test_estimate_tells_ratio_resolution_and_stops(layout):
         assert (
             row.stop_force == pytest.approx(closing_force(layout, kind)) and row.stop_force > row.rated_force
         )
+        # Goodman's line from the sheet metal's row, Marin's factor of a machined surface
+        m, half = layout.design.material, row.rated_force * row.stress / row.force / 2
+        marin = 4.51 * m.tensile_strength**-0.265
+        assert 1 / row.fatigue_factor == pytest.approx(
+            half / (marin * m.fatigue_strength) + half / m.tensile_strength
+        )
         # noise: the chip's own, through the inverse of the matrix, by drawing it
         noise = np.array([layout.chip.noise_xy] * 2 + [layout.chip.noise_z]) * 1e-3
         drawn = np.linalg.solve(
             chip_matrix(layout, kind), (np.random.default_rng(1).normal(size=(4000, 3)) * noise).T
         )
         assert drawn.std(axis=1)[[0, 2]] == pytest.approx([row.force_noise_x, row.force_noise_z], rel=0.05)
+    flags = {f.check: f for f in check_strength(layout.design) if f.part == "E2"}
+    tired = flags["planar-fatigue"]
+    assert tired.value == pytest.approx(tired.limit * soft.fatigue_factor) and tired.value < soft.rated_force
     table = list(csv.DictReader(io.StringIO(strength(layout).decode())))
     assert [r["element"] for r in table] == [e.designator for e in layout.elements]
+
+
+def test_a_matrix_changes_as_the_field_of_the_simulator_does(layout):
+    """Central differences of the tests' own current loops and exact turns, at rest and at the rated force."""
+    shear, gap = layout.design.rating.shear, layout.design.hall.gap
+    lever, m = layout.design.planar.thickness / 2 + layout.design.magnet.height, layout.magnet
+    for row in {row.kind: row for row in rows(layout, "", None)}.values():
+        cell, load = layout.kinds[row.kind].cell, np.zeros((6, 3))
+        load[:3], load[3, 1], load[4, 0] = np.eye(3), -layout.pad_height, layout.pad_height
+
+        def felt(force, cell=cell, load=load):
+            move, bow = cell.compliance @ load @ force, cell.stiffening
+            move[2] = brentq(lambda u: u * (1 + bow * u * u) - move[2], -1, 1)
+            turned = Rotation.from_rotvec(move[3:])
+            low = move[:3] + turned.apply([0, 0, -lever])
+            at = turned.inv().apply(np.array([0, 0, -lever - gap]) - low)
+            return turned.apply(loops_field(m.radius, m.height, m.remanence, at))
+
+        def matrix(force, felt=felt):
+            steps = 1e-3 * row.rated_force * np.eye(3)
+            return np.array([(felt(force + s) - felt(force - s)) / (2 * s.max()) for s in steps]).T
+
+        rest, rated = matrix(np.zeros(3)), matrix(row.rated_force * np.array([shear, 0, -1.0]))
+        change = np.abs(rated - rest).max() / np.abs(rest).max()
+        assert row.matrix_change == pytest.approx(change, abs=0.005)
 
 
 def told(found, object_stiffness, matrices):
@@ -131,8 +181,51 @@ def test_the_jaw_s_file_says_what_can_be_had_there():
     for row in (soft, stiff):
         assert f"{1e3 * row.force_noise_x:.2f} mN" in said and f"{1e3 * row.force_noise_z:.2f} mN" in said
     errors = [[100 * told(found, k, m) for k in (0.5, 1.0, 5.0, 20.0)] for m in (0.0, 0.01)]
+    assert [100 * e for e in object_errors(lay).values()] == pytest.approx(errors[0], rel=1e-6)
     text = "{:.1f} % at 0.5 N/mm, {:.1f} % at 1, {:.1f} % at 5 and {:.1f} % at 20".format(*errors[0])
     assert text in said and "{:.1f}, {:.1f}, {:.1f} and {:.1f} %".format(*errors[1]) in said
+
+
+def test_arrays_as_made_have_the_stiffness_of_beams_as_cut(layout):
+    """Foils and cuts drawn within their limits, each beam's own closed form: K of every cell, and how many
+    arrays have all within 10 %. The stress on the stop is that of the thickest foil and the longest way."""
+    d, t, known = layout.design, layout.design.planar.thickness, sensor(layout.design)
+    cut = layout.process.tolerance(t)
+    drawn = truncnorm(-2, 2).rvs((400, 2), random_state=7) / 2 * (d.foil_tolerance, cut)
+    zero = {name: np.zeros((400, v.pieces)) for name, v in known.variables.items()}
+    made = zero | {"foil: thickness": drawn[:, :1], "foil: growth of beams": drawn[:, 1:]}
+    arrays = cell_array.Stacked(layout, made)
+    found, near = cell_array.figures(arrays)["stiffness"], np.ones(400, bool)
+    for e in layout.elements[:2]:
+        b = e.kind.beam
+        K = np.array([
+            1 / replace(e.kind.cell, beam=replace(
+                b, thickness=t + dt, width=b.width + dw, length=b.length - dw, fillet=b.fillet - dw / 2
+            )).compliance[2, 2]
+            for dt, dw in drawn
+        ])  # fmt: skip
+        assert found[:, e.number - 1] == pytest.approx(K, rel=0.01)
+        near &= np.abs(K * e.kind.cell.compliance[2, 2] - 1) <= 0.1
+    assert known.built(1000).near == pytest.approx(near.mean(), abs=0.05)
+    (stress,) = [r for r in known.requirements if "from yielding" in r.name]
+    worst = cell_array.Stacked(layout, {name: v.upper[np.newaxis] for name, v in known.variables.items()})
+    thick = replace(d, planar=replace(d.planar, thickness=t + d.foil_tolerance))
+    by_hand = [
+        stop_stress(PlanarLayout(thick), kind, kind.table.stop_gap + parts.travel_limit(layout, kind))
+        for kind in PlanarLayout(thick).used
+    ]
+    assert stress.value(worst)[0] == pytest.approx(np.array(by_hand) / d.material.yield_strength, rel=0.02)
+
+
+def test_the_foil_s_measurements_can_be_taken(layout):
+    """Figures to a nanometre at most; instruments that read to a tenth of the limits' width, or the best."""
+    text = list(csv.DictReader(io.StringIO(inspection_bytes(layout).decode())))
+    assert len(text) == 3 * len(layout.elements)
+    for row in text:
+        limits = [row[c] for c in ("nominal", "lower", "upper")]
+        assert all(len(v.partition(".")[2]) <= 6 for v in limits)
+        reads = float(re.search(r", ([\d.]+) or better", row["how"])[1])
+        assert reads <= (float(limits[2]) - float(limits[1])) / 10 + 1e-9 or reads == 0.0005
 
 
 def test_three_components_come_back_from_the_field(layout):
@@ -159,7 +252,8 @@ BROKEN = {
     "island_lands_on_base": ("border = 5.0", "border = 5.0\nwell = 1.3"),
     "chips_fit": ("buses = 3", "buses = 2"),
     "screws_fit": ("cover_thickness = 3.0", "cover_thickness = 1.0"),
-    "stop_protects": ("stop_gap = 0.2", "stop_gap = 0.6"),
+    "stop_protects": ("stop_gap = 0.21", "stop_gap = 0.6"),
+    "posts_clear_cover": ("border = 5.0", "border = 5.0\nside_gap = 0.15"),
     "field_in_scale": ("gap = 1.8", "gap = 1.0"),
     "magnets_keep_apart": ("[hall]", "[magnet]\ndiameter = 4.0\n\n[hall]"),
     "foil_leaves_magnets_alone": ("1.4310-C1300", "maraging-300-aged"),
@@ -195,9 +289,18 @@ FAULTS = {  # by what was asked: a change of the design, the rule that it breaks
     ),
     "fields out of range": ("gap = 1.8", "gap = 1.0", "field_in_scale", "MLX90393 takes 50"),
     "a stop that closes too early": (
-        "stop_gap = 0.2", "stop_gap = 0.12", "stop_protects", "closes before the rated force",
+        "stop_gap = 0.21", "stop_gap = 0.12", "stop_protects", "closes before the rated force",
+    ),
+    "a stop that a tipped island closes too early": (
+        "stop_gap = 0.21", "stop_gap = 0.2", "stop_protects", "closes before the rated force",
+    ),
+    "posts that meet the cover": (
+        "border = 5.0", "border = 5.0\nside_gap = 0.21", "posts_clear_cover", "measuring cell meets",
     ),
     "posts that meet": ("pad = 2.4", "pad = 7.6", "island_takes_post", "meet at rated shear"),
+    "chips that are read too seldom": (
+        "buses = 3", "buses = 3\nrate = 61.0", "chips_fit", "36 chips MLX90393 are not read so often",
+    ),
     "two chips of one address": ("buses = 3", "buses = 2", "chips_fit", "two would have one address"),
 }  # fmt: skip
 
@@ -212,6 +315,48 @@ def test_each_named_fault_is_refused_by_its_rule(fault):
     assert name in {f.check for f in found}, [f.broken for f in found]
     message = next(f.broken for f in found if f.check == name)
     assert said in message and "legal: " in message and "\n" not in message
+
+
+def test_stops_and_cover_are_clear_at_the_rated_force_and_at_the_limits(layout):
+    """By the compliance and the sheets: at the rated force with its shear towards a corner, no corner of an
+    island meets its land at the least way down, and no post its opening's edge. Both rules bind there."""
+    d, by = layout.design, {c.number: c for c in rows(layout, "", None)}
+    made = ("foil", "cover", "base", "post", "lower_spacer")
+    sheets = {name: getattr(parts, name)(layout) for name in made}
+
+    def refused(rule, what, **tables):
+        return any(what in f.broken for f in design_rules()[rule](PlanarLayout(replace(d, **tables))))
+
+    limit = {(n, c.name): c for n, p in sheets.items() for c in p.characteristics}
+    zone = {(n, g.features[0]): g.zone for n, p in sheets.items() for g in p.geometric}
+    moved = []
+    for e in layout.elements[:2]:
+        kind, force = e.kind, by[e.number].rated_force
+        c, height, shear = kind.cell.compliance, layout.pad_height, d.rating.shear * force
+        tilt = c[4, 4] * shear * height
+        straight, bow = force * c[2, 2], kind.cell.stiffening
+        sink = brentq(lambda u, bow=bow, straight=straight: u * (1 + bow * u**2) - straight, 0, 1)
+        corner = max(np.hypot(*line.start) for line in kind.island_outline(0.0))
+        spacer = limit["lower_spacer", "thickness"]
+        deep = float(re.search(r"±(\S+) deep", " ".join(sheets["base"].notes))[1])
+        sunk = kind.table.stop_gap > spacer.nominal + 1e-9
+        least = kind.table.stop_gap - (spacer.upper - spacer.nominal) - deep * sunk
+        assert sink + tilt * corner <= least
+        less = kind.table.stop_gap - (least - sink - tilt * corner) - 2e-4
+        assert refused("stop_protects", "closes before", **{kind.name: replace(kind.table, stop_gap=less)})
+        top = layout.pad_z - d.post.stand_out - d.planar.thickness / 2
+        moved.append(c[0, 0] * shear + tilt * top)
+    play = zone["cover", "post_opening"] + zone["foil", "spigot"]
+    play += limit["foil", "spigot diameter"].upper - limit["post", "spigot diameter"].lower
+    if layout.screwed:
+        bores = [limit[n, "dowel hole diameter"].upper for n in ("foil", "cover")]
+        play += zone["cover", "dowel_hole"] + zone["foil", "dowel_hole"]
+        play += sum(bores) - 2 * dowel_limits("2")[0]
+    opening, pad = limit["cover", "post opening diameter"], limit["post", "pad side diameter"]
+    room = (opening.lower - pad.upper - play) / 2
+    assert max(moved) <= room
+    less = d.housing.side_gap - room + max(moved) - 2e-3
+    assert refused("posts_clear_cover", "meets the cover", housing=replace(d.housing, side_gap=less))
 
 
 def test_a_steel_base_is_no_legal_value():
@@ -231,10 +376,13 @@ def test_what_the_family_cannot_do_is_refused_in_one_line():
 
 
 def test_forty_by_forty_cells_are_those_of_six_by_six(tmp_path):
-    """1600 chips take a hundred buses of sixteen addresses; K does not depend on the number of cells."""
+    """1600 chips take a hundred buses of sixteen addresses, and a wide foil's posts more room; K does not
+    depend on the number of cells."""
     text = PLANAR.read_text("utf-8").replace("rows = 6", "rows = 40").replace("columns = 6", "columns = 40")
     (tmp_path / "many.toml").write_text(
-        text.replace("buses = 3", "buses = 100").replace('"planar-array"', '"many"')
+        text.replace("buses = 3", "buses = 100")
+        .replace('"planar-array"', '"many"')
+        .replace("border = 5.0", "border = 5.0\nside_gap = 0.46\nwell = 0.56")
     )
     many, few = (rows(PlanarLayout(load(str(path))), "", None) for path in (tmp_path / "many.toml", PLANAR))
     assert len(many) == 1600

@@ -30,6 +30,8 @@ from tactcad.solids.triangles import triangles
 from tactcad.stacks.mechanic import TAKEN_AS_SET
 
 from ..check import Check
+from .tools import REACH as KEY
+from .tools import tool_of
 
 PLACES = 9  # on a leg, at least, from the first to the last contact of a pair's boxes; chosen
 FILM = 0.05  # mm3: what chords of two curved faces, 0.002 mm off, may share over a pin's length
@@ -41,6 +43,8 @@ PATCH = 1e-3  # mm3 of overlap that shows a contact: 0.03 mm2
 WIDE, THICK = FINGERTIP
 GRIP = 4.0  # mm of a pin's end that two fingertips cover
 FINGER = 40.0  # mm of a finger behind its tip; chosen: two of its joints
+HEADED = ("cap screw", "nut")  # a set screw presses by itself on what it holds
+SPAN = 100.0  # mm between thumb and finger of one hand; chosen: half an adult's span
 TWEEZERS, TWEEZERS_LONG = (1.0, 1.0), 20.0  # mm: the tip of plastic ones, and behind it; chosen
 # Chosen, in mm: an arbor press's ram over a pin, and the wall of the sleeve that is its stop; an open-ended
 # spanner of a usual kind: its head over the flats, its handle's length from the nut, its thickness.
@@ -73,6 +77,7 @@ class Trial:
     def findings(self) -> Iterator[Finding]:
         at: dict[str, Vector] = {}
         there: set[str] = set()
+        loose: list[tuple[str, ...]] = []  # laid by hand, not screwed yet
         done, off = 0, set(self.aids)
         for moment in moments(self.scene):
             while done < moment.step:
@@ -95,6 +100,16 @@ class Trial:
                 yield from self._press_room(step, moment)
             elif move.by.startswith("spanner"):
                 yield from self._spanner_room(step, moment)
+            if move.by == HAND:
+                loose = [body for body in loose if not {*body} & {*move.designators}] + [move.designators]
+            elif (driven := self.placed[move.designators[0]].part.kind) in HEADED and not step.apart:
+                no = (None, "thread") if driven == "nut" else (None,)  # its own rod
+                pairs = {
+                    n: self.kind.get(frozenset((move.designators[0], n))) for body in loose for n in body
+                }
+                for body in [b for b in loose if any(pairs[n] not in no for n in b)]:
+                    yield from self._held_room(step, moment, body)
+                    loose.remove(body)
             at |= dict.fromkeys(move.designators, move.path[-1])
             (off.update if step.apart else off.difference_update)(set(move.designators) - self.aids)
         for n in range(done, len(self.scene.steps)):
@@ -310,20 +325,51 @@ class Trial:
             for k, side in product((2, 1, 0), (1, 0)):
                 if way[k] * (2 * side - 1) > 0:
                     continue  # ahead
-                across = [i for i in range(3) if i != k]
                 for low, wide in product(product(range(5), repeat=2), (tip, tip[::-1])):
-                    room = np.empty((2, 3))
-                    room[:, k] = sorted((part[side][k], part[side][k] + (2 * side - 1) * long))
-                    for i, at, w in zip(across, low, wide):
-                        (a, b), grip = part[:, i], min(GRIP, part[1, i] - part[0, i])
-                        starts = (a + b - w) / 2, b - grip, a + grip - w, a, b - w
-                        room[:, i] = starts[at], starts[at] + w
-                    if self._free(room, moment, boxes):
+                    if self._free(_fingertip(part, k, side, low, wide, long), moment, boxes):
                         return
         name = moment.move.designators[0]
         what = "tweezers" if moment.move.by == TWEEZED else "fingertip"
         message = f"step '{step.title}': {name}: no {what}, {tip[0]:g} x {tip[1]:g} mm, reaches it in place"
         yield Finding("fingers", "fail", name, (), 0.0, tip[1], message)
+
+    def _held_room(self, step: Step, moment: Moment, loose: Sequence[str]) -> Iterator[Finding]:
+        """While a part's first screw is driven one hand holds it: by a fingertip that presses it on what it
+        stands on, or else by two fingertips opposite each other; the other hand has the key."""
+        (name,) = moment.move.designators
+        at, boxes = np.array(moment.move.path[-1]), self._standing(moment)
+        driven = [self._mesh(self.placed[name]).translate(list(self.placed[name].origin + at))]
+        if (key := tool_of(self.placed[name])) is not None:
+            bar = manifold3d.Manifold.cylinder(KEY, key.part.body.box[1][0])
+            driven.append(bar.transform(np.column_stack([key.rotation, np.add(key.origin, at)])))
+
+        def free(room: np.ndarray) -> bool:
+            hand = manifold3d.Manifold.cube(list(room[1] - room[0])).translate(list(room[0]))
+            return self._free(room, moment, boxes) and all((hand ^ d).volume() <= FILM for d in driven)
+
+        ways = (0, 1, 2) if step.bench else (2,)  # pressed down; on the bench all can be turned over
+        presses = {
+            (n, k, side)
+            for n in loose
+            for other, box in boxes.items()
+            if other not in loose and frozenset((n, other)) in self.kind
+            for k, side in product(ways, (0, 1) if step.bench else (1,))
+            if abs(box[side][k] - boxes[n][1 - side][k]) < REACH
+        }
+        tips = [*product(product(range(5), repeat=2), ((WIDE, THICK), (THICK, WIDE)))]
+        for (n, k, side), (low, wide) in product(sorted(presses), tips):
+            if free(_fingertip(boxes[n], k, side, low, wide, FINGER)):
+                return
+        largest = sorted(loose, key=lambda n: -float(np.prod(boxes[n][1] - boxes[n][0])))
+        for n, k, (low, wide) in product(largest, (0, 1, 2), tips):
+            near, far = (_fingertip(boxes[n], k, side, low, wide, FINGER) for side in (0, 1))
+            if boxes[n][1][k] - boxes[n][0][k] <= SPAN and free(near) and free(far):
+                return
+        message = (
+            f"step '{step.title}': {' '.join(loose)}: no fingertip presses it down, and no two hold it, "
+            f"{SPAN:g} mm apart at most, while {name} is driven"
+        )
+        yield Finding("fingers", "fail", loose[0], (), 0.0, THICK, message)
 
     def _press_room(self, step: Step, moment: Moment) -> Iterator[Finding]:
         """Over a pressed pin there is room for the press's ram, and around it for the sleeve: beyond the part
@@ -390,6 +436,20 @@ class Trial:
         if np.any(room[0] >= box[1]) or np.any(room[1] <= box[0]):
             return False
         return (hand ^ self._mesh(p).translate(list(np.array(p.origin) + at))).volume() > FILM
+
+
+def _fingertip(
+    part: np.ndarray, k: int, side: int, low: Sequence[int], wide: Sequence[float], long: float
+) -> np.ndarray:
+    """Room of a fingertip so wide, its finger behind it, on a box's upper (1) or lower side along k: in its
+    middle, over an edge, or up to one."""
+    room = np.empty((2, 3))
+    room[:, k] = sorted((part[side][k], part[side][k] + (2 * side - 1) * long))
+    for i, at, w in zip((i for i in range(3) if i != k), low, wide):
+        (a, b), grip = part[:, i], min(GRIP, part[1, i] - part[0, i])
+        starts = (a + b - w) / 2, b - grip, a + grip - w, a, b - w
+        room[:, i] = starts[at], starts[at] + w
+    return room
 
 
 def _order(step: Step, part: str, what: str) -> Iterator[Finding]:

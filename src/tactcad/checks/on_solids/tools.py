@@ -46,7 +46,7 @@ def check_tools(scene: Scene, shapes: Mapping[str, TopoDS_Shape]) -> list[Findin
         if len(names) > 1 or names[0] in step.ready or names[0] not in step.designators:
             continue
         fastener = _shifted(placed[names[0]], moment.move.path[-1])
-        tool = _tool(fastener)
+        tool = tool_of(fastener)
         if tool is not None:
             others = [_shifted(placed[name], at) for name, at in moment.standing.items()]
             # all are put in before any is tightened
@@ -91,7 +91,7 @@ def _cylinder(part: Part) -> tuple[Faces, list[list[float]]]:
     return Faces(shape), bounding_box(shape)
 
 
-def _tool(p: Placement) -> Placement | None:
+def tool_of(p: Placement) -> Placement | None:
     """The tool at the fastener, pointing away from it; None for parts that no tool turns."""
     socket = _socket(p.part)
     if socket is not None:

@@ -133,14 +133,15 @@ def _attempts(order: Order) -> Iterator[tuple[SheetPlan, Sequence[Paper], Sequen
 
 
 def title_of(design: CommonTables, part: Part, draft: bool, sample: bool = False) -> TitleBlock:
-    block = block_of(design.design, part.part_no, part.name, draft, sample)
+    block = block_of(design.design.of_part(part.part_no), part.part_no, part.name, draft, sample)
     material = str(part.material)
     return replace(block, document_type="Part drawing", material=material, mass=part.mass, finish=part.finish)
 
 
 def written(order: Order) -> Written:
     """The sheet as PDF and SVG, read back. Raises CheckFailure if it differs from the part."""
-    sheet, part, of = part_sheet(order), order.part, order.design.design
+    sheet, part = part_sheet(order), order.part
+    of = order.design.design.of_part(part.part_no)
     made = files_of([sheet], part.part_no, part.name, of)
     wrong = drawing_faults(made.pdf, sheet, part, of.revision)
     if wrong:

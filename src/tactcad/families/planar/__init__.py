@@ -23,7 +23,7 @@ FAMILY = Family(
     spec=PlanarDesign,
     layout=Late(f"{HERE}.cell_layout:PlanarLayout"),
     about=Late(f"{HERE}.parts:about"),
-    parts=Late(f"{HERE}.cell_measurements:measured"),
+    parts=Late(f"{HERE}.parts:measured"),
     scenes=f"{HERE}.rigs",
     rules=Late(f"{HERE}.rules:design_rules"),
     estimate=FamilyEstimate(
@@ -56,7 +56,7 @@ FAMILY = Family(
     ),
     variables=None,
     targets=FamilyTargets(
-        design=Late(f"{HERE}.cell_targets:design"), tables=Late(f"{HERE}.cell_targets:tables")
+        design=Late(f"{HERE}.cell_answers:design"), tables=Late(f"{HERE}.cell_targets:tables")
     ),
     checks=f"{HERE}.checks",
     robot=FamilyRobot(

@@ -22,6 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
+Whole = NDArray[np.int64]
 MODES = ("axial", "twist", "bend_out", "shear_out", "bend_in", "shear_in")
 DATA = Path(__file__).parent / "data"
 # Parts of the foil's face on which a mode's stress can be largest: in the fillets up to 0.3 of their radius
@@ -49,16 +50,8 @@ class FoilBeam:
     youngs_modulus: float
     poisson: float
 
-    @property
-    def shear_modulus(self) -> float:
-        """G = E/(2 (1 + nu)), MPa"""
-        return self.youngs_modulus / (2.0 * (1.0 + self.poisson))
 
-
-@cache
-def gauss(points: int) -> tuple[Array, Array]:
-    """Gauss points and weights from -1 to 1."""
-    return np.polynomial.legendre.leggauss(points)
+gauss = cache(np.polynomial.legendre.leggauss)  # points and weights from -1 to 1
 
 
 def sections(beam: FoilBeam, points: int = 24) -> tuple[Array, Array, Array]:
@@ -86,7 +79,8 @@ def base(beam: FoilBeam) -> dict[str, float]:
     """Beam theory's stiffness of every mode (units as `stiffness`): compliances of the sections, fillets
     included, added along the beam; Timoshenko's shear."""
     x, dx, w = sections(beam)
-    E, G, t = beam.youngs_modulus, beam.shear_modulus, beam.thickness
+    E, t = beam.youngs_modulus, beam.thickness
+    G = E / (2.0 * (1.0 + beam.poisson))
     out, within = w * t**3 / 12.0, t * w**3 / 12.0
     shear = np.sum(dx / (KAPPA * G * w * t))
     return {
@@ -125,9 +119,8 @@ def groups(beam: FoilBeam) -> tuple[float, float, float, float]:
 
 
 DEGREE = 4
-_POWERS = [
-    p for p in np.ndindex(*(DEGREE + 1,) * 4) if sum(p) <= DEGREE and p[2] <= 2
-]  # Poisson's ratio enters by its square at most
+# Poisson's ratio enters by its square at most
+_POWERS = [p for p in np.ndindex(*(DEGREE + 1,) * 4) if sum(p) <= DEGREE and p[2] <= 2]
 
 
 def terms(*x: Any) -> Array:
@@ -151,14 +144,10 @@ def stress_errors() -> dict[str, dict[str, float]]:
 
 def out_of_range(beam: FoilBeam) -> str:
     """Dimensions of the beam outside the fit's range, with the legal range; empty if none is."""
-    r = fit()["range"]
-    for name, value in (
-        ("w/s", beam.width / beam.length),
-        ("s/t", beam.length / beam.thickness),
-        ("r/w", beam.fillet / beam.width),
-        ("nu", beam.poisson),
-    ):
-        low, high = r[name]
+    w, s = beam.width, beam.length
+    shape = {"w/s": w / s, "s/t": s / beam.thickness, "r/w": beam.fillet / w, "nu": beam.poisson}
+    for name, value in shape.items():
+        low, high = fit()["range"][name]
         if not low * (1 - 1e-9) <= value <= high * (1 + 1e-9):
             return f"{name} = {value:.3g}; legal: from {low:g} to {high:g}"
     return ""
@@ -178,14 +167,9 @@ def stiffness(beam: FoilBeam) -> dict[str, float]:
 def place(beam: FoilBeam) -> Array:
     """Arguments of the stresses, each from about -1 to 1: w/s, ln(r/w), nu and ln(t/w); Poisson's ratio,
     which matters least, by 0.3 of that."""
-    return np.array(
-        [
-            (beam.width / beam.length - 0.3) / 0.2,
-            log(beam.fillet / beam.width) / log(10.0) * 2.0 + 1.0,
-            0.3 * (beam.poisson - 0.3) / 0.1,
-            (log(beam.thickness / beam.width) + 2.05) / 1.65,
-        ]
-    )
+    rounded, thin = log(beam.fillet / beam.width), log(beam.thickness / beam.width)
+    wide, nu = (beam.width / beam.length - 0.3) / 0.2, 0.3 * (beam.poisson - 0.3) / 0.1
+    return np.array([wide, rounded / log(10.0) * 2.0 + 1.0, nu, (thin + 2.05) / 1.65])
 
 
 def spline(at: Array, points: Array) -> Array:
@@ -213,9 +197,8 @@ def _stresses() -> tuple[list[str], Array, Array]:
     with (DATA / "beam-stress.csv").open(encoding="utf-8", newline="") as file:
         names, *rows = csv.reader(file)
     data = np.array(rows, dtype=float)
-    points = np.array(
-        [place(FoilBeam(1.0, w, 1.0 / slender, r * w, 1.0, nu)) for w, slender, r, nu in data[:, :4]]
-    )
+    beams = (FoilBeam(1.0, w, 1.0 / slender, r * w, 1.0, nu) for w, slender, r, nu in data[:, :4])
+    points = np.array([place(beam) for beam in beams])
     return names[4:], points, interpolated(points, data[:, 4:])
 
 

@@ -11,12 +11,11 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from . import beam as closed
-from .beam import MODES, FoilBeam
+from .beam import MODES, Array, FoilBeam
 
-Array = NDArray[np.float64]
+NEWTON = 8  # steps to the root of a cubic that hardly bends
 
 
 @dataclass(frozen=True)
@@ -31,17 +30,8 @@ class Root:
 def roots(form: str, island: float, along: float, offset: float) -> tuple[Root, ...]:
     """The four beams' roots, each a quarter turn on.
 
-    Parameters
-    ----------
-    form
-        "straight": from the middle of the island's sides; "pinwheel": beside the island, from an ear at a
-        corner.
-    island
-        Side, mm.
-    along
-        x where the first beam leaves the island or its ear, mm.
-    offset
-        y of its axis, mm.
+    Of form "straight" from the middle of the island's sides (`island` long, mm), "pinwheel" beside the
+    island, from an ear at a corner: x where the first beam leaves it, and y of its axis, mm.
     """
     first = Root((island / 2.0, 0.0), (1.0, 0.0)) if form == "straight" else Root((along, offset), (1.0, 0.0))
     turned = [first]
@@ -65,19 +55,16 @@ class Cell:
         A motion of the island's end by v across and a turn p is the rigid turn p/2 about the middle, even
         bending by p, and a guided end's v - s p/2.
         """
-        s, rows = self.beam.length, []
+        half, rows = self.beam.length / 2.0, []
         for root in self.roots:
             (x, y), (u, v) = root.at, root.along
-            e = np.array(
-                [[-u, -v, 0.0], [v, -u, 0.0], [0.0, 0.0, 1.0]]
-            )  # along, across, out: frame to island
+            # along, across, out: frame to island
+            e = np.array([[-u, -v, 0.0], [v, -u, 0.0], [0.0, 0.0, 1.0]])
             move = np.zeros((3, 6))
             move[:, :3] = np.eye(3)
             move[:, 3:] = [[0.0, 0.0, -y], [0.0, 0.0, x], [y, -x, 0.0]]  # turns times the root's place
             d, turn = e @ move, np.hstack([np.zeros((3, 3)), e])
-            rows.append(
-                [d[0], turn[0], -turn[1], d[2] + s / 2.0 * turn[1], turn[2], d[1] - s / 2.0 * turn[2]]
-            )
+            rows.append([d[0], turn[0], -turn[1], d[2] + half * turn[1], turn[2], d[1] - half * turn[2]])
         return np.array(rows)
 
     @cached_property
@@ -115,6 +102,13 @@ class Cell:
         k = closed.stiffness(self.beam)["axial"] * len(self.roots) * self.held
         return float(2.0 * k * (3.0 / (5.0 * self.beam.length)) ** 2 / self.stiffness[2, 2])
 
+    def sunk(self, straight: Array) -> Array:
+        """Sink u where the stiffness at rest would give `straight`, mm: u (1 + c u^2) = straight."""
+        c, u = self.stiffening, straight.copy()
+        for _ in range(NEWTON):
+            u -= (u * (1.0 + c * u * u) - straight) / (1.0 + 3.0 * c * u * u)
+        return u
+
     def linear_range(self, share: float) -> float:
         """Sink up to which K differs by at most that share from its value at rest, mm."""
         return float(np.sqrt(share / self.stiffening))
@@ -123,3 +117,8 @@ class Cell:
 def wrench(force: Array, height: float) -> Array:
     """The wrench at the island's middle of a force (N) on the pad, `height` mm over the foil's mid-plane."""
     return np.concatenate([force, np.cross([0.0, 0.0, height], force)])
+
+
+def unit_loads(height: float) -> Array:
+    """Wrenches of 1 N on the pad along x, y and z, as columns."""
+    return np.stack([wrench(f, height) for f in np.eye(3)], axis=1)

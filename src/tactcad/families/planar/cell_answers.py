@@ -13,40 +13,23 @@ from math import ceil, inf
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
-from scipy.special import betaincinv
 
 from tactcad.design.design_text import design_text
+from tactcad.stacks.virtual_build import of_share
 from tactcad.synthesis import target_report as page
 from tactcad.synthesis.bounds import Bound
 
+from . import cell_targets as targets
+from .beam import Array
 from .cell_board import why_none
 from .cell_layout import PlanarLayout
-from .cell_targets import (
-    KINDS,
-    ROUNDS,
-    STEPS,
-    CellAnswer,
-    CellFound,
-    CellTarget,
-    beside,
-    designed,
-    evaluated,
-    fits,
-    half_width,
-    pair_half_width,
-    read_at,
-    refined,
-    search,
-    variances,
-)
+from .cell_targets import KINDS, CellAnswer, CellFound, CellTarget, designed, evaluated, fits, half_width
 from .rules import design_rules
 
-Array = NDArray[np.float64]
 LEVEL = 0.95  # of the intervals
-ARRAYS = 200  # built virtually
 SHARE = 0.5  # of the seconds asked for, for the search
 NEAR = 1e-9  # relative; a value nearer to a bound lies on it
+ARRAYS = 200  # built virtually where no number is asked for
 # Fields whose step beyond eases the target, and the factor of that step; counts go by one.
 EASED = {
     "planar.pitch[0]": 1 / 1.1,
@@ -62,54 +45,44 @@ EASED = {
     "rating.yield_factor": 1 / 1.1,
 }
 LIMITS = ("planar.shear", "planar.readings", "planar.matrices")  # of every answer: no bound to lie on
-FIELDS = {  # of the design, by what the search varies
-    "pitch": "planar.pitch",
-    "soft": "measuring.beam_width",
-    "stiff": "reference.beam_width",
-    "island": "reference.island",
-    "gap": "hall.gap",
-}
+VARIED = ("planar.pitch", "measuring.beam_width", "reference.beam_width", "reference.island", "hall.gap")
+FIELDS = dict(zip(targets.STEPS, VARIED))  # of the design, by what the search varies
 
 
 def stepped(t: CellTarget, field: str) -> tuple[Any, Any, CellTarget]:
     """A field's value, its value one step beyond, and the target with that."""
     table, _, name = field.partition(".")
     name, _, end = name.partition("[")
-    if table != "planar":
-        value = getattr(getattr(t.base, table), name)
-        further = round(value * EASED[field], 4)
-        own = replace(getattr(t.base, table), **{name: further})
-        return value, further, replace(t, base=replace(t.base, **{table: own}))
-    value = getattr(t.planar, name)
+    own = getattr(t if table == "planar" else t.base, table)
+    value = new = getattr(own, name)
     if end:
-        ends = sorted(value)[0], sorted(value)[-1]
-        at = int(end[0])
-        further = round(ends[at] * EASED[field], 6)
-        whole = (further, ends[1 - at])[:: 1 - 2 * at] if name == "pitch" else (*value, further)
-        return ends[at], further, with_means(t, **{name: whole})
-    further = round(value * EASED[field] + 0.5) if isinstance(value, int) else round(value * EASED[field], 9)
-    return value, further, with_means(t, **{name: further})
-
-
-def with_means(t: CellTarget, **values: Any) -> CellTarget:
-    """The target with other values in [planar]."""
-    return replace(t, planar=replace(t.planar, **values))
+        at, ends = int(end[0]), [min(value), max(value)]
+        value, further = ends[at], round(ends[at] * EASED[field], 6)
+        ends[at] = further
+        new = tuple(ends) if name == "pitch" else (*new, further)
+    elif isinstance(value, int):
+        new = further = round(value * EASED[field] + 0.5)
+    else:
+        new = further = round(value * EASED[field], 9 if table == "planar" else 4)
+    changed = {table: replace(own, **{name: new})}
+    eased = changed if own is t.planar else {"base": replace(t.base, **changed)}
+    return value, further, replace(t, **eased)
 
 
 def around(t: CellTarget, best: CellFound) -> float | None:
     """The best half-width around a found design under another target; None if none keeps the rules there."""
     found = [evaluated(t, replace(best.choice, foil=foil)) for foil in t.planar.foils or ()]
     if not any(isinstance(f, CellFound) for f in found):
-        found = [evaluated(t, choice) for _, choice in beside(t, best.choice)]
+        found = [evaluated(t, choice) for _, choice in targets.beside(t, best.choice)]
     starts = [f for f in found if isinstance(f, CellFound)]
-    return min((refined(t, f, 1).half_width for f in starts), default=None)
+    return min((targets.refined(t, f, 1).half_width for f in starts), default=None)
 
 
 def touched(t: CellTarget, best: CellFound) -> list[str]:
     """Fields whose values bound the answer."""
     m, c = t.planar, best.choice
     foils, rated = m.foils or (c.foil,), [best.soft.rated, best.stiff.rated]
-    wider = replace(c, pitch=c.pitch + STEPS["pitch"] / 2.0**ROUNDS)
+    wider = replace(c, pitch=c.pitch + targets.STEPS["pitch"] / 2.0**targets.ROUNDS)
     full = c.pitch < m.pitch[1] and designed(t, wider) is None
     at = {
         "planar.pitch[0]": c.pitch <= m.pitch[0] * (1 + NEAR),
@@ -134,21 +107,17 @@ def bounds(t: CellTarget, best: CellFound) -> list[Bound]:
         whose = "written" if field.partition("[")[0] in t.written else whose
         out.append(Bound(field, value, whose, further, around(eased, best)))
     refused: dict[str, Bound] = {}
-    for name, choice in beside(t, best.choice, 0.5 ** (ROUNDS - 1)):
+    for name, choice in targets.beside(t, best.choice, 0.5 ** (targets.ROUNDS - 1)):
         found, drawn = evaluated(t, choice), designed(t, choice)
-        if isinstance(found, CellFound) or drawn is None or not fits_all(layout := PlanarLayout(drawn)):
+        if isinstance(found, CellFound) or drawn is None or not fits(layout := PlanarLayout(drawn), *KINDS):
             continue
-        width = pair_half_width(t, layout)
-        rule = found[0].check
+        width = targets.pair_half_width(t, layout)
+        rule = found.check
         if width < best.half_width and (rule not in refused or width < (refused[rule].half_width or inf)):
             value, further = (getattr(c, name) for c in (best.choice, choice))
             whose = f"rule {rule} refuses the step"
             refused[rule] = Bound(FIELDS[name], value, whose, further, width)
     return out + list(refused.values())
-
-
-def fits_all(layout: PlanarLayout) -> bool:
-    return all(fits(layout, name) for name in KINDS)
 
 
 def binding(t: CellTarget, best: CellFound) -> Iterator[dict[str, Any]]:
@@ -160,13 +129,12 @@ def binding(t: CellTarget, best: CellFound) -> Iterator[dict[str, Any]]:
             yield {"field": field, "value": value, "eased": further, "half_width": width, "gain": gain}
 
 
-def made(t: CellTarget, best: CellFound, seed: int = 1) -> Array:
+def made(t: CellTarget, best: CellFound, count: int, seed: int = 1) -> Array:
     """Half-widths of arrays built virtually, each read at the drawn design's rated forces: foil, etching, gap
     and remanence are one cause each for both kinds."""
     rng, d = np.random.default_rng(seed), best.design
-    cut = PlanarLayout(d).process.tolerance(d.planar.thickness)
-    out = []
-    for foil, width, gap, remanence in rng.standard_normal((ARRAYS, 4)) / 2.0:
+    cut, out = PlanarLayout(d).process.tolerance(d.planar.thickness), []
+    for foil, width, gap, remanence in rng.standard_normal((count, 4)) / 2.0:
         as_made = replace(
             d,
             planar=replace(d.planar, thickness=d.planar.thickness + d.foil_tolerance * foil),
@@ -175,8 +143,9 @@ def made(t: CellTarget, best: CellFound, seed: int = 1) -> Array:
             **{k: replace(v := getattr(d, k), beam_width=v.beam_width + cut * width) for k in KINDS},
         )
         layout = PlanarLayout(as_made)
-        cells = [read_at(layout, name, drawn.rated) for name, drawn in zip(KINDS, (best.soft, best.stiff))]
-        out.append(half_width(cells[0], cells[1], t.planar, t.points).max())
+        drawn = zip(KINDS, (best.soft, best.stiff))
+        cells = [targets.of_kind(layout, name, cell.rated) for name, cell in drawn]
+        out.append(targets.widest(t, *cells))
     return np.array(out)
 
 
@@ -184,9 +153,7 @@ def of_base(t: CellTarget) -> dict[str, Any]:
     """The base design as it is, under the target's forces and knowledge: half-width, and why it misses."""
     b, m = t.base, t.planar
     layout = PlanarLayout(replace(b, rating=replace(b.rating, force=m.force, shear=m.shear)))
-    width = None
-    if fits_all(layout):
-        width = pair_half_width(t, layout)
+    width = targets.pair_half_width(t, layout) if fits(layout, *KINDS) else None
     rules: list[Any] = [*design_rules().values()]
     breaks = [f"rule {f.check}: {f.broken}" for rule in rules for f in rule(layout)]
     for name, half, most in (("length", layout.half[0], m.length), ("width", layout.half[1], m.width)):
@@ -204,7 +171,7 @@ def of_base(t: CellTarget) -> dict[str, Any]:
     return {"name": b.name, "half_width": width, "breaks": breaks}
 
 
-def record(a: CellAnswer, until: float = inf) -> dict[str, Any]:
+def record(a: CellAnswer, count: int, until: float = inf) -> dict[str, Any]:
     """The answer as plain data: the keys of a target of facing rows, as far as they mean something here.
 
     Parts that the time does not allow (`until` of `time.perf_counter`) are named in `left_out`.
@@ -233,27 +200,23 @@ def record(a: CellAnswer, until: float = inf) -> dict[str, Any]:
     }
     if best is None:
         return out
-    arrays = made(t, best)
-    limit = a.wanted
+    arrays, limit = made(t, best, count), a.wanted
     if limit is None:  # the least that the share asked for keeps
-        limit = max(best.half_width, float(np.sort(arrays)[ceil(t.target.share * ARRAYS) - 1]))
+        limit = max(best.half_width, float(np.sort(arrays)[ceil(t.target.share * count) - 1]))
     kept = int((arrays <= limit).sum())
-    tail = (1.0 - LEVEL) / 2.0
-    low = float(betaincinv(kept, ARRAYS - kept + 1.0, tail)) if kept else 0.0
-    high = float(betaincinv(kept + 1.0, ARRAYS - kept, 1.0 - tail)) if kept < ARRAYS else 1.0
-    reached = best.half_width <= limit and kept / ARRAYS >= t.target.share
-    k, layout = t.points, PlanarLayout(best.design)
-    width = half_width(best.soft, best.stiff, t.planar, k)
-    worst = int(np.argmax(width))
-    parts = [float(v[worst]) for v in variances(best.soft, best.stiff, t.planar, k)]
+    reached = best.half_width <= limit and kept / count >= t.target.share
+    k, layout, pair = t.points, PlanarLayout(best.design), (best.soft, best.stiff)
+    width = half_width(*pair, t.planar, k)
+    spread = targets.variances(*pair, t.planar.readings, t.planar.matrices, k)
+    parts = [float(v[int(np.argmax(width))]) for v in spread]
     causes = ("noise of the measuring cell", "noise of the reference cell", "matrices")
     why = why_none(layout)
     out |= {
         "met": (None if a.wanted is None else True) if reached else False,
         "wanted_half_width": limit,
-        "yield": kept / ARRAYS,
-        "yield_interval": [low, high],
-        "yield_arrays": ARRAYS,
+        "yield": kept / count,
+        "yield_interval": [*of_share(kept, count)],
+        "yield_arrays": count,
         "object_interval": [
             {"object": float(x), "low": float(x * (1 - w)), "high": float(x * (1 + w))}
             for x, w in zip(k, width)
@@ -263,7 +226,7 @@ def record(a: CellAnswer, until: float = inf) -> dict[str, Any]:
         "buses": best.design.hall.buses,
         "elements": len(layout.elements),
         "size_mm": [round(2.0 * half, 3) for half in layout.half],
-        "cells": {name: asdict(cell) for name, cell in zip(KINDS, (best.soft, best.stiff))},
+        "cells": {name: asdict(cell) for name, cell in zip(KINDS, pair)},
         "notes": [f"no circuit board is laid out for it: {why}"] if why else [],
     }
     if time.perf_counter() > until:
@@ -326,21 +289,20 @@ def as_page(a: CellAnswer, r: dict[str, Any]) -> bytes:
         page.bounds_part(r),
         f"<h2>Cells</h2>{cells_picture(PlanarLayout(a.best.design))}" if a.best else "",
     ]
-    rows = [
-        (name, f"{v['stiffness']:.3g}", f"{v['rated']:.3g}", f"{1e3 * v['noise']:.3g}")
-        for name, v in r["cells"].items()
-    ]
-    parts.append(page.table(("kind", "K, N/mm", "rated, N", "noise of a reading, mN"), rows))
-    parts += ["<h2>How surely a pair feels</h2>", page.interval_picture(r, "one pair")]
-    parts.append(
-        "<p>Two neighbours on separate springs, pressed until one of them is at its rated force.</p>"
-        "<h2>What limits it</h2>" + page.binding_part(r)
-    )
+    kinds = [(name, v["stiffness"], v["rated"], 1e3 * v["noise"]) for name, v in r["cells"].items()]
+    rows = [(name, *(f"{v:.3g}" for v in values)) for name, *values in kinds]
     shares = [(s["cause"], page.percent(s["share"])) for s in r["shares"]]
-    parts.append(page.table(("cause", "share of the variance"), shares))
     best = [(f"{f['thickness']:g}", f"{f['pitch']:g}", page.percent(f["half_width"])) for f in r["front"]]
-    parts.append("<h2>Foils and pitches of the grid, before rules are tried</h2>")
-    parts.append(page.table(("foil, mm", "pitch, mm", "half-width"), best))
+    parts += [
+        page.table(("kind", "K, N/mm", "rated, N", "noise of a reading, mN"), rows),
+        "<h2>How surely a pair feels</h2>",
+        page.interval_picture(r, "one pair"),
+        "<p>Two neighbours on separate springs, pressed until one of them is at its rated force.</p>"
+        "<h2>What limits it</h2>" + page.binding_part(r),
+        page.table(("cause", "share of the variance"), shares),
+        "<h2>Foils and pitches of the grid, before rules are tried</h2>",
+        page.table(("foil, mm", "pitch, mm", "half-width"), best),
+    ]
     if r["left_out"]:
         parts.append(f"<p>Left out for time: {escape(', '.join(r['left_out']))}.</p>")
     return page.page(title, parts)
@@ -378,12 +340,17 @@ def files(a: CellAnswer, r: dict[str, Any]) -> dict[str, bytes]:
     }
 
 
-def answered(args: argparse.Namespace, t: CellTarget, seconds: float | None, ready: Callable[[], str]) -> int:
-    """Search, write and print; the exit status."""
+def design(
+    args: argparse.Namespace, seconds: float | None, count: int | None, ready: Callable[[], str]
+) -> int:
+    """`tactcad design` of a planar target: 0 if it is met or asks for no half-width, else 1; `ready` gives
+    the next command."""
+    t = targets.read_target(args.target)
     page.refuse_unwritable(args.out)
     now = time.perf_counter()
-    a = search(t, now + SHARE * seconds if seconds else inf)
-    r = record(a, now + SHARE * seconds if seconds else inf)
+    until = now + SHARE * seconds if seconds else inf
+    a = targets.search(t, until)
+    r = record(a, count or ARRAYS, until)
     written = a.best is not None and (r["met"] is not False or args.best)
     if written:
         page.write_folder(args.out, lambda: files(a, r))

@@ -36,11 +36,11 @@ from tactcad.circuit.printed import HIGH
 from tactcad.contour import rectangle
 from tactcad.parts.array.supplies import supplies as bill_lines
 from tactcad.parts.bought.electronic_parts import BOARD, Supply
-from tactcad.parts.language.description import Extrusion, Hole, Material, Part, Process, Purchase
+from tactcad.parts.language.description import Extrusion, Material, Part, Process, Purchase
 from tactcad.parts.language.metric import METRIC
 
 from .cell_layout import PlanarLayout
-from .parts import SCREW, copper_room, frame_room, screw_places
+from .parts import SCREW, bored, copper_room, frame_room, screw_places
 
 GLASS_EPOXY, PACKAGE = Material("FR4", 1850), Material("moulded package", 1800)
 SUPPLY = "VDD"
@@ -102,9 +102,8 @@ def _why_not_close(layout: PlanarLayout) -> str:
     p, buses = layout.design.planar, layout.design.hall.buses
     used, most = ceil(p.rows / ceil(p.rows / buses)), min(layout.chip.addresses, 4 * len(CODES))
     if used < buses or buses > len(CLOSE_TRUNKS):
-        return (
-            f"buses take whole rows: {used} of {buses} hall.buses are used, at most {len(CLOSE_TRUNKS)} pass"
-        )
+        pass_ = f"at most {len(CLOSE_TRUNKS)} pass"
+        return f"buses take whole rows: {used} of {buses} hall.buses are used, {pass_}"
     if chips_a_bus(layout) > most:
         return f"buses take whole rows, and more than {most} chips would share one: more hall.buses"
     if any(have < need - 1e-9 for have, need in zip(frame_room(layout), copper_room(layout))):
@@ -150,11 +149,7 @@ def channels(layout: PlanarLayout) -> list[float]:
     p = layout.design.planar
     middles = [(i - p.columns / 2.0) * p.pitch for i in range(1, p.columns)]
     screws = [x for x, y in screw_places(layout) if y < 0.0]
-    return [
-        x
-        for x in middles
-        if all(abs(x + dx - screw) >= HEAD_ROOM for dx in TRUNKS.values() for screw in screws)
-    ]
+    return [x for x in middles if all(abs(x + dx - s) >= HEAD_ROOM for dx in TRUNKS.values() for s in screws)]
 
 
 def tongue(layout: PlanarLayout) -> float:
@@ -166,10 +161,11 @@ def tongue(layout: PlanarLayout) -> float:
 
 
 def _name(layout: PlanarLayout) -> str:
-    return f"{layout.design.name}-board {layout.design.design.revision}"
+    return f"{layout.design.design.board_no} {layout.design.design.of_board.revision}"
 
 
-def _component(name: str, kind: str, value: str, part_no: str, package: str, *nets: str) -> Component:
+def _pair(name: str, kind: str, value: str, part_no: str, package: str, *nets: str) -> Component:
+    """A part of two pins."""
     pins = tuple(Pin(str(i), str(i), net) for i, net in enumerate(nets, start=1))
     return Component(name, kind, value, part_no, pins, footprint=package)  # type: ignore[arg-type]
 
@@ -185,32 +181,17 @@ def netlist(layout: PlanarLayout) -> Netlist:
             "A1": SUPPLY if at & 2 else GROUND,
         }  # fmt: skip
         pins = tuple(Pin(str(number), role, nets.get(role, "")) for role, number in PINS.items())
-        order = layout.chip.name + code
-        parts.append(
-            Component(
-                f"U{e.number}",
-                "sensor",
-                f"{order} 0x{at:02X}",
-                order,
-                pins,
-                element=e.number,
-                footprint="QFN-16" if roomy(layout) else FLUSH,
-            )
-        )
-        parts.append(
-            _component(f"C{e.number}", "capacitor", "100 nF", "CAPACITOR-100N-0603", "0603", SUPPLY, GROUND)
-        )
-    last = len(layout.elements) + 1
-    parts.append(_component(f"C{last}", "capacitor", "10 uF", "CAPACITOR-10U", "1206", SUPPLY, GROUND))
-    lines = lines_of(layout)
+        order, body, cap = layout.chip.name + code, "QFN-16" if roomy(layout) else FLUSH, f"C{e.number}"
+        said = f"{order} 0x{at:02X}"
+        parts.append(Component(f"U{e.number}", "sensor", said, order, pins, element=e.number, footprint=body))
+        parts.append(_pair(cap, "capacitor", "100 nF", "CAPACITOR-100N-0603", "0603", SUPPLY, GROUND))
+    last, lines = f"C{len(layout.elements) + 1}", lines_of(layout)
+    parts.append(_pair(last, "capacitor", "10 uF", "CAPACITOR-10U", "1206", SUPPLY, GROUND))
     for i, net in enumerate(lines, start=1):
-        parts.append(_component(f"R{i}", "resistor", f"{PULL_UP:g} ohm", "PULL-UP-4K7", "0805", net, SUPPLY))
+        parts.append(_pair(f"R{i}", "resistor", f"{PULL_UP:g} ohm", "PULL-UP-4K7", "0805", net, SUPPLY))
     pins = tuple(Pin(str(i), f"{i} {net}", net) for i, net in enumerate((SUPPLY, GROUND, *lines), start=1))
-    parts.append(
-        Component(
-            "J1", "connector", f"{len(pins)} pins", "HEADER-BUS", pins, footprint=f"pin-header-{len(pins)}"
-        )
-    )
+    said, body = f"{len(pins)} pins", f"pin-header-{len(pins)}"
+    parts.append(Component("J1", "connector", said, "HEADER-BUS", pins, footprint=body))
     return Netlist(f"{layout.design.name}-board", 0.0, (), tuple(parts))
 
 
@@ -240,9 +221,8 @@ def _laid_out(layout: PlanarLayout) -> BoardCopper:
             found = _cell(sheet, chip, cap, at, LINES[slot])
         else:
             found = _close_cell(sheet, chip, at, layout.design.planar.pitch, e.column == 1)
-            _close_cap(
-                sheet, cap, (at[0], 2.0 * half_y + FIRST_CAP + CAP_ROW * (e.row - 1)), layout, e.column
-            )
+            down = 2.0 * half_y + FIRST_CAP + CAP_ROW * (e.row - 1)
+            _close_cap(sheet, cap, (at[0], down), layout, e.column)
         for net, tap in found:
             taps[net].append(tap)
     ways = _header(sheet, board, lines, width / 2.0, height - EDGE)
@@ -254,18 +234,9 @@ def _laid_out(layout: PlanarLayout) -> BoardCopper:
     holes = tuple((x + half_x, half_y - y, METRIC[SCREW].clearance) for x, y in screw_places(layout))
     long = printed_width(_name(layout), HIGH)
     name = (max(width / 4.0, long / 2.0 + 0.7), height - EDGE - RESISTOR - 3.5)
-    return BoardCopper(
-        circuit,
-        width,
-        height,
-        tuple(sheet.placed),
-        tuple(sheet.tracks),
-        tuple(sheet.vias),
-        holes,
-        {"In1.Cu": GROUND, "In2.Cu": SUPPLY},
-        layout.design.hall.board,
-        name,
-    )
+    placed, tracks, vias = tuple(sheet.placed), tuple(sheet.tracks), tuple(sheet.vias)
+    planes, t = {"In1.Cu": GROUND, "In2.Cu": SUPPLY}, layout.design.hall.board
+    return BoardCopper(circuit, width, height, placed, tracks, vias, holes, planes, t, name)
 
 
 def _trunks(layout: PlanarLayout, sheet: Routing, taps: dict[str, list[Point]]) -> Iterator[Point]:
@@ -392,11 +363,9 @@ def _header(
     at = sheet.place(board["J1"], (middle, y))
     above = round(y - RESISTOR, 3)
     (x0, _), (x1, _) = at["1"], at["2"]
-    cap = sheet.place(
-        board[f"C{sum(c.kind == 'capacitor' for c in board.values())}"], ((x0 + x1) / 2.0, above)
-    )
-    for number, (x, _) in (("1", at["1"]), ("2", at["2"])):
-        net = SUPPLY if number == "1" else GROUND
+    last = f"C{sum(c.kind == 'capacitor' for c in board.values())}"
+    cap = sheet.place(board[last], ((x0 + x1) / 2.0, above))
+    for number, x, net in (("1", x0, SUPPLY), ("2", x1, GROUND)):
         sheet.path(net, cap[number], (x, above), (x, y), width=0.3)
     for i, net in enumerate(lines, start=1):
         x, _ = at[str(i + 2)]
@@ -408,25 +377,19 @@ def _header(
 
 def board(layout: PlanarLayout) -> Part:
     """The chips' board, z = 0 its lower face; longer than the housing by its tongue."""
-    d, (x, y) = layout.design, layout.half
-    t = d.hall.board
-    holes = tuple(
-        Hole("screw", (*place, 0.0), (0, 0, 1), METRIC[SCREW].clearance, t, True)
-        for place in screw_places(layout)
-    )
+    d, (x, y), t = layout.design, layout.half, layout.design.hall.board
+    what = f"bare board and its parts are ordered by their own lines, {BOARD} and those after it"
+    if why_none(layout):
+        what = f"board of {d.name}, {len(layout.elements)} x {layout.chip.name}"
     return Part(
         part_no=f"{d.name}-board",
         name="Board",
         process=_process(layout),
         material=GLASS_EPOXY,
         body=Extrusion(rectangle(-x, -y - tongue(layout), x, y), t),
-        features=holes,
+        features=tuple(bored("screw", screw_places(layout), METRIC[SCREW].clearance, t)),
         colour="#3f6b4b",
-        purchase=Purchase(
-            f"board of {d.name}, {len(layout.elements)} x {layout.chip.name}"
-            if why_none(layout)
-            else f"bare board and its parts are ordered by their own lines, {BOARD} and those after it"
-        ),
+        purchase=Purchase(what),
     )
 
 
@@ -442,7 +405,11 @@ def order_of(layout: PlanarLayout, number: int) -> str:
 
 def chip(layout: PlanarLayout, order: str) -> Part:
     """A chip's body, z = 0 on the board."""
-    c = layout.chip
+    c, spares = layout.chip, 0
+    bought = Purchase(f"on the fitted board: the chip is ordered by the line {order}")
+    if why_none(layout):
+        spares = max(1, len(layout.elements) // 10)
+        bought = Purchase(f"three-axis Hall chip {order}", manufacturer=c.maker, mpn=order)
     return Part(
         part_no=f"{order}-chip",
         name=f"Hall chip {order}",
@@ -450,10 +417,8 @@ def chip(layout: PlanarLayout, order: str) -> Part:
         material=PACKAGE,
         body=Extrusion(rectangle(-c.length / 2, -c.width / 2, c.length / 2, c.width / 2), c.height),
         colour="#2b2d31",
-        purchase=Purchase(f"three-axis Hall chip {order}", manufacturer=c.maker, mpn=order)
-        if why_none(layout)
-        else Purchase(f"on the fitted board: the chip is ordered by the line {order}"),
-        spares=max(1, len(layout.elements) // 10) if why_none(layout) else 0,
+        purchase=bought,
+        spares=spares,
     )
 
 
@@ -463,15 +428,8 @@ def supplies(layout: PlanarLayout) -> list[Supply]:
         return []
     fitted = Counter(c.part_no for c in netlist(layout).components)
     (x, y), orders = layout.half, dict.fromkeys(order_of(layout, e.number) for e in layout.elements)
-    bare, *others = bill_lines(
-        "cells board",
-        fitted,
-        name=layout.design.name,
-        thickness=layout.design.hall.board,
-        length=2 * x,
-        width=2 * y + tongue(layout),
-        pins=2 + len(lines_of(layout)),
-    )
-    maker = layout.chip.maker
+    d, pins, maker = layout.design, 2 + len(lines_of(layout)), layout.chip.maker
+    figures = {"thickness": d.hall.board, "length": 2 * x, "width": 2 * y + tongue(layout), "pins": pins}
+    bare, *others = bill_lines("cells board", fitted, name=d.name, **figures)
     chips = [line for o in orders for line in bill_lines("cells chip", fitted, order=o, maker=maker)]
     return [bare, *chips, *others]

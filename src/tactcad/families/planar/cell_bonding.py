@@ -10,39 +10,35 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
 
 import numpy as np
 
 from tactcad.contour import rectangle
-from tactcad.parts.array.clamp import PRESS_FIT, pressed
 from tactcad.parts.array.supplies import supplies as bill_lines
 from tactcad.parts.bought.standard_parts import LEAST_PLAY, dowel, dowel_diameter, dowel_lengths
 from tactcad.parts.language.description import Extrusion, Hole, Part, Vector
 from tactcad.parts.language.finding import Finding
 from tactcad.parts.language.limits import Characteristic
-from tactcad.parts.rules.rule import at_least, at_most, fits
+from tactcad.parts.rules.rule import fits
 from tactcad.scenes.builder import Builder
 from tactcad.scenes.moves import PRESS, TWEEZED
 from tactcad.scenes.requirement import Built, DimensionLimits, Requirement, variable
-from tactcad.scenes.rig import Rig, none
+from tactcad.scenes.rig import plain_rig
 from tactcad.scenes.scene import STILL, Move, Scene
 
 from . import parts
 from .cell_array import MAGNET_BOND, MAGNET_PLACE
 from .cell_layout import PlanarLayout
 from .cell_tables import PlanarDesign
-from .parts import DOWEL, MAGNET_LIMIT, PAD_FIELD, PLATE_ZONE, REAMED, foil_zone, milled
+from .parts import DOWEL, MAGNET_LIMIT, PAD_FIELD, PLATE_ZONE, REAMED, bored, foil_zone, milled
+from .rules import no_less, no_more
 
 NAME = "bonding"
 BESIDE = 4.0  # mm of bed beyond the foil, all round; chosen: room for the pins
 UNDER = 2.0  # mm of bed below the magnets: stiff, and near enough for a steel sheet to hold them
 PUSH = 0.7  # of a magnet's diameter: the hole to push it out; chosen: leaves a ledge
 DRILL, WALL = 0.5, 0.8  # mm: least hole, and least wall between bores: checks/data/shop.toml
-FILM, DEPTH = (
-    0.03,
-    0.01,
-)  # mm of adhesive over a magnet, and limit of its bore's depth; chosen: none stands out
+FILM, DEPTH = 0.03, 0.01  # mm of adhesive over a magnet, limit of its bore's depth; chosen: none stands out
 PIN_PLAY = 0.01  # mm between a pin's middle size and the foil's edge: its largest radius is less
 INSET, SHORT = 0.5, 0.3  # mm: guide inside the foil's edge, clear of the pins; posts over the guide
 SLID = 0.3  # mm that the foil is laid beside its pins, and pushed; chosen
@@ -69,7 +65,7 @@ def pin_length(layout: PlanarLayout) -> float | None:
     return next((n for n in dowel_lengths(DOWEL) if n >= height(layout) + layout.cover_z), None)
 
 
-def pins(layout: PlanarLayout) -> tuple[tuple[float, float], ...]:
+def pins(layout: PlanarLayout) -> parts.Places:
     """Middles of the pins: two at the foil's lower edge, one at its left one, by which it is dimensioned."""
     (hx, hy), r = layout.half, dowel_diameter(DOWEL) / 2.0 + PIN_PLAY
     x = round(0.8 * hx, 2)
@@ -80,33 +76,19 @@ def bed(layout: PlanarLayout) -> Part:
     """z = 0 its lower face."""
     t, (hx, hy), m = height(layout), layout.half, layout.design.magnet
     wide, deep = round(bore(layout) + REAMED / 2.0, 6), round(m.height + FILM, 9)
-    push = round(PUSH * m.diameter, 2)
-    holes = [
-        Hole("magnet", (e.x, e.y, t), (0, 0, -1), push, t, True, counterbore=(wide, deep))
-        for e in layout.elements
-    ]
-    fit, size = f"{PRESS_FIT}, the pin pressed in", dowel_diameter(DOWEL)
-    holes += [Hole("pin_hole", (x, y, 0.0), (0, 0, 1), size, t, True, tolerance=fit) for x, y in pins(layout)]
-    return milled(
-        layout,
-        "bonding-bed",
-        "Bonding jig, bed",
-        Extrusion(rectangle(-hx - BESIDE, -hy - BESIDE, hx + BESIDE, hy + BESIDE), t),
-        holes,
-        {"magnet": PLATE_ZONE, "pin_hole": PLATE_ZONE},
-        (
-            f"counterbores {bore(layout):g} to {bore(layout) + REAMED:g} wide, {deep:g} ±{DEPTH:g} deep, "
-            "floor flat",
-            "pin holes masked when anodising",
-        ),
-        (replace(pressed(float(DOWEL)), name="pin hole diameter", between=("pin_hole",)),),
-    )
+    push, well = round(PUSH * m.diameter, 2), (wide, deep)
+    holes = [Hole("magnet", (x, y, t), (0, 0, -1), push, t, True, well) for x, y in layout.places]
+    holes += bored("pin_hole", pins(layout), dowel_diameter(DOWEL), t, parts.PRESSED)
+    body = Extrusion(rectangle(-hx - BESIDE, -hy - BESIDE, hx + BESIDE, hy + BESIDE), t)
+    low, zones = bore(layout), {"magnet": PLATE_ZONE, "pin_hole": PLATE_ZONE}
+    wells = f"counterbores {low:g} to {low + REAMED:g} wide, {deep:g} ±{DEPTH:g} deep, floor flat"
+    notes, fit = (wells, "pin holes masked when anodising"), (parts.pin_bore(DOWEL),)
+    return milled(layout, "bonding-bed", "Bonding jig, bed", body, holes, zones, notes, fit)
 
 
 def guide_bore(layout: PlanarLayout) -> Characteristic:
     """Limits of the guide's bores: it floats, and slips over all posts wherever foil and guide have them."""
-    low = layout.design.post.pad + LEAST_PLAY + foil_zone(layout, layout.process) + PLATE_ZONE
-    low = round(low, 6)
+    low = round(layout.design.post.pad + LEAST_PLAY + foil_zone(layout, layout.process) + PLATE_ZONE, 6)
     return Characteristic("bore diameter", low, round(low + REAMED, 6), low, between=("bore",))
 
 
@@ -115,9 +97,9 @@ def guide(layout: PlanarLayout) -> Part:
     (hx, hy), own = layout.half, guide_bore(layout)
     t = round(layout.pad_z - layout.cover_z - SHORT, 9)
     outline = rectangle(INSET - hx, INSET - hy, hx - INSET, hy - INSET)
-    holes = [Hole("bore", (e.x, e.y, 0.0), (0, 0, 1), own.nominal, t, True) for e in layout.elements]
-    number, name = "bonding-guide", "Bonding jig, guide"
-    return milled(layout, number, name, Extrusion(outline, t), holes, {"bore": PLATE_ZONE}, bores=(own,))
+    body, holes = Extrusion(outline, t), bored("bore", layout.places, own.nominal, t)
+    zones = {"bore": PLATE_ZONE}
+    return milled(layout, "bonding-guide", "Bonding jig, guide", body, holes, zones, bores=(own,))
 
 
 def leans(layout: PlanarLayout) -> float:
@@ -142,9 +124,7 @@ def scene(design: PlanarDesign, _pose: object = None) -> Scene:
         tools=(*TOOLS, PRESS, "a flat plate under the bed as stop"),
     )
     below = -design.magnet.height - FILM
-    magnets = [b.place("M", parts.magnet(layout), (e.x, e.y, below)) for e in layout.elements]
-    for magnet in magnets:
-        b.meet(magnet, under)
+    magnets = [b.place("M", parts.magnet(layout), (x, y, below), on=under) for x, y in layout.places]
     b.step(
         "Magnets",
         (0, 0, 12),
@@ -156,8 +136,7 @@ def scene(design: PlanarDesign, _pose: object = None) -> Scene:
         sets=("magnets in their bores: along x and y; along z, by the steel",),
         leaves=("magnets: turn about z",),
     )
-    foil = b.place("F", parts.foil(layout), (0, 0, 0))
-    b.meet(foil, under)
+    foil = b.place("F", parts.foil(layout), (0, 0, 0), on=under)
     aside = (SLID, SLID, 0.0)
     b.step(
         "Foil",
@@ -171,8 +150,7 @@ def scene(design: PlanarDesign, _pose: object = None) -> Scene:
     )
     post = parts.post(layout)
     feet = {kind.name: parts.foot(layout, kind) for kind in layout.used}
-    upper = b.place("SP", parts.upper_spacer(layout), (0, 0, t))
-    b.meet(upper, foil)
+    upper = b.place("SP", parts.upper_spacer(layout), (0, 0, t), on=foil)
     b.step(
         "Upper spacer",
         (0, 0, 26),
@@ -181,9 +159,7 @@ def scene(design: PlanarDesign, _pose: object = None) -> Scene:
         sets=(f"{upper} on {foil}: along z", f"{upper} against DP1 DP2 DP3: along x and y, turn about z"),
         leaves=(f"{upper}: away from the pins",),
     )
-    plates = [b.place("FP", feet[e.kind.name], (e.x, e.y, t)) for e in layout.elements]
-    for plate in plates:
-        b.meet(plate, foil)
+    plates = [b.place("FP", feet[e.kind.name], (e.x, e.y, t), on=foil) for e in layout.elements]
     b.step(
         "Foot plates",
         (0, 0, 32),
@@ -194,9 +170,7 @@ def scene(design: PlanarDesign, _pose: object = None) -> Scene:
         leaves=("foot plates: along x and y, until the posts are in; turn about z, by eye",),
     )
     above = round(t + design.post.foot, 9)
-    posts = [b.place("P", post, (e.x, e.y, above)) for e in layout.elements]
-    for one, plate in zip(posts, plates, strict=True):
-        b.meet(one, plate)
+    posts = [b.place("P", post, (x, y, above), on=foot) for (x, y), foot in zip(layout.places, plates)]
     b.step(
         "Posts",
         (0, 0, 42),
@@ -205,8 +179,7 @@ def scene(design: PlanarDesign, _pose: object = None) -> Scene:
         sets=("posts through foot plates and foil: along x and y; along z, by their shoulders",),
         leaves=("posts: lean, until the guide holds them",),
     )
-    floating = b.place("BG", guide(layout), (0, 0, layout.cover_z))
-    b.meet(floating, upper)
+    floating = b.place("BG", guide(layout), (0, 0, layout.cover_z), on=upper)
     (hx, hy), top = layout.half, layout.pad_z
     tall = FOAM + WEIGHT * n / (4.0 * hx * hy * BRASS)
     weight = b.aid("foam and weight of brass", (-hx, -hy, top), (hx, hy, top + tall))
@@ -251,21 +224,18 @@ def jig_takes_magnets(layout: PlanarLayout) -> Iterator[Finding]:
     """Bores that can be made side by side, and pins long enough."""
     d, wide = layout.design, bore(layout) + REAMED
     what = "a magnet's hole in the bonding jig cannot be drilled"
-    yield from at_least("magnet.diameter", what, d.magnet.diameter, round(DRILL / PUSH, 3))
+    yield from no_less(layout, "magnet.diameter", what, round(DRILL / PUSH, 3))
     if len(layout.elements) > 1:
         what = "no wall is left between the bonding jig's bores"
-        yield from at_least("planar.pitch", what, d.planar.pitch, round(wide + WALL, 3))
+        yield from no_less(layout, "planar.pitch", what, round(wide + WALL, 3))
         what = "no wall is left between the bores of the bonding jig's guide"
         most = d.planar.pitch - WALL - guide_bore(layout).upper + d.post.pad
-        yield from at_most("post.pad", what, d.post.pad, round(most, 3))
+        yield from no_more(layout, "post.pad", what, round(most, 3))
     if pin_length(layout) is None:
-        longest = dowel_lengths(DOWEL)[-1]
-        most = round(longest - layout.cover_z - FILM - UNDER, 3)
-        yield from at_most("magnet.height", "no pin of the bonding jig is long enough", d.magnet.height, most)
-    least = d.housing.border + float(DOWEL) - layout.half[0]
-    yield from at_least(
-        "housing.border", "the bonding jig's two pins meet", d.housing.border, round(least, 3)
-    )
+        most = round(dowel_lengths(DOWEL)[-1] - layout.cover_z - FILM - UNDER, 3)
+        yield from no_more(layout, "magnet.height", "no pin of the bonding jig is long enough", most)
+    least = round(d.housing.border + float(DOWEL) - layout.half[0], 3)
+    yield from no_less(layout, "housing.border", "the bonding jig's two pins meet", least)
 
 
 def requirements(layout: PlanarLayout, known: dict[str, DimensionLimits]) -> list[Requirement]:
@@ -296,14 +266,4 @@ def requirements(layout: PlanarLayout, known: dict[str, DimensionLimits]) -> lis
     return [placed("x"), placed("y")]
 
 
-RIG = Rig(
-    name=NAME,
-    tables=(),
-    make=scene,
-    poses=none,
-    under_sensor=none,
-    rules=(jig_takes_magnets,),
-    deflections=lambda _design: iter(()),
-    requirements=requirements,
-    checks=(),
-)
+RIG = plain_rig(NAME, scene, (jig_takes_magnets,), requirements)

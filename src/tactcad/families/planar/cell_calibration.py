@@ -18,19 +18,18 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tactcad.design.csv_table import Field, Rows, read
 from tactcad.design.messages import InputError
 from tactcad.lab.readings import ELEMENT, RUN, groups
 from tactcad.lab.regression import fit_lines, require_level, steps, t_quantile
 
-from .cell_layout import Kind, PlanarLayout
+from .beam import Array, Whole
+from .cell_layout import CellPlace, Kind, PlanarLayout
 from .cell_matrices import AXES, CellMatrix
-from .cell_response import all_bends, bow_variance, matrix, stiffness_limit
-from .sensor import pad_compliance
+from .cell_response import DOWN, all_bends, bow_variance, stiffness_limit
+from .sensor import chip_matrix, pad_compliance
 
-Array = NDArray[np.float64]
 FORCE = tuple(Field(f"f{a}", "N", -1000.0, 1000.0) for a in AXES)
 FIELD = tuple(Field(f"b{a}", "mT", -1000.0, 1000.0) for a in AXES)
 SINK = Field("sink", "mm", -10.0, 10.0)
@@ -50,83 +49,57 @@ class _Run:
 
 
 def calibrate(layout: PlanarLayout, path: str | Path, level: float) -> list[CellMatrix]:
-    """Matrices of the cells that were loaded.
+    """Matrices of the cells that were loaded, with intervals of that level.
 
-    Parameters
-    ----------
-    layout
-        Of the design.
-    path
-        CSV with the columns element, run, fx, fy, fz (N, z down on the pad) and bx, by, bz (mT); with `sink`
-        (mm) the stiffness is measured too.
-    level
-        Of the intervals.
-
-    Raises
-    ------
-    InputError
-        A malformed table; a load along no axis; a cell without two runs of three loads along each; a field
-        beyond the chip's range, or against the design's sign.
+    The file is CSV with the columns element, run, fx, fy, fz (N, z down on the pad) and bx, by, bz (mT); with
+    `sink` (mm) the stiffness is measured too. Raises InputError for a malformed table, a load along no axis,
+    a cell without two runs of three loads along each, a field beyond the chip's range or against the design's
+    sign.
     """
     require_level(level)
     rows = read(path, (ELEMENT, RUN, *FORCE, *FIELD), (SINK,))
-    refuse_overrange(layout, rows)
     places = {e.number: e for e in layout.elements}
     element = rows.values("element").astype(int)
-    refuse_strangers(layout, rows)
+    refuse_unread(layout, rows)
     force, field = (np.stack([rows.values(f.name) for f in of], axis=1) for of in (FORCE, FIELD))
     bent = all_bends(layout, [places[n].kind for n in element], force)
-    given = {n: (places[n].kind, rows, own, force, field, bent) for n, own in groups(element)}
-    runs = {n: _cell_runs(*of, np.ones((3, 3))) for n, of in given.items()}
-    spare = sum(c.spare for c in runs.values())
-    noise = np.sum([c.scatter for c in runs.values()], axis=0) / max(spare, 1)
-    runs = {n: _cell_runs(*of, _kept(layout, of[0], runs[n], noise)) for n, of in given.items()}
-    laws = {
-        kind.name: _law([r.runs for n, r in runs.items() if places[n].kind.name == kind.name])
-        for kind in layout.used
-        if any(places[n].kind.name == kind.name for n in runs)
-    }
-    return [
-        _cell(
-            layout, places[n].kind, n, c, laws[places[n].kind.name], noise, level, int((element == n).sum())
-        )
-        for n, c in runs.items()
-    ]
+    given = [(places[n], rows, own, force, field, bent) for n, own in groups(element)]
+    cells = [_cell_runs(*of, np.ones((3, 3))) for of in given]
+    spare = sum(c.spare for c in cells)
+    noise = np.sum([c.scatter for c in cells], axis=0) / max(spare, 1)
+    cells = [_cell_runs(*of, _kept(layout, c, noise)) for of, c in zip(given, cells)]
+    by_kind: dict[str, list[list[_Run]]] = {}
+    for c in cells:
+        by_kind.setdefault(c.place.kind.name, []).append(c.runs)
+    laws = {name: _law(some) for name, some in by_kind.items()}
+    return [_cell(layout, c, laws[c.place.kind.name], noise, level) for c in cells]
 
 
-def refuse_strangers(layout: PlanarLayout, rows: Rows) -> None:
-    """Raise InputError if the design has no such cell."""
+def refuse_unread(layout: PlanarLayout, rows: Rows) -> None:
+    """Raise InputError if the design has no such cell, or if a chip reads its full scale: what it felt is not
+    known."""
     number, count = rows.values(ELEMENT.name), len(layout.elements)
     for i in np.flatnonzero(number > count)[:1]:
-        raise InputError(
-            rows.where(int(i), ELEMENT.name),
-            f"design {layout.design.name} has no such cell",
-            value=int(number[i]),
-            legal=f"1 to {count}",
-        )
-
-
-def refuse_overrange(layout: PlanarLayout, rows: Rows) -> None:
-    """Raise InputError if a chip reads its full scale: what it felt is not known."""
+        where, what = rows.where(int(i), ELEMENT.name), f"design {layout.design.name} has no such cell"
+        raise InputError(where, what, value=int(number[i]), legal=f"1 to {count}")
+    what, legal = f"{layout.chip.name} is out of its range", f"below {layout.chip.full_scale:g} mT"
     for f in FIELD:
-        for i in np.flatnonzero(np.abs(rows.values(f.name)) >= layout.chip.full_scale)[:1]:
-            raise InputError(
-                rows.where(int(i), f.name),
-                f"{layout.chip.name} is out of its range",
-                value=float(rows.values(f.name)[i]),
-                legal=f"below {layout.chip.full_scale:g} mT",
-            )
+        value = rows.values(f.name)
+        for i in np.flatnonzero(np.abs(value) >= layout.chip.full_scale)[:1]:
+            raise InputError(rows.where(int(i), f.name), what, value=float(value[i]), legal=legal)
 
 
 @dataclass(frozen=True)
 class _Cell:
-    """A cell's runs, and what bends beyond the design's law, as of `CellMatrix`.
+    """A cell's runs, its readings' number, and what bends beyond the design's law, as of `CellMatrix`.
 
     lever      what the variance of c is over that of a reading, 1/N^4, [field, axis]
     scatter    squares of what the lines leave of the three fields, mT^2, and their degrees of freedom
     """
 
+    place: CellPlace
     runs: list[_Run]
+    readings: int
     bow: Array
     full: Array
     lever: Array
@@ -134,17 +107,17 @@ class _Cell:
     spare: int
 
 
-def _kept(layout: PlanarLayout, kind: Kind, cell: _Cell, noise: Array) -> Array:
+def _kept(layout: PlanarLayout, cell: _Cell, noise: Array) -> Array:
     """Share of what the readings say of c that is kept beside what the design's limits say."""
-    limits = bow_variance(layout, kind, cell.full)
+    limits = bow_variance(layout, cell.place.kind, cell.full)
     return np.asarray(limits / (limits + noise[:, None] * cell.lever))
 
 
 def _cell_runs(
-    kind: Kind, rows: Rows, own: NDArray[np.int64], force: Array, field: Array, bent: Array, kept: Array
+    place: CellPlace, rows: Rows, own: Whole, force: Array, field: Array, bent: Array, kept: Array
 ) -> _Cell:
     sinks = rows.columns.get(SINK.name, np.full(len(rows), np.nan))
-    taken: list[list[tuple[int, NDArray[np.int64]]]] = [[], [], []]
+    taken: list[list[tuple[int, Whole]]] = [[], [], []]
     for number, picked in groups(rows.values("run").astype(int)[own]):
         at = own[picked]
         taken[_axis(rows, number, at, force[at])].append((number, at))
@@ -152,12 +125,9 @@ def _cell_runs(
     scatter, spare = np.zeros(3), 0
     for axis, of_axis in enumerate(taken):
         if len(of_axis) < LEAST_RUNS:
-            raise InputError(
-                f"{rows.path}: element {int(rows.values('element')[own[0]])}",
-                f"too few runs along {AXES[axis]}",
-                value=len(of_axis),
-                legal=f"{LEAST_RUNS} set-ups at least along each axis, whose scatter makes the interval",
-            )
+            where, what = f"{rows.path}: element {place.number}", f"too few runs along {AXES[axis]}"
+            legal = f"{LEAST_RUNS} set-ups at least along each axis, whose scatter makes the interval"
+            raise InputError(where, what, value=len(of_axis), legal=legal)
         every = np.concatenate([at for _, at in of_axis])
         which = np.repeat(np.arange(len(of_axis)), [len(at) for _, at in of_axis])
         q = force[every, axis]
@@ -171,35 +141,27 @@ def _cell_runs(
         spare += len(v) - 2 * len(of_axis) - 1
         y = y - np.outer(v, bow[:, axis])
         for r, (number, at) in enumerate(of_axis):
-            none = np.zeros(len(at))
-            raw = fit_lines(q[which == r], field[at], none)
-            line = fit_lines(q[which == r], y[which == r], none)
+            one, none = which == r, np.zeros(len(at))
+            raw, line = (fit_lines(q[one], values, none) for values in (field[at], y[one]))
             scatter += (line.residual**2).sum(axis=0)
             told = int(np.argmax(np.abs(raw.slope)))
-            span = abs(raw.slope[told]) * float(np.ptp(q[which == r]))
+            span = abs(raw.slope[told]) * float(np.ptp(q[one]))
             off = float(np.abs(raw.residual[:, told]).max()) / span if span else 0.0
-            runs.append(_Run(number, axis, line.slope, off, _sink(kind, axis, q[which == r], sinks[at])))
-    return _Cell(runs, bow, full, lever, scatter, spare)
+            sink = _sink(place.kind, axis, q[one], sinks[at])
+            runs.append(_Run(number, axis, line.slope, off, sink))
+    return _Cell(place, runs, len(own), bow, full, lever, scatter, spare)
 
 
-def _axis(rows: Rows, number: int, at: NDArray[np.int64], force: Array) -> int:
+def _axis(rows: Rows, number: int, at: Whole, force: Array) -> int:
     """The axis of a run's loads. Raises InputError if they are along none, or too few."""
-    load = np.abs(force).max(axis=0)
+    load, where = np.abs(force).max(axis=0), rows.where(int(at[0]), "run")
     axis = int(np.argmax(load))
     if np.delete(load, axis).max() > ALONG * load[axis]:
-        raise InputError(
-            rows.where(int(at[0]), "run"),
-            f"the loads of run {number} are along no axis",
-            value=", ".join(f"{v:g} N" for v in load),
-            legal="of fx, fy, fz one only in a run",
-        )
+        what, value = f"the loads of run {number} are along no axis", ", ".join(f"{v:g} N" for v in load)
+        raise InputError(where, what, value=value, legal="of fx, fy, fz one only in a run")
     if (count := len(np.unique(steps(force[:, axis])))) < LEAST_LOADS:
-        raise InputError(
-            rows.where(int(at[0]), "run"),
-            f"too few loads in run {number}",
-            value=count,
-            legal=f"{LEAST_LOADS} at least, the one without weight among them",
-        )
+        legal = f"{LEAST_LOADS} at least, the one without weight among them"
+        raise InputError(where, f"too few loads in run {number}", value=count, legal=legal)
     return axis
 
 
@@ -258,26 +220,14 @@ def _law_along(axis: int, cells: Sequence[Sequence[_Run]]) -> tuple[Array, float
     return by_run + by_cell, dof
 
 
-def _cell(
-    layout: PlanarLayout,
-    kind: Kind,
-    number: int,
-    cell: _Cell,
-    law: _Law,
-    noise: Array,
-    level: float,
-    readings: int,
-) -> CellMatrix:
-    found, m = cell.runs, _mean(cell.runs)
-    drawn = matrix(layout, kind)
+def _cell(layout: PlanarLayout, cell: _Cell, law: _Law, noise: Array, level: float) -> CellMatrix:
+    kind, found, m = cell.place.kind, cell.runs, _mean(cell.runs)
+    drawn = chip_matrix(layout, kind) * DOWN
     for k in range(3):
         if m[k, k] * drawn[k, k] <= 0.0:
-            raise InputError(
-                f"element {number}",
-                f"b{AXES[k]} goes against f{AXES[k]}: a sign or two columns are exchanged",
-                value=float(m[k, k]),
-                legal=f"near the design's {drawn[k, k]:.3g} mT/N",
-            )
+            what = f"b{AXES[k]} goes against f{AXES[k]}: a sign or two columns are exchanged"
+            where, legal = f"element {cell.place.number}", f"near the design's {drawn[k, k]:.3g} mT/N"
+            raise InputError(where, what, value=float(m[k, k]), legal=legal)
     each = np.array([sum(r.axis == k for r in found) for k in range(3)])
     spread = np.stack([m @ law.error[k] @ m.T / each[k] for k in range(3)])
     t = np.array([t_quantile(level, dof) for dof in law.dof])
@@ -287,9 +237,9 @@ def _cell(
     measured = not np.isnan(sink)
     stiffness = 1.0 / sink if measured else 1.0 / float(pad_compliance(kind, layout.pad_height)[2, 2])
     return CellMatrix(
-        number,
+        cell.place.number,
         kind.name,
-        readings,
+        cell.readings,
         len(found),
         m,
         cell.bow,

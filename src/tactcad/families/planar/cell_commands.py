@@ -65,12 +65,8 @@ def stiffness(args: argparse.Namespace, design: PlanarDesign) -> int:
     if args.picture:
         write_whole(args.picture, picture(layout, samples[0]).encode())
     if args.json:
-        document = {
-            "schema": "tactcad-planar-stiffness-1",
-            "level": args.level,
-            "units": "N, N/mm, MPa, degrees",
-            "samples": [as_json(layout, s) for s in samples],
-        }
+        document = {"schema": "tactcad-planar-stiffness-1", "level": args.level}
+        document |= {"units": "N, N/mm, MPa, degrees", "samples": [as_json(layout, s) for s in samples]}
         print(json.dumps(plain(document), indent=1, allow_nan=False))
     else:
         print("\n\n".join(as_text(layout, s, args.level) for s in samples))
@@ -85,13 +81,9 @@ def _evaluated(
     whole = None
     if len(read.load) >= LEAST and len(read.element) > 1:
         signals, springs = as_rows(read, found, known)
+        coupling, n = pads.coupling(args.design, signals, args.coupling or 0.0), len(layout.elements)
         whole = grasp.evaluate(
-            signals,
-            springs,
-            reference=args.reference,
-            level=args.level,
-            coupling=pads.coupling(args.design, signals, args.coupling or 0.0),
-            elements=len(layout.elements),
+            signals, springs, reference=args.reference, level=args.level, coupling=coupling, elements=n
         )
         if layers:
             whole = grasp.on_layers(whole, with_rest(signals), springs, layers, args.level)
@@ -114,6 +106,13 @@ def _with_limits(whole: grasp.Grasp, limit: float) -> grasp.Grasp:
 def as_json(layout: PlanarLayout, s: CellGrasp) -> dict:
     """A sample's document."""
     f, layer = s.forces, s.whole.layer if s.whole else None
+
+    def states(i: int) -> list[dict]:
+        """Of the cell read as the i-th."""
+        columns = (f.force[i], f.half_width[i], f.slips[i].tolist(), f.stopped[i].tolist())
+        names = ("run", "load", "force", "half_width", "slips", "stopped")
+        return [dict(zip(names, row)) for row in zip(s.read.run.tolist(), s.read.load.tolist(), *columns)]
+
     return {
         "sample": s.read.sample,
         "combined": s.whole.combined if s.whole else None,
@@ -122,24 +121,8 @@ def as_json(layout: PlanarLayout, s: CellGrasp) -> dict:
         "touching": layer.touching if layer else None,
         "notes": s.whole.notes if s.whole else (),
         "cells": [
-            {
-                "element": e.number,
-                "row": e.row,
-                "column": e.column,
-                "kind": e.kind.name,
-                "object": s.around[i],
-                "states": [
-                    {
-                        "run": int(s.read.run[j]),
-                        "load": float(s.read.load[j]),
-                        "force": f.force[i, j],
-                        "half_width": f.half_width[i, j],
-                        "slips": bool(f.slips[i, j]),
-                        "stopped": bool(f.stopped[i, j]),
-                    }
-                    for j in range(len(s.read.load))
-                ],
-            }
+            {"element": e.number, "row": e.row, "column": e.column, "kind": e.kind.name}
+            | {"object": s.around[i], "states": states(i)}
             for i, e in enumerate(places(layout, s.read))
         ],
     }
@@ -160,16 +143,11 @@ def as_text(layout: PlanarLayout, s: CellGrasp, level: float) -> str:
         "cell  kind             Fx N               Fy N               Fz N  K_obj N/mm with its neighbours",
     ]
     for i, e in enumerate(places(layout, s.read)):
-        three = "".join(
-            f"{v:9.4f} +-{w:7.4f}" for v, w in zip(f.force[i, top], f.half_width[i, top], strict=True)
-        )
+        three = "".join(f"{v:9.4f} +-{w:7.4f}" for v, w in zip(f.force[i, top], f.half_width[i, top]))
         marks = " slips" * bool(f.slips[i, top]) + " on its stop" * bool(f.stopped[i, top])
         lines.append(f"{e.number:4d}  {e.kind.name:9s}{three}  {_interval(s.around[i])}{marks}")
-    lines += [
-        "",
-        "Fz is down on the pad; a pad slips where its tangential force is above "
-        f"{layout.design.rating.slip:g} of that (rating.slip)",
-    ]
+    slips = f"above {layout.design.rating.slip:g} of that (rating.slip)"
+    lines += ["", f"Fz is down on the pad; a pad slips where its tangential force is {slips}"]
     if s.whole:
         lines.append(f"K_obj of all cells: {_interval(s.whole.combined)} N/mm")
         if (layer := s.whole.layer) and layer.modulus:
@@ -180,7 +158,7 @@ def as_text(layout: PlanarLayout, s: CellGrasp, level: float) -> str:
             )
         lines += [f"note: {n}" for n in s.whole.notes]
     else:
-        lines.append(f"K_obj of all cells wants {LEAST} loads above zero")
+        lines.append(f"K_obj of all cells wants {LEAST} loads above zero, and two cells or more")
     return "\n".join(lines)
 
 
@@ -200,14 +178,13 @@ def picture(layout: PlanarLayout, s: CellGrasp) -> str:
     known = np.array([i.estimate if i and not i.empty else np.nan for i in s.around])
     known = np.where((known > 0.0) & (known < inf), known, np.nan)
     with panels(1, 2, (11.2, 4.8)) as (figure, axes):
-        for ax, values, title in (
-            (axes[0], force[:, 2] / of_kind, f"Fz over the mean of its kind, at {s.read.load[top]:g} N"),
-            (axes[1], known, "K_obj with the neighbours, N/mm"),
-        ):
+        over = f"Fz over the mean of its kind, at {s.read.load[top]:g} N"
+        shown_as = ((force[:, 2] / of_kind, over), (known, "K_obj with the neighbours, N/mm"))
+        for ax, (values, title) in zip(axes, shown_as):
             tiles = [Rectangle((u - pitch / 2, v - pitch / 2), pitch, pitch) for u, v in zip(x, y)]
             shown = PatchCollection(tiles, cmap="viridis", edgecolor="white")
             shown.set_array(np.ma.masked_invalid(values))
-            middle = float(np.nanmedian(values)) if np.isfinite(values).any() else 1.0
+            middle = float(np.nanmedian(values)) if np.isfinite(values).any() else 0.0
             if ax is axes[1] and middle > 0.0:
                 ends = np.clip(values, middle / SHOWN_RATIO, middle * SHOWN_RATIO)
                 shown.set_clim(float(np.nanmin(ends)), float(np.nanmax(ends)))

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from functools import partial
 from typing import Literal
 
-from tactcad.design.messages import InputError
 from tactcad.parts.array.supplies import supplies as bill_lines
 from tactcad.parts.bought.standard_parts import dowel
 from tactcad.parts.language.description import Vector, vector
@@ -13,7 +14,7 @@ from tactcad.parts.language.metric import METRIC
 from tactcad.parts.rigs.frame import STANDARD_GRAVITY
 from tactcad.scenes.builder import Builder
 from tactcad.scenes.moves import APPROACH, PRESS, TWEEZED
-from tactcad.scenes.rig import Rig, none
+from tactcad.scenes.rig import Rig, plain_rig, require_element
 from tactcad.scenes.scene import AGAINST_Y, DOWN, HAND, REST, STILL, UPRIGHT, Move, Pose, Rotation, Scene
 
 from . import cell_board, parts
@@ -36,18 +37,13 @@ AWAY = 60.0  # mm that hangers come from; chosen: a hand's width
 TOOLS = ("spirit level, 0.1 mm/m", "balance, 1 mg", "tweezers of plastic")
 
 
-LEVELLED = "Level the table under it to 0.2 mm/m, both ways."
-
-
 def _mounted(rig: CradleLayout) -> Builder:
     """The array in its cradle, which lies on foot z, in the array's axes."""
-    b, seat, (hx, hy) = Builder(), rig.seat, rig.half
+    b, seat, (hx, hy) = Builder(), rig.seat, rig.layout.half
     block = b.place("CR", cradle.cradle(rig), (0.0, 0.0, seat - cradle.THICK), HALF_TURN)
     b.step("Cradle", (0, 0, -30), "Lay the cradle down on its foot z, seat up.")
-    pins = [
-        b.place("DP", dowel(cradle.PIN, rig.pin_length), (x, y, seat - rig.pin_depth)) for x, y in rig.pins
-    ]
-    for pin in pins:
+    for x, y in rig.pins:
+        pin = b.place("DP", dowel(cradle.PIN, rig.pin_length), (x, y, seat - rig.pin_depth))
         b.meet(pin, block, "press")
     out = rig.height - cradle.PIN_SHORT
     b.step(
@@ -56,8 +52,7 @@ def _mounted(rig: CradleLayout) -> Builder:
         f"Press the three pins in until {out:.3g} mm stand out.",
         tools=(PRESS, f"a sleeve {out:.3g} mm long as stop"),
     )
-    own = [b.place("AR", cradle.array(rig), (0.0, 0.0, rig.layout.pad_z), DOWN)]
-    b.meet(own[0], block)
+    own = [b.place("AR", cradle.array(rig), (0.0, 0.0, rig.layout.pad_z), DOWN, on=block)]
     if rig.tongue:
         own.append(b.place("AR", cradle.tongue(rig), (0.0, 0.0, seat)))
         at = (0.0, -hy - rig.tongue + cell_board.EDGE, rig.layout.board_z)
@@ -67,8 +62,7 @@ def _mounted(rig: CradleLayout) -> Builder:
         b.meet(own[1], block)
     under = seat - METRIC[parts.SCREW].head_height
     for x, y in parts.screw_places(rig.layout):
-        own.append(b.place("AH", cradle.head(rig), (x, y, under)))
-        b.meet(own[-1], own[0])
+        own.append(b.place("AH", cradle.head(rig), (x, y, under), on=own[0]))
     b.step(
         "Array in the cradle",
         (0, 0, 30),
@@ -79,31 +73,25 @@ def _mounted(rig: CradleLayout) -> Builder:
         sets=("AR1 on CR1: along z", "AR1 against DP1 DP2 DP3: along x and y, turn about z"),
         leaves=("AR1: away from the pins, until it is clamped",),
     )
-    heel = b.place("CH", cradle.heel(rig), (-hx, 0.0, seat))
-    b.meet(heel, block)
-    bar = b.place("CB", cradle.clamp(rig), (-hx, 0.0, rig.cover_top))
-    b.meet(bar, own[0])
+    b.place("CH", cradle.heel(rig), (-hx, 0.0, seat), on=block)
+    bar = b.place("CB", cradle.clamp(rig), (-hx, 0.0, rig.cover_top), on=own[0])
     for x, y in cradle.clamp_screws(rig):
         at = (x, y, rig.cover_top + cradle.BAR)
         b.screw(cradle.CLAMP_SCREW, rig.clamp_screw, at, (0, 0, -1), bar, block)
     b.step(
         "Clamp",
         (0, 0, 45),
-        "Lay heel and clamp down, hold the array against its pins and tighten both screws in turn. The "
-        "heel is "
-        f"{cradle.PRESSED:g} mm lower than the array, so that the clamp presses on the cover's border.",
+        "Lay heel and clamp down, hold the array against its pins and tighten both screws in turn. The heel "
+        f"is {cradle.HEEL_LOWER:g} mm lower than the array, so that the clamp presses on the cover's border.",
     )
     return b
 
 
-def scene(design: PlanarDesign, along: Axis, pose: Pose) -> Scene:
+def scene(design: PlanarDesign, pose: Pose = REST, *, along: Axis) -> Scene:
     """The load along z, x or y of the array on the pad of pose.element."""
     layout = PlanarLayout(design)
     rig, places = CradleLayout(layout), layout.elements
-    if not 1 <= pose.element <= len(places):
-        raise InputError(
-            "element", "the array has none of that number", value=pose.element, legal=f"1 to {len(places)}"
-        )
+    require_element(pose, len(places))
     b, edge = _mounted(rig), "with its pins' end over the table's edge, so that the hanger goes round it"
     if along != "z":
         ready = b.scene("calibration-z")
@@ -113,7 +101,8 @@ def scene(design: PlanarDesign, along: Axis, pose: Pose) -> Scene:
     b.step(
         f"Cradle on its foot {along}",
         (0, 0, 0),
-        f"Stand the cradle on its foot {along}, {edge}, and hold it down with a clamp. {LEVELLED}",
+        f"Stand the cradle on its foot {along}, {edge}, and hold it down with a clamp. Level the table under "
+        "it to 0.2 mm/m, both ways.",
         tools=TOOLS,
     )
     cap, hung = _hung(b, rig, along, places[pose.element - 1])
@@ -129,8 +118,7 @@ def _hung(b: Builder, rig: CradleLayout, along: Axis, cell: CellPlace) -> tuple[
     """The cap on the cell's pad, and hanger or link on the cap; their designators."""
     at = (cell.x, cell.y, rig.layout.pad_z)
     x, y, z = (sum(r * p for r, p in zip(row, at)) for row in STANDS[along])
-    cap = b.place("CA", cradle.cap(rig), (x, y, z), UPRIGHT if along == "z" else AGAINST_Y)
-    b.meet(cap, "AR1")
+    cap = b.place("CA", cradle.cap(rig), (x, y, z), UPRIGHT if along == "z" else AGAINST_Y, on="AR1")
     b.step(
         "Cap on a pad",
         (0, 0, 20) if along == "z" else (0, -20, 0),
@@ -141,18 +129,18 @@ def _hung(b: Builder, rig: CradleLayout, along: Axis, cell: CellPlace) -> tuple[
         leaves=(f"{cap}: turns about the post",),
     )
     if along == "z":
-        hung = b.place("HA", cradle.hanger(rig), (x - cradle.SHEET / 2.0, y, rig.tip), ACROSS)
+        hung = b.place("HA", cradle.hanger(rig), (x - cradle.SHEET / 2.0, y, rig.tip), ACROSS, on=cap)
         text = (
             "Bring the hanger in from the overhanging end, around array and cradle, and set its nib into the "
             "cap's dimple. It must swing freely."
         )
     else:
-        hung = b.place("LI", cradle.link(rig), (x, y + cradle.SHEET / 2.0, z - rig.sunk), AGAINST_Y)
+        at = (x, y + cradle.SHEET / 2.0, z - rig.sunk)
+        hung = b.place("LI", cradle.link(rig), at, AGAINST_Y, on=cap)
         text = (
             "Bring the link's arc over the cap and let it down into the groove: it hangs there past the "
             "posts below, on both sides of them, and touches nothing else."
         )
-    b.meet(hung, cap)
     far, high = _way(rig, along, cell, STILL)
     b.step(
         "Hanger" if along == "z" else "Link",
@@ -218,33 +206,26 @@ def _weights(rig: CradleLayout, along: Axis) -> str:
 
 def _readings(rig: CradleLayout, along: Axis) -> str:
     """The order of cells, the table, and what the rig adds to the error."""
-    height = rig.layout.pad_height
     if along == "z":
-        share, what = (
-            OFF_MIDDLE / height,
-            f"a load {OFF_MIDDLE:g} mm from the pad's middle tips its cell like",
-        )
-        other = "across"
+        off, other = OFF_MIDDLE, "across"
+        what = f"a load {off:g} mm from the pad's middle tips its cell like"
     else:
-        share, what = OFF_LEVEL / height, f"a groove {OFF_LEVEL:g} mm from the pad's level is like"
-        other = "more or less"
+        off, other = OFF_LEVEL, "more or less"
+        what = f"a groove {off:g} mm from the pad's level is like"
     return (
-        "Then set the cradle down and level anew, and with the cap half a turn on by "
-        "its mark load every cell again: that is another run. Write a row of the table for each reading: "
+        "Then set the cradle down and level anew, and with the cap half a turn on by its mark load every "
+        "cell again: that is another run. Write a row of the table for each reading: "
         "element; run, a number of its own for every time that the cradle was set down; fx, fy, fz in N, "
         f"which is {STANDARD_GRAVITY * 1e-3:.8g} times the grams in f{along} and 0 in the others, all 0 on "
         "the bare pad; bx, by, bz in mT. With a column sink, mm, stiffness comes too. Once all three axes "
-        f"are in the table, tactcad calibrate takes it. What the rig adds at most: {what} {100 * share:.1f} "
-        f"% of it {other}; feet, pins and level turn a load by {OFF_AXIS:g} mrad, {OFF_AXIS / 10:g} % of it "
-        "across; weights err by 1 mg, from 1 g on by 0.1 %."
+        f"are in the table, tactcad calibrate takes it. What the rig adds at most: {what} "
+        f"{100 * off / rig.layout.pad_height:.1f} % of it {other}; feet, pins and level turn a load by "
+        f"{OFF_AXIS:g} mrad, {OFF_AXIS / 10:g} % of it across; weights err by 1 mg, from 1 g on by 0.1 %."
     )
 
 
 def rig(along: Axis) -> Rig:
     """The declaration of one of the three scenes."""
-
-    def make(design: PlanarDesign, pose: Pose = REST) -> Scene:
-        return scene(design, along, pose)
 
     def poses(design: PlanarDesign) -> Iterator[Pose]:
         """Cells in the other corners of the plane."""
@@ -252,14 +233,5 @@ def rig(along: Axis) -> Rig:
         last = p.rows * p.columns
         yield from (Pose(element=n) for n in sorted({p.columns, last - p.columns + 1, last} - {1}))
 
-    return Rig(
-        name=f"calibration-{along}",
-        tables=("calibration",),
-        make=make,
-        poses=poses,
-        under_sensor=none,
-        rules=FITS,
-        deflections=lambda _design: iter(()),
-        requirements=requirements,
-        checks=(),
-    )
+    plain = plain_rig(f"calibration-{along}", partial(scene, along=along), FITS, requirements)
+    return replace(plain, tables=("calibration",), poses=poses)

@@ -20,13 +20,13 @@ from tactcad.lab.combine import Interval
 from tactcad.lab.readings import ELEMENT, RUN, SAMPLE, GraspReadings, groups
 from tactcad.lab.regression import KNOWN, steps, t_quantile
 
-from .cell_calibration import FIELD, refuse_overrange, refuse_strangers
-from .cell_layout import CellPlace, PlanarLayout
+from .beam import Array, Whole
+from .cell_calibration import FIELD, refuse_unread
+from .cell_layout import CellPlace, PlanarLayout, beside
 from .cell_matrices import Matrices
 from .cell_response import all_bends, neighbours
-from .sensor import closing_force
+from .sensor import closing_force, reading_noise
 
-Array = NDArray[np.float64]
 LOAD = Field("load", "N", 0.0, 1000.0)
 ROUNDS = 5  # in which what bends is taken off: each leaves a tenth of the one before, at the rated force
 ENOUGH = 20  # degrees of freedom of repeated readings from which on they tell the noise, not the chip's sheet
@@ -38,9 +38,9 @@ class CellFields:
     """Fields of one sample; arrays. field [cell, state, 3], less that without load, and noise, mT, [3]."""
 
     sample: int
-    element: NDArray[np.int64]
+    element: Whole
     load: Array
-    run: NDArray[np.int64]
+    run: Whole
     field: Array
     noise: Array
     path: str
@@ -65,28 +65,18 @@ class CellForces:
 def fields(layout: PlanarLayout, path: str | Path) -> list[CellFields]:
     """Read the fields for `tactcad stiffness`.
 
-    Parameters
-    ----------
-    layout
-        Of the design.
-    path
-        CSV with the columns element, load (N), bx, by, bz (mT); run and sample if there are several. Every
-        cell at every load, and without load in every run. Repeated readings are averaged.
-
-    Raises
-    ------
-    InputError
-        A malformed table, a reading missing, a cell that the design does not have, a chip out of its range.
+    The file is CSV with the columns element, load (N), bx, by, bz (mT); run and sample if there are several.
+    Every cell at every load, and without load in every run; repeated readings are averaged. Raises InputError
+    for a malformed table, a reading missing, a cell that the design does not have, a chip out of its range.
     """
     rows = read(path, (ELEMENT, LOAD, *FIELD), (RUN, SAMPLE))
-    refuse_strangers(layout, rows)
-    refuse_overrange(layout, rows)
+    refuse_unread(layout, rows)
     sample = rows.columns.get(SAMPLE.name, np.ones(len(rows))).astype(int)
     return [_sample(layout, rows, number, own) for number, own in groups(sample)]
 
 
-def _sample(layout: PlanarLayout, rows: Rows, number: int, own: NDArray[np.int64]) -> CellFields:
-    element = rows.values("element").astype(int)[own]
+def _sample(layout: PlanarLayout, rows: Rows, number: int, own: Whole) -> CellFields:
+    element, where = rows.values("element").astype(int)[own], f"{rows.path}: sample {number}"
     run = rows.columns.get(RUN.name, np.ones(len(rows))).astype(int)[own]
     load = steps(rows.values("load")[own])
     b = np.stack([rows.values(f.name)[own] for f in FIELD], axis=1)
@@ -94,19 +84,15 @@ def _sample(layout: PlanarLayout, rows: Rows, number: int, own: NDArray[np.int64
     states, which = np.unique(np.stack([run, load], axis=1), axis=0, return_inverse=True)
     place = np.searchsorted(cells, element) * len(states) + which.ravel()
     count = np.bincount(place, minlength=len(cells) * len(states))
-    where = f"{rows.path}: sample {number}"
     if not count.all():
         c, s = divmod(int(np.argmin(count)), len(states))
-        raise InputError(
-            where,
-            f"element {cells[c]} has no reading at load {states[s][1]:g} N",
-            legal="every cell at every load",
-        )
+        what = f"element {cells[c]} has no reading at load {states[s][1]:g} N"
+        raise InputError(where, what, legal="every cell at every load")
     total = np.zeros((len(count), 3))
     np.add.at(total, place, b)
     mean = total / count[:, None]
     spare = len(b) - len(count)
-    noise = 1e-3 * np.array([layout.chip.noise_xy, layout.chip.noise_xy, layout.chip.noise_z])
+    noise = reading_noise(layout.chip)
     if spare >= ENOUGH:
         noise = np.sqrt(((b - mean[place]) ** 2).sum(axis=0) / spare)
     noise = noise / count.min() ** 0.5
@@ -121,9 +107,8 @@ def _sample(layout: PlanarLayout, rows: Rows, number: int, own: NDArray[np.int64
         kept += np.flatnonzero(of_run & (states[:, 1] > 0.0)).tolist()
     if not kept:
         raise InputError(where, "no load above zero", legal="one at least")
-    return CellFields(
-        number, cells, states[kept, 1], states[kept, 0].astype(int), change[:, kept], noise, rows.path
-    )
+    runs, loads = states[kept].T
+    return CellFields(number, cells, loads, runs.astype(int), change[:, kept], noise, rows.path)
 
 
 def forces(layout: PlanarLayout, read: CellFields, known: Matrices, level: float) -> CellForces:
@@ -168,16 +153,13 @@ def places(layout: PlanarLayout, read: CellFields) -> list[CellPlace]:
     return [at[int(n)] for n in read.element]
 
 
-def _rows(read: CellFields, known: Matrices) -> NDArray[np.int64]:
-    at = {int(n): i for i, n in enumerate(known.element)}
-    for n in read.element:
-        if int(n) not in at:
-            raise InputError(
-                f"{read.path}: sample {read.sample}",
-                f"element {n} was not calibrated",
-                legal=str(known.element.tolist()),
-            )
-    return np.array([at[int(n)] for n in read.element])
+def _rows(read: CellFields, known: Matrices) -> Whole:
+    at = {n: i for i, n in enumerate(known.element.tolist())}
+    for n in read.element.tolist():
+        if n not in at:
+            where = f"{read.path}: sample {read.sample}"
+            raise InputError(where, f"element {n} was not calibrated", legal=str([*at]))
+    return np.array([at[n] for n in read.element.tolist()])
 
 
 def as_rows(read: CellFields, found: CellForces, known: Matrices) -> tuple[GraspReadings, Sensitivity]:
@@ -194,17 +176,8 @@ def as_rows(read: CellFields, found: CellForces, known: Matrices) -> tuple[Grasp
     per_sink = np.where(own > 0.0, own, of_matrix)
     of_k = np.where(own > 0.0, np.hypot(own, of_matrix), 0.0)
     correlation = np.divide(own, of_k, out=np.zeros_like(own), where=of_k > 0)
-    sensitivity = Sensitivity(
-        read.element,
-        k,
-        k * of_k,
-        per_newton * k,
-        per_newton * k * per_sink,
-        correlation,
-        known.dof[rows][:, 2],
-        np.full(len(k), 1e12),
-        np.zeros(len(k)),
-    )
+    s, dof, many, none = per_newton * k, known.dof[rows][:, 2], np.full(len(k), 1e12), np.zeros(len(k))
+    sensitivity = Sensitivity(read.element, k, k * of_k, s, s * per_sink, correlation, dof, many, none)
     signal = found.force[..., 2] * per_newton[:, None]
     return GraspReadings(read.sample, read.element, read.load, read.run, signal, read.path), sensitivity
 
@@ -251,8 +224,7 @@ def by_neighbours(
     dof = float(known.dof[rows][:, 2].min())
     out: list[Interval | None] = []
     for i, e in enumerate(cells):
-        beside = [(e.row + 1, e.column), (e.row - 1, e.column), (e.row, e.column + 1), (e.row, e.column - 1)]
-        others = [at[p] for p in beside if p in at]
+        others = [at[p] for p in beside(e) if p in at]
         if not others:
             out.append(None)
             continue

@@ -12,7 +12,7 @@ from tactcad.robot.mechanism import ElementJoint, Mechanism, Moving, array_seen
 from tactcad.robot.taxel_table import Taxel
 from tactcad.scenes.scene import Placement
 
-from .cell_layout import CellPlace, Kind, PlanarLayout
+from .cell_layout import Kind, PlanarLayout, beside
 from .cell_tables import PlanarDesign
 from .field import sensitivity
 from .sensor import magnet_lever
@@ -53,7 +53,7 @@ def cells(design: PlanarDesign) -> Mechanism:
             number=e.number,
             designator=name,
             kind=e.kind.name,
-            **dict(zip(("x_mm", "y_mm", "z_mm"), (e.x, e.y, float(layout.pad_z - flange[2])))),
+            **{"x_mm": e.x, "y_mm": e.y, "z_mm": float(layout.pad_z - flange[2])},
             **{"q_w": 1.0, "q_x": 0.0, "q_y": 0.0, "q_z": 0.0},
             **{"normal_x": 0.0, "normal_y": 0.0, "normal_z": 1.0},
             length_mm=d,
@@ -70,24 +70,16 @@ def cells(design: PlanarDesign) -> Mechanism:
             sink_mm_per_rad=(1e3, 0.0, 0.0),
             shear_x_N_per_rad=(0.0, 0.0, float(tilt / H)),
             shear_y_N_per_rad=(0.0, float(-tilt / H), 0.0),
-            neighbours=_neighbours(numbers, e),
+            neighbours=tuple(numbers[at] for at in beside(e) if at in numbers),
         )
         island = replace(placed["F1"], designator=name, part=islands[e.kind.name])
         x, y, z = island.origin
         own = (placed.pop(f"{part}{e.number}") for part in ("FP", "P", "M"))
         # the post, up to half of its free length: above that the ball touches
         box = [(-d / 2, -d / 2, t / 2), (d / 2, d / 2, H - design.post.stand_out / 2)]
-        moved = (replace(island, origin=(x + e.x, y + e.y, z)), *own)
-        moving.append(
-            Moving(taxel, np.eye(3), np.array([0.0, 0.0, -H]), joints, moved, np.array(box), H, rubs=True)
-        )
+        moved, pad = (replace(island, origin=(x + e.x, y + e.y, z)), *own), np.array([0.0, 0.0, -H])
+        moving.append(Moving(taxel, np.eye(3), pad, joints, moved, np.array(box), H, rubs=True))
     return Mechanism(design, tuple(placed.values()), tuple(moving))
-
-
-def _neighbours(numbers: dict[tuple[int, int], int], e: CellPlace) -> tuple[int, ...]:
-    """Neighbours in its row and in its column."""
-    beside = ((e.row - 1, e.column), (e.row, e.column - 1), (e.row, e.column + 1), (e.row + 1, e.column))
-    return tuple(numbers[at] for at in beside if at in numbers)
 
 
 def _parted(layout: PlanarLayout, foil: Placement) -> tuple[dict[str, Part], Placement]:
@@ -98,12 +90,8 @@ def _parted(layout: PlanarLayout, foil: Placement) -> tuple[dict[str, Part], Pla
     spigots = [f for f in part.features if f.name == "spigot"]
     standing = tuple(f for f in part.features if f.name != "spigot")
     frame = tuple(e.kind.parted(layout.corner, (e.x, e.y))[1] for e in layout.elements)
-    rest = replace(
-        part,
-        part_no=f"{part.part_no}-frame",
-        body=Extrusion(part.extrusion.outer, t, frame),
-        features=standing,
-    )
+    body = Extrusion(part.extrusion.outer, t, frame)
+    rest = replace(part, part_no=f"{part.part_no}-frame", body=body, features=standing)
 
     def island(kind: Kind) -> Part:
         body = Extrusion(kind.parted(layout.corner, (0.0, 0.0))[0], t)

@@ -9,7 +9,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from math import ceil
+from itertools import product
+from math import ceil, hypot
 
 from tactcad.contour import Contour, Corner, rectangle, rounded_polygon
 
@@ -67,12 +68,15 @@ class Kind:
         t = self.table
         return self.beam_offset + t.beam_width / 2.0 + self.rim if self.pinwheel else t.island / 2.0
 
+    @property
+    def corner(self) -> float:
+        """From the middle to the island's corner, or its ear's, mm."""
+        return hypot(self.reach, self.table.island / 2.0)
+
     @cached_property
     def beam(self) -> FoilBeam:
-        t = self.table
-        return FoilBeam(
-            self.beam_length, t.beam_width, self.thickness, t.fillet, self.youngs_modulus, self.poisson
-        )
+        t, metal = self.table, (self.youngs_modulus, self.poisson)
+        return FoilBeam(self.beam_length, t.beam_width, self.thickness, t.fillet, *metal)
 
     @cached_property
     def cell(self) -> Cell:
@@ -86,22 +90,10 @@ class Kind:
         a, w, r = t.island / 2.0, t.beam_width / 2.0, t.fillet
         if self.pinwheel:
             low, high, top = a + t.slot, a + t.slot + 2.0 * w, a + t.slot + 2.0 * w + self.rim
-            return [
-                ((o, high), r),
-                ((o, o), corner),
-                ((-low, o), r),
-                ((-low, -a + t.ear), r),
-                ((-a, -a + t.ear), corner),
-                ((-a, top), corner),
-                ((-a + t.ear, top), corner),
-                ((-a + t.ear, high), r),
-            ]
+            ear = -a + t.ear
+            ends = [(o, high), (o, o), (-low, o), (-low, ear), (-a, ear), (-a, top), (ear, top), (ear, high)]
+            return [*zip(ends, (r, corner, r, r, corner, corner, corner, r))]
         return [((o, w), r), ((o, o), corner), ((w, o), r), ((w, a), r), ((a, a), corner), ((a, w), r)]
-
-    @property
-    def edges(self) -> tuple[str, ...]:
-        """Names of a slot's edges, in the order of its corners."""
-        return self.named(*(PINWHEEL_EDGES if self.pinwheel else STRAIGHT_EDGES))
 
     def named(self, *edges: str) -> tuple[str, ...]:
         """Edges of this kind of cell by their names in the foil's outline."""
@@ -109,7 +101,8 @@ class Kind:
 
     def slots(self, corner: float, at: tuple[float, float]) -> tuple[Contour, ...]:
         """The four openings of the cell at `at`, with fillets at the roots and radius `corner` elsewhere."""
-        return tuple(_turned(self._slot(corner), (quarter,), at, self.edges) for quarter in range(4))
+        edges = self.named(*(PINWHEEL_EDGES if self.pinwheel else STRAIGHT_EDGES))
+        return tuple(_turned(self._slot(corner), (quarter,), at, edges) for quarter in range(4))
 
     def parted(self, corner: float, at: tuple[float, float]) -> tuple[Contour, Contour]:
         """The island with its half of every beam, at the origin, and the frame's edge around it, at `at`."""
@@ -145,12 +138,10 @@ def _turned(
 ) -> Contour:
     """The polygon of these points, turned by each of these quarters one after another; its edges' names."""
     corners = []
-    for quarter in quarters:
-        for n, (point, radius) in enumerate(points):
-            x, y = _turn(point, quarter)
-            corners.append(
-                Corner((round(x + at[0], 9), round(y + at[1], 9)), radius, edges[n] if edges else "")
-            )
+    for quarter, (n, (point, radius)) in product(quarters, enumerate(points)):
+        x, y = _turn(point, quarter)
+        name = edges[n] if edges else ""
+        corners.append(Corner((round(x + at[0], 9), round(y + at[1], 9)), radius, name))
     return rounded_polygon(corners)
 
 
@@ -186,6 +177,11 @@ class CellPlace:
         return self.kind.beam_length
 
 
+def beside(e: CellPlace) -> tuple[tuple[int, int], ...]:
+    """Row and column of the places beside a cell."""
+    return (e.row - 1, e.column), (e.row, e.column - 1), (e.row, e.column + 1), (e.row + 1, e.column)
+
+
 @dataclass(frozen=True)
 class PlanarLayout:
     """Places of all cells and layers; cells are numbered along x, row by row from the least y."""
@@ -194,30 +190,23 @@ class PlanarLayout:
 
     @cached_property
     def kinds(self) -> dict[str, Kind]:
-        d = self.design
-        opening = round(d.planar.pitch - d.planar.web, 9)
-        m = d.material
-        return {
-            name: Kind(name, table, opening, d.planar.thickness, m.youngs_modulus, m.poisson)
-            for name, table in (("measuring", d.measuring), ("reference", d.reference))
-        }
+        d, m, p = self.design, self.design.material, self.design.planar
+        same = round(p.pitch - p.web, 9), p.thickness, m.youngs_modulus, m.poisson
+        return {name: Kind(name, getattr(d, name), *same) for name in ("measuring", "reference")}
 
     @cached_property
     def elements(self) -> tuple[CellPlace, ...]:
         p = self.design.planar
         other = "measuring" if p.first == "reference" else "reference"
-        return tuple(
-            CellPlace(
-                1 + i + j * p.columns,
-                j + 1,
-                i + 1,
-                round((i - (p.columns - 1) / 2.0) * p.pitch, 9),
-                round((j - (p.rows - 1) / 2.0) * p.pitch, 9),
-                self.kinds[p.first if (i + j) % 2 == 0 else other],
-            )
-            for j in range(p.rows)
-            for i in range(p.columns)
-        )
+        kinds = self.kinds[p.first], self.kinds[other]
+        xs, ys = ([round((i - (n - 1) / 2.0) * p.pitch, 9) for i in range(n)] for n in (p.columns, p.rows))
+        places = enumerate(product(enumerate(ys), enumerate(xs)), start=1)
+        return tuple(CellPlace(n, j + 1, i + 1, x, y, kinds[(i + j) % 2]) for n, ((j, y), (i, x)) in places)
+
+    @property
+    def places(self) -> tuple[tuple[float, float], ...]:
+        """x and y of every cell."""
+        return tuple((e.x, e.y) for e in self.elements)
 
     @property
     def used(self) -> tuple[Kind, ...]:
@@ -245,10 +234,8 @@ class PlanarLayout:
     def half(self) -> tuple[float, float]:
         """Half length and half width of foil, spacers, base, cover and board, mm."""
         p = self.design.planar
-        x, y = (
-            round(n * p.pitch / 2.0 - p.web / 2.0 + border, 9)
-            for n, border in zip((p.columns, p.rows), self.borders)
-        )
+        counts = zip((p.columns, p.rows), self.borders)
+        x, y = (round(n * p.pitch / 2.0 - p.web / 2.0 + border, 9) for n, border in counts)
         return x, y
 
     @property
@@ -260,12 +247,6 @@ class PlanarLayout:
     @property
     def screwed(self) -> bool:
         return self.design.housing.joint == "screwed"
-
-    @property
-    def field_half(self) -> tuple[float, float]:
-        """Half sides of the room of all cells, mm."""
-        x, y = (round(h - border, 9) for h, border in zip(self.half, self.borders))
-        return x, y
 
     @property
     def chip(self) -> Chip:
@@ -309,8 +290,3 @@ class PlanarLayout:
     @property
     def base_thickness(self) -> float:
         return round(self.base_z - self.board_z, 9)
-
-    @property
-    def well(self) -> float:
-        """Diameter of the base's hole around a magnet, mm."""
-        return round(self.design.magnet.diameter + 2.0 * self.design.housing.well, 9)

@@ -5,14 +5,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from math import floor, inf, log10
+from math import ceil, floor, inf, log10
 
 import numpy as np
 
 from tactcad.parts.bought.standard_parts import LEAST_PLAY
 from tactcad.parts.language.finding import Finding
 from tactcad.parts.rigs.frame import STANDARD_GRAVITY
-from tactcad.parts.rules.rule import at_least, at_most, fits
+from tactcad.parts.rules.rule import at_least, fits
 from tactcad.scenes.requirement import DimensionLimits, Requirement, summed, variable
 
 from . import cell_cradle as cradle
@@ -20,6 +20,7 @@ from .cell import wrench
 from .cell_cradle import CradleLayout
 from .cell_layout import Kind, PlanarLayout
 from .parts import PAD, PAD_FIELD
+from .rules import no_less, no_more
 from .sensor import rated_force, stress_error
 
 STEPS = 5  # of weights; chosen: two more than `calibrate` asks for
@@ -82,28 +83,28 @@ def _preferred(most: float) -> float:
 @fits
 def cap_fits_pads(layout: PlanarLayout) -> Iterator[Finding]:
     """The cap's groove is on its skirt, and cap and link pass the neighbours' posts."""
-    d, rig = layout.design, CradleLayout(layout)
+    rig = CradleLayout(layout)
     least = cradle.CAP_OFF + rig.cap - rig.groove + 0.05
-    yield from at_least("post.stand_out", "too little for the calibration's cap", d.post.stand_out, least)
-    room = rig.arc + cradle.LEG + d.post.pad / 2.0 + NEAR
+    yield from no_less(layout, "post.stand_out", "too little for the calibration's cap", least)
+    room = rig.arc + cradle.LEG + layout.design.post.pad / 2.0 + NEAR
     if len(layout.elements) > 1:
         what = "the calibration's link meets the neighbours' posts"
-        yield from at_least("planar.pitch", what, d.planar.pitch, round(room, 6))
+        yield from no_less(layout, "planar.pitch", what, round(room, 6))
 
 
 @fits
 def cradle_holds_array(layout: PlanarLayout) -> Iterator[Finding]:
-    rig, p = CradleLayout(layout), layout.design.planar
-    longest = 2.0 * max(layout.half)
+    rig, longest = CradleLayout(layout), 2.0 * max(layout.half)
     what = f"the array is {longest:g} mm long, and the calibration's hanger goes round {LONGEST:g} mm"
-    yield from at_most("planar.pitch", what, p.pitch, p.pitch * LONGEST / longest)
-    apart, d = rig.pins[1][0] - rig.pins[0][0], layout.design.housing
-    least = d.border + max(2.0 * float(cradle.PIN) - apart, 0.0) / 2.0
-    yield from at_least("housing.border", "the cradle's two pins meet", d.border, least)
-    least = d.border + LEAST_LIP - rig.lip
-    yield from at_least(
-        "housing.border", "the cradle's clamp finds no cover beside the link", d.border, least
-    )
+    yield from no_more(layout, "planar.pitch", what, layout.design.planar.pitch * LONGEST / longest)
+    apart, border = rig.pins[1][0] - rig.pins[0][0], layout.design.housing.border
+    x0, y0, x1, y1 = rig.box
+    rest = OFF_AXIS - LEVEL - 1e3 * rig.zone / min(x1 - x0, y1 - y0)  # mrad that the pins' places may take
+    lacking = max(1e3 * cradle.PIN_ZONE / rest - apart, 0.0) / 2.0
+    what = f"{apart:g} mm between the cradle's two pins do not hold the array square"
+    yield from no_less(layout, "housing.border", what, border + ceil(1e3 * lacking) / 1e3)
+    what = "the cradle's clamp finds no cover beside the link"
+    yield from no_less(layout, "housing.border", what, border + LEAST_LIP - rig.lip)
 
 
 @fits
@@ -112,23 +113,15 @@ def cells_bear_hangers(layout: PlanarLayout) -> Iterator[Finding]:
     rig = CradleLayout(layout)
     for along in "zx":
         for load in loads(rig, along):
-            what = (
-                f"the calibration's hanger alone loads a {load.kind} cell with {load.tare:.2g} N along "
-                f"{along}"
-            )
-            yield from at_least(
-                "rating.force", what, load.heaviest, 2.0 * load.tare, f"{2.0 * load.tare:.2g} N or more borne"
-            )
+            least, whose = 2.0 * load.tare, f"a {load.kind} cell with {load.tare:.2g} N along {along}"
+            what = f"the calibration's hanger alone loads {whose}"
+            yield from at_least("rating.force", what, load.heaviest, least, f"{least:.2g} N or more borne")
 
 
 FITS = (cap_fits_pads, cradle_holds_array, cells_bear_hangers)
 BORE, OF_PAD, RUNS = "cap: bore diameter", f"post: {PAD}", "cap: dimple off its bore"
-TABLE, SEAT, FEET, PINS = (
-    "calibration table: level, mm/m",
-    "cradle: seat",
-    "cradle: feet",
-    "cradle: pins' places",
-)
+TABLE, SEAT = "calibration table: level, mm/m", "cradle: seat"
+FEET, PINS = "cradle: feet", "cradle: pins' places"
 
 
 def requirements(layout: PlanarLayout, known: dict[str, DimensionLimits]) -> list[Requirement]:
@@ -136,17 +129,18 @@ def requirements(layout: PlanarLayout, known: dict[str, DimensionLimits]) -> lis
     rig, name = CradleLayout(layout), layout.design.name
     zone, x0, y0, x1, y1 = rig.zone, *rig.box
     of = f"{name}-cradle"
-    bore, pad = rig.bore, layout.design.post.pad
-    known[BORE] = variable(BORE, 0.0, bore.upper - bore.nominal, stated=((f"{name}-cap", bore.name),))
-    known[OF_PAD] = variable(OF_PAD, -PAD_FIELD, 0.0, stated=((f"{name}-post", PAD),))
-    known[RUNS] = variable(RUNS, -LATHE, LATHE)
-    known[TABLE] = variable(TABLE, -LEVEL, LEVEL)
-    known[SEAT] = variable(SEAT, -zone, zone, stated=((of, "seat"),))
-    feet = ((of, "foot x"), (of, "foot y"))
-    known[FEET] = variable(FEET, -zone, zone, stated=feet)
-    half = cradle.PIN_ZONE / 2.0
-    known[PINS] = variable(PINS, -half, half, 2, stated=((of, "pin hole holes"),))
-    play = bore.nominal - pad
+    bore, half = rig.bore, cradle.PIN_ZONE / 2.0
+    field, play = bore.upper - bore.nominal, bore.nominal - layout.design.post.pad
+    own = (
+        variable(BORE, 0.0, field, stated=((f"{name}-cap", bore.name),)),
+        variable(OF_PAD, -PAD_FIELD, 0.0, stated=((f"{name}-post", PAD),)),
+        variable(RUNS, -LATHE, LATHE),
+        variable(TABLE, -LEVEL, LEVEL),
+        variable(SEAT, -zone, zone, stated=((of, "seat"),)),
+        variable(FEET, -zone, zone, stated=((of, "foot x"), (of, "foot y"))),
+        variable(PINS, -half, half, 2, stated=((of, "pin hole holes"),)),
+    )
+    known |= {v.name: v for v in own}
     apart, shorter = rig.pins[1][0] - rig.pins[0][0], min(x1 - x0, y1 - y0)
 
     def turned(who: str, *terms: tuple[str, float]) -> Requirement:
@@ -155,15 +149,10 @@ def requirements(layout: PlanarLayout, known: dict[str, DimensionLimits]) -> lis
         asked = summed(f"calibration: {who}", -OFF_AXIS, OFF_AXIS, 0.0, own)
         return replace(asked, unit="mrad", fields=("calibration.squareness",))
 
+    off = ((BORE, 0.5), (OF_PAD, -0.5), (RUNS, 1.0))
     return [
         summed("calibration: cap slips over the pads", LEAST_PLAY, inf, play, ((BORE, 1.0), (OF_PAD, -1.0))),
-        summed(
-            "calibration: load in the pad's middle",
-            -inf,
-            OFF_MIDDLE,
-            play / 2.0,
-            ((BORE, 0.5), (OF_PAD, -0.5), (RUNS, 1.0)),
-        ),
+        summed("calibration: load in the pad's middle", -inf, OFF_MIDDLE, play / 2.0, off),
         turned("load along z", (SEAT, shorter)),
         turned("load across, out of the pads' plane", (FEET, cradle.THICK)),
         turned("load across, in the pads' plane", (FEET, shorter), (PINS, apart)),

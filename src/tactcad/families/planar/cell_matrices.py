@@ -7,14 +7,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from tactcad.design.csv_table import Field, read
+from tactcad.design.csv_table import Field, read, refuse_duplicates
 from tactcad.design.messages import InputError
 from tactcad.lab.readings import ELEMENT
 from tactcad.report.report import plain
 
-Array = NDArray[np.float64]
+from .beam import Array, Whole
+
 AXES = "xyz"
 GRID = tuple(f"{i}{j}" for i in AXES for j in AXES)
 PAIRS = ([0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2])  # rows and columns of a covariance's entries
@@ -90,7 +90,7 @@ def to_text(cells: Sequence[CellMatrix], level: float) -> str:
     if cells[0].stiffness_limit:
         lines.append(
             f"K is the design's, known within {100 * cells[0].stiffness_limit:.2g} % by the foil's "
-            "thickness; a column `sink` (mm) measures it"
+            "thickness and cut; a column `sink` (mm) measures it"
         )
     return "\n".join(lines) + "\n"
 
@@ -117,7 +117,7 @@ def to_csv(cells: Sequence[CellMatrix]) -> str:
 class Matrices:
     """Matrices of calibrated cells; arrays, [cell]: see `CellMatrix`."""
 
-    element: NDArray[np.int64]
+    element: Whole
     matrix: Array
     bow: Array
     bow_variance: Array
@@ -132,9 +132,8 @@ class Matrices:
 def read_matrices(path: str) -> Matrices:
     """A calibration from the CSV of `to_csv`. Raises InputError if it is not one."""
     rows = read(path, (ELEMENT, *FIELDS))
+    refuse_duplicates(rows, ("element",))
     number = rows.values("element").astype(int)
-    if len(set(number.tolist())) < len(number):
-        raise InputError(path, "an element is listed twice", value=number.tolist(), legal="each once")
     shapes: dict[int, tuple[int, ...]] = {1: (), 3: (3,), 9: (3, 3), 18: (3, 6)}
     held = {
         name: np.stack([rows.values(f.name) for f in some], axis=1).reshape(-1, *shapes[len(some)])

@@ -11,6 +11,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise, product
 from math import dist
+from typing import cast
 
 from tactcad.contour import Arc, Contour, Line
 from tactcad.design.messages import CheckFailure
@@ -30,7 +31,7 @@ from tactcad.drawing.parts.measures import (
     rounds,
 )
 from tactcad.drawing.parts.prism import FRONT, side_view
-from tactcad.drawing.parts.sheet_plan import Callout, Dimension, Linear, SheetPlan, Side, View
+from tactcad.drawing.parts.sheet_plan import Dimension, Linear, SheetPlan, Side, View
 from tactcad.drawing.parts.sketch import ALIKE, Coordinate, Sketch, closed, view_of
 from tactcad.drawing.parts.tolerances import with_marks
 from tactcad.parts.language.description import Part
@@ -63,9 +64,7 @@ def cells_of(part: Part) -> list[SheetCell]:
     for n, contour in enumerate(found):
         middle = _middle(contour)
         own[min(middles, key=lambda at: dist(at, middle))].append(n)
-    cells = [
-        SheetCell(at, tuple(some), frozenset(_about(found[n], at) for n in some)) for at, some in own.items()
-    ]
+    cells = (SheetCell(at, tuple(ns), frozenset(_about(found[n], at) for n in ns)) for at, ns in own.items())
     return sorted(cells, key=lambda cell: (round(cell.at[1], 6), round(cell.at[0], 6)))
 
 
@@ -128,26 +127,22 @@ def cell_plan(part: Part, notes: Sequence[str], spare: bool = False) -> SheetPla
         _repeated(sketch, shown, owner)
     marked = with_marks(shown, views)
     closed(sketch, marked)
-    pitch = [round(abs(last[k].at[k] - cells[0].at[k]) / n, 6) for k in (0, 1) if (n := _count(cells, k) - 1)]
-    told = [*notes, *_pattern_notes(kinds, pitch)]
-    return SheetPlan(shown, sketch.values, tuple(sketch.conventions), marked, tuple(told))
+    counts = [len({round(c.at[k], 6) for c in cells}) - 1 for k in (0, 1)]
+    pitch = [round(abs(last[k].at[k] - cells[0].at[k]) / n, 6) for k, n in enumerate(counts) if n]
+    told = (*notes, _pattern_note(kinds, pitch))
+    return SheetPlan(shown, sketch.values, tuple(sketch.conventions), marked, told)
 
 
-def _pattern_notes(kinds: Sequence[Sequence[SheetCell]], pitch: Sequence[float]) -> Iterator[str]:
-    """Notes on the cells that the details describe."""
+def _pattern_note(kinds: Sequence[Sequence[SheetCell]], pitch: Sequence[float]) -> str:
+    """A note on the cells that the details describe."""
     at = f", at a pitch of {pitch[0]:g} exactly" if pitch else ""
     if len(kinds) == 1:
-        yield f"All {len(kinds[0])} openings as X{at}"
-        return
+        return f"All {len(kinds[0])} openings as X{at}"
     x, z = (len(some) for some in kinds)
-    yield (
+    return (
         f"{x} cells as X, the first at lower left, and {z} as Z, alternating like a chessboard{at}; the four "
         "beams of a cell are alike, each a quarter turn on"
     )
-
-
-def _count(cells: Sequence[SheetCell], k: int) -> int:
-    return len({round(c.at[k], 6) for c in cells})
 
 
 def _shown(part: Part, first: Sequence[SheetCell], last: Sequence[SheetCell]) -> Part:
@@ -187,13 +182,10 @@ def _front_view(sketch: Sketch, part: Part, shown: Part, count: int) -> View:
     points += [Coordinate(f"{r.label} {'xy'[k]}", r.owner.place(k), r.at) for r in holes for k in (0, 1)]
     if not any(r.hole.name == SPIGOT for r in holes):
         points += _edges(shown)
-    sides: tuple[Side, Side] = ("top", "right")
-    runnings = [
-        running_along(
-            sketch, view, side, k, [c for c in points if c.variable and c.variable.quantity == "xy"[k]]
-        )
-        for k, side in enumerate(sides)
-    ]
+    sides, runnings = cast(tuple[Side, Side], ("top", "right")), []
+    for k, side in enumerate(sides):
+        own = [c for c in points if c.variable and c.variable.quantity == "xy"[k]]
+        runnings.append(running_along(sketch, view, side, k, own))
     return replace(
         view,
         hidden=False,
@@ -218,11 +210,11 @@ def _repeated(sketch: Sketch, shown: Part, owner: Owner) -> None:
     first, contour = Owner("opening", 0), shown.extrusion.openings[owner.number or 0]
     for i, s in enumerate(contour):
         for k, centre in product((0, 1), (False, True) if isinstance(s, Arc) else (False,)):
-            a, b = (
+            spans = (
                 Span(level(Spot(o, 0).place(k)), level(Spot(o, i, centre).place(k))) for o in (first, owner)
             )
             if i or centre:
-                sketch.convention(MeasureDifference(a, b))
+                sketch.convention(MeasureDifference(*spans))
 
 
 def _cell_view(
@@ -233,32 +225,23 @@ def _cell_view(
     for owner, contour in zip(owners, openings):
         for row in conventions(owner, contour):
             sketch.convention(row)
-    boxes = [contour.box for contour in openings]
-    x0, y0 = (min(b[k] for b in boxes) for k in (0, 1))
-    x1, y1 = (max(b[k] for b in boxes) for k in (2, 3))
+    low_x, low_y, high_x, high_y = zip(*(contour.box for contour in openings))
+    x0, y0, x1, y1 = min(low_x), min(low_y), max(high_x), max(high_y)
     away = AROUND * (x1 - x0)
     window = (x0 - away, y0 - away, x1 + away, y1 + away)
     view = View(label, *FRONT, (x0, y0, x1, y1), label=label, window=window, room=room, hidden=False)
-    turns = len(owners)
-    if turns == 1:
-        linears = _square(sketch, owners[0], openings[0])
-    else:
-        linears = _beams(sketch, shown, cell, owners)
-    arcs = [
-        (f"{label} radius", Radius(owners[0], i), s) for i, s in enumerate(openings[0]) if isinstance(s, Arc)
-    ]
-    callouts = [_for_all(c, turns) for c in equal_radii(sketch, view, arcs)]
+    turns, first, name = len(owners), owners[0], f"{label} radius"
+    square = turns == 1
+    linears = _square(sketch, first, openings[0]) if square else _beams(sketch, shown, cell, owners)
+    arcs = [(name, Radius(first, i), s) for i, s in enumerate(openings[0]) if isinstance(s, Arc)]
+    callouts = []
+    for callout in equal_radii(sketch, view, arcs):  # as the radius of as many equal openings
+        count, _, text = callout.lines[0].rpartition("× ")
+        whole = turns * int(count or 1)
+        callouts.append(replace(callout, lines=(f"{whole}× {text}" if whole > 1 else text,)))
     x, y = cell.at
     axes = (((x0, y), (x1, y)), ((x, y0), (x, y1)))
-    return replace(view, linears=tuple(linears), callouts=tuple(callouts), axes=axes if turns > 1 else ())
-
-
-def _for_all(callout: Callout, turns: int) -> Callout:
-    """The radius of as many equal openings."""
-    (line,) = callout.lines
-    count, mark, text = line.rpartition("× ")
-    whole = turns * int(count or 1)
-    return replace(callout, lines=(f"{whole}× {text}" if whole > 1 else text,))
+    return replace(view, linears=tuple(linears), callouts=tuple(callouts), axes=() if square else axes)
 
 
 def _square(sketch: Sketch, owner: Owner, contour: Contour) -> list[Linear]:
@@ -296,15 +279,15 @@ def _beams(sketch: Sketch, shown: Part, cell: SheetCell, owners: Sequence[Owner]
                 sketch.convention(MeasureDifference(Span(cx, level(b.place(0))), Span(level(a.place(1)), cy)))
                 sketch.convention(MeasureDifference(Span(cy, level(b.place(1))), Span(cx, level(a.place(0)))))
 
-    def at(turn: int, edge: str, k: int, nth: int = 0) -> tuple[Level, Point]:
-        """Level along axis k, and a point, of the slot's nth edge of that name across the axis."""
+    def at(turn: int, edge: str, k: int) -> tuple[Level, Point]:
+        """Level along axis k, and a point, of the slot's first edge of that name across the axis."""
         contour = shown.extrusion.openings[owners[turn].number or 0]
         found = [
             (level(Spot(owners[turn], i).place(k)), max(s.start, s.end, key=lambda p: dist(p, cell.at)))
             for i, s in enumerate(contour)
             if isinstance(s, Line) and s.name.endswith(f" {edge}") and abs(s.start[k] - s.end[k]) < ALIKE
         ]
-        return found[nth]
+        return found[0]
 
     def line(name: str, side: Side, k: int, a: tuple, b: tuple, auxiliary: bool = False) -> Linear:
         d = Dimension(f"{name}, {kind}", (Span(a[0], b[0]),), auxiliary=auxiliary)

@@ -7,28 +7,22 @@ changes from rest, mT.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import hypot
 
 import numpy as np
-from numpy.typing import NDArray
 
-from .cell import wrench
+from .beam import Array
+from .cell import unit_loads
 from .cell_layout import CellPlace, Kind, PlanarLayout
 from .field import felt, sensitivity
 from .sensor import NEIGHBOURS, chip_matrix, magnet_lever
 
-Array = NDArray[np.float64]
 DOWN = np.array([1.0, 1.0, -1.0])  # a pressing force is along -z of the design
-NEWTON = 8  # steps to the root of a cubic that hardly bends
-
-
-def matrix(layout: PlanarLayout, kind: Kind) -> Array:
-    """The field by a force on the cell's own pad about rest, mT/N."""
-    return chip_matrix(layout, kind) * DOWN
 
 
 def bend(layout: PlanarLayout, kind: Kind, force: Array) -> Array:
-    """Difference of the field from `matrix` times forces, [n, 3]: the cell stiffens as it sinks, and a
-    magnet's field is nonlinear."""
+    """Difference of the field from the matrix at rest times forces, [n, 3]: the cell stiffens as it sinks,
+    and a magnet's field is nonlinear."""
     gap, lever = layout.design.hall.gap, magnet_lever(layout)
     change = felt(layout.magnet, gap, lever, _motion(layout, kind, force))
     change -= sensitivity(layout.magnet, gap, lever)[0]
@@ -37,9 +31,8 @@ def bend(layout: PlanarLayout, kind: Kind, force: Array) -> Array:
 
 def _motion(layout: PlanarLayout, kind: Kind, force: Array) -> Array:
     """Of the island, mm and rad, [n, 6]."""
-    load = np.stack([wrench(f, layout.pad_height) for f in np.eye(3)], axis=1)
-    motion = np.asarray(force * DOWN @ (kind.cell.compliance @ load).T)
-    motion[:, 2] = stiffened(kind, motion[:, 2])
+    motion = np.asarray(force * DOWN @ (kind.cell.compliance @ unit_loads(layout.pad_height)).T)
+    motion[:, 2] = kind.cell.sunk(motion[:, 2])
     return motion
 
 
@@ -68,8 +61,11 @@ def bow_variance(layout: PlanarLayout, kind: Kind, full: Array) -> Array:
 
 
 def stiffness_limit(layout: PlanarLayout) -> float:
-    """Largest relative deviation of a cell's stiffness by its foil's thickness."""
-    return (1.0 + layout.design.foil_tolerance / layout.design.planar.thickness) ** 3 - 1.0
+    """Relative deviation of a cell's stiffness by its foil's thickness and its cut, at their limits: two
+    standard deviations of each."""
+    t = layout.design.planar.thickness
+    foil, cut = (1.0 + layout.design.foil_tolerance / t) ** 3 - 1.0, layout.process.tolerance(t)
+    return max(hypot(foil, cut / k.table.beam_width + 3.0 * cut / k.beam_length) for k in layout.used)
 
 
 def all_bends(layout: PlanarLayout, kinds: Sequence[Kind], force: Array) -> Array:
@@ -81,18 +77,10 @@ def all_bends(layout: PlanarLayout, kinds: Sequence[Kind], force: Array) -> Arra
     return out
 
 
-def stiffened(kind: Kind, straight: Array) -> Array:
-    """Sink u of a cell that would sink by `straight` if its stiffness stayed: u (1 + c u^2) = straight."""
-    c, u = kind.cell.stiffening, straight.copy()
-    for _ in range(NEWTON):
-        u -= (u * (1.0 + c * u * u) - straight) / (1.0 + 3.0 * c * u * u)
-    return u
-
-
 def neighbours(layout: PlanarLayout, cells: Sequence[CellPlace]) -> Array:
     """The field at every chip by forces on the other pads, mT/N, [3 cell, 3 cell]; its own pad left out."""
     p, gap, lever = layout.design.planar, layout.design.hall.gap, magnet_lever(layout)
-    load = np.stack([wrench(f, layout.pad_height) for f in np.eye(3)], axis=1)
+    load = unit_loads(layout.pad_height)
     moves = {kind.name: kind.cell.compliance @ load * DOWN for kind in layout.used}
     slopes: dict[tuple[int, int], Array] = {}
     out = np.zeros((len(cells), 3, len(cells), 3))

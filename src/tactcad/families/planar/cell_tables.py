@@ -33,56 +33,49 @@ PLACE_LENGTH = 25.0  # mm, up to which an etched place keeps its tolerance: row 
 
 
 @dataclass(frozen=True)
+class FoilLimit:
+    """Of a length in the foil: the larger of a share of the foil's thickness and a least value, mm."""
+
+    share: float
+    least: float
+
+    def __call__(self, thickness: float) -> float:
+        return max(self.share * thickness, self.least)
+
+
+@dataclass(frozen=True)
 class FoilProcess:
-    """Limits of foil cutting, mm and shares of the foil's thickness: data/processes.csv."""
+    """Limits of foil cutting, mm: data/processes.csv. The tolerance is plus and minus on a width."""
 
     name: str
     thinnest: float
     thickest: float
-    slot_share: float
-    slot_least: float
-    web_share: float
-    web_least: float
-    inside_share: float
-    inside_least: float
-    tolerance_share: float
-    tolerance_least: float
+    slot: FoilLimit
+    web: FoilLimit
+    inside_radius: FoilLimit
+    tolerance: FoilLimit
     source: str
-
-    def slot(self, thickness: float) -> float:
-        return max(self.slot_share * thickness, self.slot_least)
-
-    def web(self, thickness: float) -> float:
-        return max(self.web_share * thickness, self.web_least)
-
-    def inside_radius(self, thickness: float) -> float:
-        return max(self.inside_share * thickness, self.inside_least)
-
-    def tolerance(self, thickness: float) -> float:
-        """Plus and minus on a width."""
-        return max(self.tolerance_share * thickness, self.tolerance_least)
 
     def place(self, length: float) -> float:
         """Diameter of a hole's position tolerance, mm, on a sheet of that length: the least up to
         PLACE_LENGTH, beyond in proportion (chosen)."""
-        return round(self.tolerance_least * max(1.0, length / PLACE_LENGTH), 3)
+        return round(self.tolerance.least * max(1.0, length / PLACE_LENGTH), 3)
 
 
-def _table(kind: type, name: str) -> dict[str, Any]:
-    text = {f for f, t in kind.__annotations__.items() if t == "str"}
-    return {
-        row["name"]: kind(
-            **{
-                key: value if key in text else int(value) if key == "addresses" else float(value)
-                for key, value in row.items()
-            }
-        )
-        for row in data_rows(__file__, name)
-    }
+def _process(row: dict[str, str]) -> FoilProcess:
+    pairs = ((row[f"{of}_share"], row[f"{of}_least"]) for of in ("slot", "web", "inside", "tolerance"))
+    slot, web, inside, cut = (FoilLimit(float(share), float(least)) for share, least in pairs)
+    low, high = float(row["thinnest"]), float(row["thickest"])
+    return FoilProcess(row["name"], low, high, slot, web, inside, cut, row["source"])
 
 
-CHIPS: dict[str, Chip] = _table(Chip, "chips")
-PROCESSES: dict[str, FoilProcess] = _table(FoilProcess, "processes")
+def _chip(row: dict[str, str]) -> Chip:
+    types: dict[str, type] = {"str": str, "int": int, "float": float}
+    return Chip(**{key: types[Chip.__annotations__[key]](value) for key, value in row.items()})
+
+
+CHIPS = {row["name"]: _chip(row) for row in data_rows(__file__, "chips")}
+PROCESSES = {row["name"]: _process(row) for row in data_rows(__file__, "processes")}
 
 
 @dataclass(frozen=True)
@@ -139,6 +132,7 @@ class Hall:
     gap: float = given(Number("mm", 0.2, 20, "magnet at rest to chip"), 1.5)
     board: float = given(Number("mm", 0.2, 5, "board that carries the chips"), 1.0)
     buses: int = given(Whole(1, 400, "buses, or lines of a multiplexer, that the chips share"), 4)
+    rate: float = given(Number("Hz", 0.01, 1000, "readings of every chip a second, at least"), 20.0)
 
 
 @dataclass(frozen=True)

@@ -8,40 +8,42 @@ answer is in `cell_answers`.
 
 from __future__ import annotations
 
-import argparse
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import astuple, dataclass, replace
+from itertools import product
 from math import ceil, floor, inf
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from tactcad.design.allowance import Allowance
 from tactcad.design.fields import Number, Numbers, TextLine, Whole, given
 from tactcad.design.files import read_text
-from tactcad.design.load import MOST_BYTES, read, read_table, unknown_field
+from tactcad.design.load import MOST_BYTES, read
 from tactcad.design.messages import InputError
 from tactcad.design.text_values import parse_toml
 from tactcad.design.tree import Identity
 from tactcad.parts.language.finding import Finding
-from tactcad.parts.rules.rule import wrong
-from tactcad.synthesis.target import origins_of
+from tactcad.parts.rules.rule import misfit, wrong
+from tactcad.synthesis.target import origins_of, tables_of
 
+from .beam import Array
 from .cell_board import why_none
 from .cell_layout import PlanarLayout
 from .cell_tables import Planar, PlanarDesign
+from .parts import EDGE, LAND_DEPTH
 from .rules import design_rules
-from .sensor import chip_matrix, closing_force, force_noise, pad_compliance, rated_force
+from .sensor import chip_matrix, force_noise, lowest, pad_compliance, rated_force
 
-Array = NDArray[np.float64]
 Z = 1.959964  # the normal distribution's quantile, of a 95 % interval
 POINTS = 9  # stiffnesses of the object at which the half-width is asked for, and of the curve
 STEP = 0.005  # mm, of a stop's gap; beams and islands in twice that
 WIDTHS = 6  # beams' widths of a kind that the grid tries, and half as many islands, gaps and pitches
 KINDS = ("measuring", "reference")
+TRIED = 300  # best choices of the grid that are tried with every rule
+STEPS = {"pitch": 0.4, "soft": 0.04, "stiff": 0.08, "island": 0.1, "gap": 0.1}  # mm, the first ones
+ROUNDS = 4  # of steps, each half of the one before
 
 
 def _range(low: float, high: float, unit: str, meaning: str) -> Numbers:
@@ -93,12 +95,9 @@ class CellMeans:
     )
 
 
-TABLES = {"target": CellWish, "object": CellObject, "planar": CellMeans}
-
-
 def tables() -> dict[str, type]:
     """Classes of a target file's tables, by name."""
-    return TABLES
+    return {"target": CellWish, "object": CellObject, "planar": CellMeans}
 
 
 @dataclass(frozen=True)
@@ -121,12 +120,7 @@ class CellTarget:
 def read_target(path: str | Path) -> CellTarget:
     """A planar target file. Raises InputError for what is missing, unknown, illegal or contradicts itself."""
     table = parse_toml(read_text(path, MOST_BYTES, "a target file (TOML)"), str(path))
-    for name, value in table.items():
-        if name not in (*TABLES, "origin"):
-            raise unknown_field(name, [*TABLES, "origin"], "tactcad schema target")
-        if not isinstance(value, dict):
-            raise InputError(name, "not a table", value=value, legal=f"a table [{name}]")
-    values = {name: read_table(kind, table.get(name, {}), name) for name, kind in TABLES.items()}
+    values, written = tables_of(table, tables())
     origins_of(table.get("origin", {}), values)
     wish, means = values["target"], values["planar"]
     named = wish.base
@@ -135,11 +129,9 @@ def read_target(path: str | Path) -> CellTarget:
         raise InputError("target.base", "not a planar design", value=named, legal="a design with [planar]")
     for where, pair in (("object.stiffness", values["object"].stiffness), ("planar.pitch", means.pitch)):
         if pair[0] > pair[1]:
-            raise InputError(
-                where, "its first value is above its second", value=list(pair), legal="low, high"
-            )
+            above = "its first value is above its second"
+            raise InputError(where, above, value=list(pair), legal="low, high")
     foils = means.foils or (base.planar.thickness,)
-    written = frozenset(f"{name}.{field}" for name in TABLES for field in table.get(name, {}))
     return CellTarget(wish, values["object"], replace(means, foils=foils), base, written)
 
 
@@ -167,18 +159,18 @@ class CellRead:
 def designed(t: CellTarget, c: CellChoice) -> PlanarDesign | None:
     """The base design with this choice, as many cells as the room takes, and roots as its process leaves
     them; None if the room is too small."""
-    b, h, m = t.base, t.base.housing, t.planar
-    borders = (h.border, h.border if h.side is None else h.side)
-    columns, rows = (
-        min(40, floor((room - 2.0 * border + b.planar.web) / c.pitch + 1e-9))
-        for room, border in zip((m.length, m.width), borders)
-    )
+    b, m = t.base, t.planar
+    rooms = zip((m.length, m.width), PlanarLayout(b).borders)
+    inside = [room - 2.0 * border + b.planar.web for room, border in rooms]
+    columns, rows = (min(40, floor(room / c.pitch + 1e-9)) for room in inside)
     if min(columns, rows) < 1 or columns * rows < m.cells:
         return None
+    title = "Planar array from a target"
+    own = replace(b.design, name=t.target.name, title=title, revision="A", unchanged={})
     planar = replace(b.planar, rows=rows, columns=columns, pitch=c.pitch, thickness=c.foil)
     d = replace(
         b,
-        design=replace(b.design, name=t.target.name, title="Planar array from a target", revision="A"),
+        design=own,
         planar=planar,
         measuring=replace(b.measuring, beam_width=c.soft),
         reference=replace(b.reference, beam_width=c.stiff, island=c.island),
@@ -189,9 +181,9 @@ def designed(t: CellTarget, c: CellChoice) -> PlanarDesign | None:
     process, corner = PlanarLayout(d).process, PlanarLayout(d).corner
     for name in KINDS:
         kind = getattr(d, name)
-        fillet = max(kind.fillet, corner)
-        slot = max(kind.slot, process.slot(c.foil), fillet + corner)
-        ear = max(kind.ear, 2.0 * corner, process.web(c.foil))
+        fillet = max(kind.fillet, corner + EDGE)
+        slot = max(kind.slot, process.slot(c.foil), fillet + corner + EDGE)
+        ear = max(kind.ear, 2.0 * corner + EDGE, process.web(c.foil))
         d = replace(d, **{name: replace(kind, fillet=fillet, slot=slot, ear=ear)})
     return replace(d, hall=replace(d.hall, buses=-(-columns * rows // PlanarLayout(d).chip.addresses)))
 
@@ -205,61 +197,60 @@ def with_buses(d: PlanarDesign) -> PlanarDesign:
 
 def with_stops(d: PlanarDesign) -> PlanarDesign:
     """Stops that close just above the rated force, as the rule on them asks."""
-    for name in KINDS:
-        layout = PlanarLayout(d)
-        kind = layout.kinds[name]
-        _, rated = rated_force(layout, kind)
-        sink = rated * float(kind.cell.compliance[2, 2])
-        roots = np.roots([kind.cell.stiffening, 0.0, 1.0, -sink])
-        straight = float(roots[np.abs(roots.imag) < 1e-9].real.max())
-        gap = max(straight, layout.process.thinnest)
-        gap = round(STEP * ceil(gap / STEP - 1e-9), 6)
+    layout = PlanarLayout(d)
+    ways = {name: lowest(layout, kind, rated_force(layout, kind)[1]) for name, kind in layout.kinds.items()}
+    for name, way in ways.items():
+        sunk = LAND_DEPTH if way > min(ways.values()) else 0.0
+        least = max(way + d.tolerance.stop_gap / 2.0 + sunk, layout.process.thinnest)
+        gap = round(STEP * ceil(least / STEP - 1e-9), 6)
         d = replace(d, **{name: replace(getattr(d, name), stop_gap=gap)})
-        assert closing_force(PlanarLayout(d), PlanarLayout(d).kinds[name]) >= rated
     return d
 
 
-def of_kind(layout: PlanarLayout, name: str) -> CellRead:
-    return read_at(layout, name, rated_force(layout, layout.kinds[name])[1])
-
-
-def read_at(layout: PlanarLayout, name: str, rated: float) -> CellRead:
+def of_kind(layout: PlanarLayout, name: str, rated: float | None = None) -> CellRead:
+    """A kind of cell read at its own rated force or another."""
     kind = layout.kinds[name]
+    rated = rated_force(layout, kind)[1] if rated is None else rated
     noise = force_noise(layout.chip, chip_matrix(layout, kind))
     return CellRead(float(1.0 / pad_compliance(kind, layout.pad_height)[2, 2]), rated, float(noise[2]))
 
 
-def fits(layout: PlanarLayout, name: str) -> bool:
-    """Whether a kind of cell keeps the rules on its contour and its beams: it has no figures otherwise."""
-    for rule in ("islands_fit_pitch", "beams_can_be_cut", "beams_in_range", "island_takes_post"):
-        if any(f.part.startswith(f"{name}.") for f in design_rules()[rule].find(layout)):
-            return False
-    return True
+def fits(layout: PlanarLayout, *names: str) -> bool:
+    """Whether these kinds of cells keep the rules on contours and beams: they have no figures otherwise."""
+    rules = ("islands_fit_pitch", "beams_can_be_cut", "beams_in_range", "island_takes_post")
+    found = (f for rule in rules for f in design_rules()[rule].find(layout))
+    return not any(f.part.startswith(tuple(f"{name}." for name in names)) for f in found)
 
 
-def variances(soft: CellRead, stiff: CellRead, m: CellMeans, k: Array) -> tuple[Array, Array, Array]:
+def variances(
+    soft: CellRead, stiff: CellRead, readings: int, matrices: float, k: Array
+) -> tuple[Array, Array, Array]:
     """Of ln K_obj at stiffnesses k: noise of the measuring cell, of the reference cell, and both matrices."""
     way_m, way_r = 1.0 / soft.stiffness + 1.0 / k, 1.0 / stiff.stiffness + 1.0 / k
     way = np.minimum(soft.rated * way_m, stiff.rated * way_r)
     slope = (1.0 / way_r - 1.0 / way_m) / k
     with np.errstate(divide="ignore"):
         one, other = (
-            (cell.noise * ways / way / slope) ** 2 / m.readings
+            (cell.noise * ways / way / slope) ** 2 / readings
             for cell, ways in ((soft, way_m), (stiff, way_r))
         )
-        return one, other, 2.0 * (m.matrices / slope) ** 2
+        return one, other, 2.0 * (matrices / slope) ** 2
 
 
 def half_width(soft: CellRead, stiff: CellRead, m: CellMeans, k: Array) -> Array:
     """Of the 95 % interval of K_obj, relative, at stiffnesses k; infinite where the kinds do not differ."""
     if stiff.stiffness <= soft.stiffness:
         return np.full(np.shape(k), np.inf)
-    return Z * np.sqrt(sum(variances(soft, stiff, m, k)))
+    return Z * np.sqrt(sum(variances(soft, stiff, m.readings, m.matrices, k)))
 
 
 def pair_half_width(t: CellTarget, layout: PlanarLayout) -> float:
     """The largest half-width over the target's range of a pair of the layout's kinds."""
-    soft, stiff = (of_kind(layout, name) for name in KINDS)
+    return widest(t, *(of_kind(layout, name) for name in KINDS))
+
+
+def widest(t: CellTarget, soft: CellRead, stiff: CellRead) -> float:
+    """The largest half-width over the target's range."""
     return float(half_width(soft, stiff, t.planar, t.points).max())
 
 
@@ -274,22 +265,19 @@ class CellFound:
     half_width: float
 
 
-def evaluated(t: CellTarget, c: CellChoice) -> CellFound | list[Finding]:
-    """What a choice gives, or the rules that it breaks."""
+def evaluated(t: CellTarget, c: CellChoice) -> CellFound | Finding:
+    """What a choice gives, or the rule that it breaks."""
     d = designed(t, c)
     if d is None:
-        return [wrong("planar.length", f"no room for {t.planar.cells} cells", t.planar.length, "more")]
-    layout = PlanarLayout(d)
-    rules: list[Any] = [*design_rules().values()]
-    if not all(fits(layout, name) for name in KINDS):
-        return next(b for rule in rules if (b := rule(layout)))
-    d = with_stops(d)
-    layout = PlanarLayout(d)
-    if broken := next((b for rule in rules if (b := rule(layout))), None):
+        return wrong("planar.length", f"no room for {t.planar.cells} cells", t.planar.length, "more")
+    layout: Any = PlanarLayout(d)
+    if fits(layout, *KINDS):
+        d = with_stops(d)
+        layout = PlanarLayout(d)
+    if broken := misfit(layout, design_rules().values()):
         return broken
     soft, stiff = (of_kind(layout, name) for name in KINDS)
-    d = with_buses(d)
-    return CellFound(c, d, soft, stiff, float(half_width(soft, stiff, t.planar, t.points).max()))
+    return CellFound(c, with_buses(d), soft, stiff, widest(t, soft, stiff))
 
 
 def grid(t: CellTarget) -> Iterator[tuple[float, CellChoice]]:
@@ -302,31 +290,17 @@ def grid(t: CellTarget) -> Iterator[tuple[float, CellChoice]]:
             widths = [round(float(w), 2) for w in np.geomspace(max(2.0 * foil, 0.1), 0.16 * pitch, WIDTHS)]
             islands = [round(float(i), 2) for i in np.linspace(b.reference.island, 0.55 * pitch, half)]
             first = CellChoice(foil, pitch, widths[0], widths[0], islands[0], gaps[0])
-            soft = [(c, r) for w in widths for g in gaps for c, r in _of(t, replace(first, soft=w, gap=g), 0)]
-            stiff = [
-                (c, r)
-                for w in widths
-                for i in islands
-                for g in gaps
-                for c, r in _of(t, replace(first, stiff=w, island=i, gap=g), 1)
-            ]
-            for c, m in soft:
-                for o, r in stiff:
-                    if c.gap == o.gap:
-                        width = float(half_width(m, r, t.planar, t.points).max())
-                        yield width, replace(o, soft=c.soft)
+            soft = [p for w, g in product(widths, gaps) for p in _of(t, replace(first, soft=w, gap=g), 0)]
+            tried = (replace(first, stiff=w, island=i, gap=g) for w, i, g in product(widths, islands, gaps))
+            stiff = [pair for c in tried for pair in _of(t, c, 1)]
+            for (c, m), (o, r) in product(soft, stiff):
+                if c.gap == o.gap:
+                    yield widest(t, m, r), replace(o, soft=c.soft)
 
 
 def _of(t: CellTarget, c: CellChoice, kind: int) -> Iterator[tuple[CellChoice, CellRead]]:
     if (d := designed(t, c)) and fits(layout := PlanarLayout(d), KINDS[kind]):
         yield c, of_kind(layout, KINDS[kind])
-
-
-TRIED = 300  # best choices of the grid that are tried with every rule
-
-
-STEPS = {"pitch": 0.4, "soft": 0.04, "stiff": 0.08, "island": 0.1, "gap": 0.1}  # mm, the first ones
-ROUNDS = 4  # of steps, each half of the one before
 
 
 def beside(t: CellTarget, c: CellChoice, shorter: float = 1.0) -> Iterator[tuple[str, CellChoice]]:
@@ -390,16 +364,6 @@ def search(t: CellTarget, until: float = inf) -> CellAnswer:
         if isinstance(found, CellFound):
             best = refined(t, found, until=until)
             break
-        refused = str(found[0])
+        refused = str(found)
     shown = tuple((f, p, w) for (f, p), w in sorted(front.items()))
     return CellAnswer(t, best, refused, shown, time.perf_counter() > until)
-
-
-def design(args: argparse.Namespace, asked: Allowance, ready: Callable[[], str]) -> int:
-    """`tactcad design` of a planar target: 0 if it is met or asks for no half-width, else 1; `ready` gives
-    the next command."""
-    from .cell_answers import answered
-
-    if asked.within is not None:
-        raise InputError("--within", "does not take planar targets", value=args.within, legal="none")
-    return answered(args, read_target(args.target), asked.seconds, ready)

@@ -10,30 +10,36 @@ from tactcad.parts.language.finding import Finding
 from .cell_board import why_none
 from .cell_layout import PlanarLayout
 from .cell_tables import PlanarDesign
-from .sensor import rated_force, rows
+from .sensor import rows
 
 
 def check_strength(design: PlanarDesign) -> Iterator[Finding]:
-    """A flag for each kind of cells rated below the force asked for, and for pads whose K is not linear up to
-    that force."""
+    """A flag for each kind of cells rated below the force asked for, for finite life at the rated force, and
+    for pads whose K is not linear up to it."""
     layout = PlanarLayout(design)
-    shown = {row.kind: row for row in rows(layout, "", None)}
+    every, r = [*zip(rows(layout, "", None), layout.elements)], design.rating
+    shown = {row.kind: (row, e.designator) for row, e in reversed(every)}  # the first of each kind
     for kind in layout.used:
-        row = shown[kind.name]
-        first = next(e.designator for e in layout.elements if e.kind.name == kind.name)
-        _, rated = rated_force(layout, kind)
-        if rated < design.rating.force * (1.0 - 1e-9):
+        row, first = shown[kind.name]
+        rated = row.rated_force
+        if rated < r.force * (1.0 - 1e-9):
             message = (
-                f"{kind.name} cells are rated at {rated:.3g} N with a shear of {design.rating.shear:g} of "
-                f"it, not at the {design.rating.force:g} N asked for: there a beam's root would have less "
-                f"than its safety of {design.rating.yield_factor:g} against yield"
+                f"{kind.name} cells are rated at {rated:.3g} N with a shear of {r.shear:g} of it, not at the "
+                f"{r.force:g} N asked for: there a beam's root would have less than its safety of "
+                f"{r.yield_factor:g} against yield"
             )
-            yield Finding("planar-rated-force", "flag", first, (), rated, design.rating.force, message)
+            yield Finding("planar-rated-force", "flag", first, (), rated, r.force, message)
+        if row.fatigue_factor < 1.0:
+            endured = row.fatigue_factor * rated
+            message = (
+                f"{kind.name} cells have finite life at their rated force of {rated:.3g} N (Goodman factor "
+                f"below 1); put on and off, {endured:.3g} N are borne as often as the fatigue strength holds"
+            )
+            yield Finding("planar-fatigue", "flag", first, (), endured, rated, message)
         if row.linear_force < rated:
             message = (
-                f"{kind.name} cells stiffen by {100 * design.rating.linearity:g} % at "
-                f"{row.linear_force:.3g} N, below their rated "
-                f"force of {rated:.3g} N: readings beyond it are to be corrected"
+                f"{kind.name} cells stiffen by {100 * r.linearity:g} % at {row.linear_force:.3g} N, below "
+                f"their rated force of {rated:.3g} N: readings beyond it are to be corrected"
             )
             yield Finding("planar-linear", "flag", first, (), row.linear_force, rated, message)
 

@@ -65,13 +65,6 @@ def pull(magnet: Magnet, away: tuple[float, float]) -> float:
     return 2.0 * charge * float(np.hypot((weight * dx).sum(), (weight * dy).sum()))
 
 
-def on_axis(magnet: Magnet, z: float) -> float:
-    """Closed form on the axis, z below the lower face, mT: Br/2 ((z + m)/sqrt((z + m)^2 + R^2) - z/sqrt(z^2
-    + R^2))."""
-    far, R = z + magnet.height, magnet.radius
-    return 500.0 * magnet.remanence * (far / np.hypot(far, R) - z / np.hypot(z, R))
-
-
 def felt(
     magnet: Magnet, gap: float, lever: float, motion: NDArray, beside: tuple[float, float] = (0.0, 0.0)
 ) -> NDArray:

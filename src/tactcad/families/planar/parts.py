@@ -12,13 +12,15 @@ chips.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
 from math import ceil
-from typing import Any, cast
+from typing import Any, Literal, cast
 
 from tactcad.contour import Contour, Corner, circle, rectangle, rounded_polygon
 from tactcad.parts.array.clamp import PRESS_FIT, pressed
 from tactcad.parts.array.element import sheet_material
+from tactcad.parts.array.measurements import MICROSCOPE, Measurement
 from tactcad.parts.bought.screws import CAP_SCREW_LENGTHS
 from tactcad.parts.bought.standard_parts import LEAST_PLAY, dowel_diameter, dowel_lengths, dowel_limits
 from tactcad.parts.language.description import (
@@ -35,7 +37,7 @@ from tactcad.parts.language.limits import FACES, Characteristic, Geometric, with
 from tactcad.parts.language.metric import METRIC, tapped_through
 from tactcad.parts.language.stock import ANODISED, BREAK_EDGES, FRAME, FRAME_DATUMS, PLACE, plate
 
-from .cell_layout import Kind, PlanarLayout
+from .cell_layout import CellPlace, Kind, PlanarLayout
 from .cell_tables import FoilProcess
 
 SCREW, DOWEL = "M2", "2"
@@ -44,27 +46,31 @@ POST_LENGTH, POST_TOLERANCE = "length over the shoulder", 0.01  # mm, plus and m
 PAD = "pad side diameter"
 PAD_FIELD = 0.02  # mm by which a pad may be smaller than drawn; chosen: a cap slips over it
 SPIGOT = 0.01  # mm by which a post's spigot may be thinner than drawn; chosen, likewise
-MAGNET_LIMIT = (
-    0.02  # mm, plus and minus, of a magnet's diameter and height; chosen: ground, or picked by micrometer
-)
+MAGNET_LIMIT = 0.02  # mm, plus and minus, of a magnet's sizes; chosen: ground, or picked by micrometer
 SPIGOT_SHORT = 0.02  # mm that a spigot ends inside the foil; chosen
 FOOT_THICKNESS = 0.02  # mm, plus and minus; chosen: precision strip
-DOWEL_HOLE = "dowel hole diameter"
+DOWEL_HOLE, PRESSED = "dowel hole diameter", f"{PRESS_FIT}, the pin pressed in"
 # Zone of dowel holes and flatness of the stop face, mm: chosen, achievable by a jig borer and a fine mill in
 # one clamping; field of a reamed hole: ISO 286, H8 of 1 to 3 mm; depth of the sunk lands, plus and minus:
 # chosen.
 PLATE_ZONE, STOP_FLAT, REAMED, LAND_DEPTH = 0.02, 0.01, 0.014, 0.01
+EDGE = 0.01  # mm of straight edge between a foil's rounded corners; chosen: what its sheet can dimension
+BORED = 0.05  # mm by which wells and posts' openings may be wider than drawn; chosen: a drill
 FOOT_INSET = 0.03  # mm of island around its foot plate; chosen: the etching's tolerance
 WEB = 0.8  # mm of base left over the chips' pocket, at least: checks/data/shop.toml's floor of a pocket
 FRAME_CORNER = 0.5  # mm; chosen: a cutter of 1 mm, and room for the outer chips
 COPPER = 1.4, 0.6  # mm of tracks and vias beyond the outer chips along x and y: cell_board.CLOSE
 CHIP_ROOM = 0.2  # mm above and around a chip; chosen: soldered boards' usual tolerance
+TABS = "tabs, if any, on the upper and right edges, dressed flush"  # the others are datums, and lie on pins
 SPRING_STEEL = Material("1.4310", 7900, "+C1300", "EN 10151")
 NEODYMIUM = Material("NdFeB, nickel plated", 7500)
 STAINLESS_BAR = Material("X8CrNiS18-9 (1.4305)", 7900, standard="EN 10088-3", magnetic="no")
 
 
-def screw_places(layout: PlanarLayout) -> tuple[tuple[float, float], ...]:
+Places = tuple[tuple[float, float], ...]
+
+
+def screw_places(layout: PlanarLayout) -> Places:
     """Along the border, corners included, at most LARGEST_STEP apart; none for bonded layers."""
     if not layout.screwed:
         return ()
@@ -75,7 +81,7 @@ def screw_places(layout: PlanarLayout) -> tuple[tuple[float, float], ...]:
     return tuple((round(u, 2), round(v, 2)) for u, v in along + up)
 
 
-def dowel_places(layout: PlanarLayout) -> tuple[tuple[float, float], ...]:
+def dowel_places(layout: PlanarLayout) -> Places:
     """Two, midway between a corner's screw and the next one along x, at opposite corners; none for bonded
     layers."""
     if not layout.screwed:
@@ -104,15 +110,10 @@ def dowel_length(layout: PlanarLayout) -> float | None:
     return max((n for n in dowel_lengths(DOWEL) if n <= room), default=None)
 
 
-def land_diameter(layout: PlanarLayout) -> float:
-    """Diameter of the sunk lands under the kind of cell with the longer travel, mm: WEB stays between
-    neighbours."""
-    return round(layout.design.planar.pitch - WEB, 9)
-
-
-def _outline(layout: PlanarLayout) -> Contour:
+def _plain(layout: PlanarLayout, thickness: float, openings: tuple[Contour, ...] = ()) -> Extrusion:
+    """A layer as long and wide as the array."""
     x, y = layout.half
-    return rectangle(-x, -y, x, y)
+    return Extrusion(rectangle(-x, -y, x, y), thickness, openings)
 
 
 def foil_zone(layout: PlanarLayout, process: FoilProcess) -> float:
@@ -132,6 +133,11 @@ def dowel_bore(layout: PlanarLayout, process: FoilProcess | None, thickness: flo
     return within(DOWEL_HOLE, _up(least + cut), cut, between=("dowel_hole",))
 
 
+def pin_bore(pin: str) -> Characteristic:
+    """Limits of a jig's holes that its pins are pressed into."""
+    return replace(pressed(float(pin)), name="pin hole diameter", between=("pin_hole",))
+
+
 def spigot_bore(layout: PlanarLayout, process: FoilProcess, thickness: float) -> Characteristic:
     """Limits of the hole for a post's spigot in a sheet: the thickest spigot passes the least hole."""
     cut = process.tolerance(thickness)
@@ -144,34 +150,27 @@ def _up(size: float) -> float:
     return ceil(200.0 * size - 1e-6) / 200.0
 
 
-def _through(
-    layout: PlanarLayout, thickness: float, bore: Characteristic, tapped: bool = False
-) -> list[Feature]:
-    """The screws' and dowels' holes of a layer, along +z from its lower face; a press-fit hole is modelled as
-    wide as the pin."""
-    m = METRIC[SCREW]
-    holes: list[Feature] = []
-    for x, y in screw_places(layout):
-        if tapped:
-            holes.append(tapped_through("screw", SCREW, (x, y, 0.0), (0, 0, 1), thickness))
-        else:
-            holes.append(Hole("screw", (x, y, 0.0), (0, 0, 1), m.clearance, thickness, True))
-    pressed_in = bore.upper < bore.nominal
-    wide = dowel_diameter(DOWEL) if pressed_in else round((bore.lower + bore.upper) / 2.0, 6)
-    fit = f"{PRESS_FIT}, the pin pressed in" if pressed_in else ""
-    for x, y in dowel_places(layout):
-        holes.append(Hole("dowel_hole", (x, y, 0.0), (0, 0, 1), wide, thickness, True, tolerance=fit))
-    return holes
+def bored(
+    name: str, places: Iterable[tuple[float, float]], diameter: float, depth: float, fit: str = ""
+) -> list[Hole]:
+    """Holes through a layer, along +z from its lower face."""
+    return [Hole(name, (x, y, 0.0), (0, 0, 1), diameter, depth, True, tolerance=fit) for x, y in places]
+
+
+def _through(layout: PlanarLayout, t: float, bore: Characteristic, tapped: bool = False) -> list[Feature]:
+    """The screws' and dowels' holes of a layer, t thick; a press-fit hole is modelled as wide as the pin."""
+    screws = bored("screw", screw_places(layout), METRIC[SCREW].clearance, t)
+    if tapped:
+        screws = [tapped_through("screw", SCREW, hole.at, (0, 0, 1), t) for hole in screws]
+    wide, fit = round((bore.lower + bore.upper) / 2.0, 6), ""
+    if bore.upper < bore.nominal:
+        wide, fit = dowel_diameter(DOWEL), PRESSED
+    return [*screws, *bored("dowel_hole", dowel_places(layout), wide, t, fit)]
 
 
 def _stated(layout: PlanarLayout, *bores: Characteristic) -> tuple[Characteristic, ...]:
     """Limits of holes; none for dowels if no layer has them."""
     return tuple(c for c in bores if c.name != DOWEL_HOLE or layout.screwed)
-
-
-def contour_note(process: FoilProcess, thickness: float) -> str:
-    cut = process.tolerance(thickness)
-    return f"{process.name}; contour within ±{cut:.3g} of the DXF's unless a limit is given"
 
 
 def _placed(features: Sequence[Feature], zones: Mapping[str, float]) -> dict[str, Any]:
@@ -185,73 +184,72 @@ def _placed(features: Sequence[Feature], zones: Mapping[str, float]) -> dict[str
     return {"geometric": places, "datums": FRAME_DATUMS if places else ()}
 
 
-def _round_holes(layout: PlanarLayout, name: str, diameter: float, thickness: float) -> list[Feature]:
-    return [Hole(name, (e.x, e.y, 0.0), (0, 0, 1), diameter, thickness, True) for e in layout.elements]
+def _sheet(
+    layout: PlanarLayout,
+    number: str,
+    name: str,
+    body: Extrusion,
+    features: Sequence[Feature],
+    limits: tuple[Characteristic, ...],
+    colour: str,
+    note: tuple[str, ...] = (),
+    kind: Literal["", "element", "cells"] = "",
+    material: Material = SPRING_STEEL,
+) -> Part:
+    """A part that is cut from a sheet by its contour; of a kind of all cells, its holes have their places."""
+    process = layout.sheet_process(body.thickness)
+    cut, zone = process.tolerance(body.thickness), foil_zone(layout, process)
+    return Part(
+        part_no=f"{layout.design.name}-{number}",
+        name=name,
+        process=cast(Process, process.name),
+        material=material,
+        body=body,
+        features=tuple(features),
+        colour=colour,
+        notes=(f"{process.name}; contour within ±{cut:.3g} of the DXF's unless a limit is given", *note),
+        characteristics=_stated(layout, *limits),
+        kind=kind,
+        **_placed(features if kind else (), {"spigot": zone, "dowel_hole": zone, "screw": PLACE}),
+    )
 
 
 def foil(layout: PlanarLayout) -> Part:
     """The foil: every cell's four slots, spigot, screw and dowel holes."""
-    d, t = layout.design, layout.design.planar.thickness
+    d, t, process = layout.design, layout.design.planar.thickness, layout.process
     slots = tuple(s for e in layout.elements for s in e.kind.slots(layout.corner, (e.x, e.y)))
-    cut, zone = layout.process.tolerance(t), foil_zone(layout, layout.process)
-    bore, spigot = dowel_bore(layout, layout.process, t), spigot_bore(layout, layout.process, t)
-    features = (*_round_holes(layout, "spigot", spigot.nominal, t), *_through(layout, t, bore))
-    beams = [
-        c
-        for kind in layout.used
-        for c in (
-            within(
-                f"beam width, {kind.name}", kind.table.beam_width, cut, True, kind.named("beam a", "beam b")
-            ),
-            within(f"beam length, {kind.name}", kind.beam_length, cut, between=kind.named("root", "frame")),
-        )
-    ]
-    return Part(
-        part_no=f"{d.name}-foil",
-        name="Foil",
-        process=cast(Process, layout.design.planar.process),
-        material=sheet_material(d),
-        body=Extrusion(_outline(layout), t, slots),
-        features=features,
-        colour="#c9ccd1",
-        notes=(contour_note(layout.process, t), "do not bend, do not tumble; packed flat between cards"),
-        characteristics=(
-            within("thickness", t, d.foil_tolerance, True, between=FACES),
-            *beams,
-            spigot,
-            *_stated(layout, bore),
-        ),
-        kind="element",
-        **_placed(features, {"spigot": zone, "dowel_hole": zone, "screw": PLACE}),
-    )
+    cut, bore, spigot = process.tolerance(t), dowel_bore(layout, process, t), spigot_bore(layout, process, t)
+    holes = [*bored("spigot", layout.places, spigot.nominal, t), *_through(layout, t, bore)]
+    limits = [within("thickness", t, d.foil_tolerance, True, between=FACES)]
+    for k in layout.used:
+        sides, ends = k.named("beam a", "beam b"), k.named("root", "frame")
+        limits.append(within(f"beam width, {k.name}", k.table.beam_width, cut, True, sides))
+        limits.append(within(f"beam length, {k.name}", k.beam_length, cut, between=ends))
+    own, body = (*limits, spigot, bore), _plain(layout, t, slots)
+    note = (TABS, "do not bend, do not tumble; packed flat between cards")
+    return _sheet(layout, "foil", "Foil", body, holes, own, "#c9ccd1", note, "element", sheet_material(d))
 
 
 def foot(layout: PlanarLayout, kind: Kind) -> Part:
     """The plate that keeps an island rigid: its outline, a little inside, with the spigot's hole."""
-    d = layout.design
-    t = d.post.foot
-    process = layout.sheet_process(t)
-    bore = spigot_bore(layout, process, t)
-    return Part(
-        part_no=f"{d.name}-foot-{kind.name}",
-        name=f"Foot plate, {kind.name} cell",
-        process=cast(Process, process.name),
-        material=SPRING_STEEL,
-        body=Extrusion(kind.island_outline(layout.sheet_corner(t), FOOT_INSET), t),
-        features=(Hole("spigot", (0, 0, 0), (0, 0, 1), bore.nominal, t, True),),
-        colour="#8f9aa8" if kind.name == "measuring" else "#5b6673",
-        notes=(contour_note(process, t),),
-        characteristics=(within("thickness", t, FOOT_THICKNESS, between=FACES), bore),
-    )
+    t = layout.design.post.foot
+    bore = spigot_bore(layout, layout.sheet_process(t), t)
+    body = Extrusion(kind.island_outline(layout.sheet_corner(t), FOOT_INSET), t)
+    hole = bored("spigot", [(0.0, 0.0)], bore.nominal, t)
+    own = (within("thickness", t, FOOT_THICKNESS, between=FACES), bore)
+    name, colour = f"Foot plate, {kind.name} cell", "#8f9aa8" if kind.name == "measuring" else "#5b6673"
+    note = ("plates of both kinds from one strip: the posts stand on them",)
+    return _sheet(layout, f"foot-{kind.name}", name, body, hole, own, colour, note)
 
 
 def post(layout: PlanarLayout) -> Part:
     """A turned post: spigot through foot plate and foil, shoulder on the foot plate, pad on top; z = 0 its
     shoulder."""
     d = layout.design
-    shoulder = layout.design.planar.thickness + d.post.foot
+    shoulder = d.planar.thickness + d.post.foot
     up, down = round(layout.pad_z - shoulder, 9), round(-shoulder + SPIGOT_SHORT, 9)
-    r, s = d.post.pad / 2.0, d.post.spigot / 2.0
+    pad, spigot = d.post.pad, d.post.spigot
+    r, s = pad / 2.0, spigot / 2.0
     points = [(0.0, down), (s, down), (s, 0.0), (r, 0.0), (r, up), (0.0, up)]
     names = ("end", "spigot", "shoulder", "pad side", "pad", "axis")
     return Part(
@@ -259,72 +257,50 @@ def post(layout: PlanarLayout) -> Part:
         name="Post",
         process="turned",
         material=STAINLESS_BAR,
-        body=Revolution(_polygon(points, names)),
+        body=Revolution(rounded_polygon([Corner(p, 0.0, n) for p, n in zip(points, names)])),
         colour="#d8d3c4",
         notes=(BREAK_EDGES.replace("0.2", "0.05"), "pad's edge 0.1 round", "turned in one clamping"),
         characteristics=(
             within(POST_LENGTH, up, POST_TOLERANCE, between=("shoulder", "pad")),
-            Characteristic(
-                PAD, d.post.pad, d.post.pad, round(d.post.pad - PAD_FIELD, 6), between=("pad side",)
-            ),
-            Characteristic(
-                "spigot diameter", d.post.spigot, d.post.spigot, d.post.spigot - SPIGOT, between=("spigot",)
-            ),
+            Characteristic(PAD, pad, pad, round(pad - PAD_FIELD, 6), between=("pad side",)),
+            Characteristic("spigot diameter", spigot, spigot, spigot - SPIGOT, between=("spigot",)),
         ),
     )
-
-
-def _polygon(points: list[tuple[float, float]], names: tuple[str, ...]) -> Contour:
-    return rounded_polygon([Corner(p, 0.0, n) for p, n in zip(points, names)])
 
 
 def magnet(layout: PlanarLayout) -> Part:
     """A disc magnet, its upper face at z = 0."""
     m = layout.design.magnet
-    name = f"MAGNET-{m.diameter:g}x{m.height:g}"
+    what = f"disc magnet {m.diameter:g} x {m.height:g} mm, each ±{MAGNET_LIMIT:g}, axial"
     return Part(
-        part_no=name,
+        part_no=f"MAGNET-{m.diameter:g}x{m.height:g}",
         name=f"Disc magnet {m.diameter:g}x{m.height:g}",
         process="bought",
         material=NEODYMIUM,
         body=Extrusion(circle((0, 0), m.diameter), m.height),
         colour="#9aa0a8",
-        purchase=Purchase(
-            f"disc magnet {m.diameter:g} x {m.height:g} mm, "
-            f"each ±{MAGNET_LIMIT:g}, axial, remanence {m.remanence:g} T"
-        ),
+        purchase=Purchase(f"{what}, remanence {m.remanence:g} T"),
         spares=max(1, len(layout.elements) // 10),
     )
 
 
-def _spacer(layout: PlanarLayout, where: str, thickness: float, limit: float, key: bool) -> Part:
+def _rounded(x: float, y: float, radius: float, at: tuple[float, float] = (0.0, 0.0)) -> Contour:
+    """A rectangle 2 x by 2 y about a point, with rounded corners."""
+    signs = ((-1, -1), (1, -1), (1, 1), (-1, 1))
+    return rounded_polygon(
+        [Corner((round(at[0] + sx * x, 9), round(at[1] + sy * y, 9)), radius) for sx, sy in signs]
+    )
+
+
+def _spacer(layout: PlanarLayout, where: str, t: float, limit: float, key: bool) -> Part:
     """A frame with the openings of the foil's cells, which clamps the foil's webs."""
-    d, half = layout.design, layout.kinds["measuring"].opening / 2.0
-    openings = tuple(
-        rounded_polygon(
-            [
-                Corner((round(e.x + sx * half, 9), round(e.y + sy * half, 9)), layout.sheet_corner(thickness))
-                for sx, sy in ((-1, -1), (1, -1), (1, 1), (-1, 1))
-            ]
-        )
-        for e in layout.elements
-    )
-    process = layout.sheet_process(thickness)
-    bore, zone = dowel_bore(layout, process, thickness), foil_zone(layout, process)
-    features = tuple(_through(layout, thickness, bore))
-    return Part(
-        part_no=f"{d.name}-{where}-spacer",
-        name=f"{where.capitalize()} spacer",
-        process=cast(Process, process.name),
-        material=SPRING_STEEL,
-        body=Extrusion(_outline(layout), thickness, openings),
-        features=features,
-        colour="#aab2bd",
-        notes=(contour_note(process, thickness), "flat, free of burrs"),
-        characteristics=(within("thickness", thickness, limit, key, between=FACES), *_stated(layout, bore)),
-        kind="cells",
-        **_placed(features, {"dowel_hole": zone, "screw": PLACE}),
-    )
+    half, corner = layout.kinds["measuring"].opening / 2.0, layout.sheet_corner(t)
+    openings = tuple(_rounded(half, half, corner, at) for at in layout.places)
+    bore = dowel_bore(layout, layout.sheet_process(t), t)
+    own = (within("thickness", t, limit, key, between=FACES), bore)
+    body, holes = _plain(layout, t, openings), _through(layout, t, bore)
+    number, name, note = f"{where}-spacer", f"{where.capitalize()} spacer", (TABS, "flat, free of burrs")
+    return _sheet(layout, number, name, body, holes, own, "#aab2bd", note, "cells")
 
 
 def lower_spacer(layout: PlanarLayout) -> Part:
@@ -369,26 +345,23 @@ def base(layout: PlanarLayout) -> Part:
     """The islands' stop, with a well around every magnet, sunk under the kind of cell with the longer way;
     z = 0 its lower face."""
     t = base_plate(layout)
+    wide = round(layout.design.planar.pitch - WEB, 9)  # a sunk land: WEB stays between neighbours
+    well = round(layout.design.magnet.diameter + 2.0 * layout.design.housing.well, 9)
     wells: list[Feature] = []
     for e in layout.elements:
         lower = round(e.kind.table.stop_gap + layout.base_z, 9)
-        sunk = (land_diameter(layout), lower) if lower > 0.0 else None
+        land = (wide, lower) if sunk(layout, e.kind) else None
         name = f"well_{e.kind.name}"
-        wells.append(Hole(name, (e.x, e.y, t), (0, 0, -1), layout.well, t, True, counterbore=sunk))
+        wells.append(Hole(name, (e.x, e.y, t), (0, 0, -1), well, t, True, counterbore=land))
     bore = pressed(float(DOWEL))
+    names = [f"well_{kind.name}" for kind in layout.used]
+    bores = [_wider(name, well) for name in names]
     deep = max((kind.table.stop_gap for kind in layout.used), default=0.0) + layout.base_z
     lands = f"counterbores {deep:.3g} ±{LAND_DEPTH:g} deep, milled in one setting with the upper face"
-    return milled(
-        layout,
-        "base",
-        "Base",
-        Extrusion(_outline(layout), t),
-        [*_through(layout, t, bore), *wells],
-        {"dowel_hole": PLATE_ZONE, "screw": PLACE, "well_measuring": PLACE, "well_reference": PLACE},
-        (lands,) if deep > 0.0 else (),
-        (bore,),
-        (Geometric("stop face", "flatness", STOP_FLAT, (FACES[1],)),),
-    )
+    holes, notes = [*_through(layout, t, bore), *wells], (lands,) if deep > 0.0 else ()
+    zones = {"dowel_hole": PLATE_ZONE, "screw": PLACE, **dict.fromkeys(names, PLACE)}
+    flat, own = (Geometric("stop face", "flatness", STOP_FLAT, (FACES[1],)),), (bore, *bores)
+    return milled(layout, "base", "Base", _plain(layout, t), holes, zones, notes, own, flat)
 
 
 def copper_room(layout: PlanarLayout) -> tuple[float, float]:
@@ -402,23 +375,43 @@ def frame_room(layout: PlanarLayout) -> tuple[float, float]:
     walls bear."""
     hole = METRIC[SCREW].clearance / 2.0
     walls = (WEB + (border / 2.0 + hole if layout.screwed else 0.0) for border in layout.borders)
-    x, y = (
-        round(max(field, min(copper, half - wall)), 9)
-        for field, copper, half, wall in zip(layout.field_half, copper_room(layout), layout.half, walls)
-    )
+    rooms = zip(copper_room(layout), layout.half, layout.borders, walls)
+    x, y = (round(max(round(h - b, 9), min(copper, h - wall)), 9) for copper, h, b, wall in rooms)
     return x, y
 
 
 def frame(layout: PlanarLayout) -> Part:
     """Keeps the board off the base by the chips' height."""
     t = chip_room(layout)
-    x, y = frame_room(layout)
-    room = rounded_polygon(
-        [Corner((sx * x, sy * y), FRAME_CORNER) for sx, sy in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
-    )
-    holes = [h for h in _through(layout, t, dowel_bore(layout, None, t)) if h.name == "screw"]
-    body = Extrusion(_outline(layout), t, (room,))
+    holes = bored("screw", screw_places(layout), METRIC[SCREW].clearance, t)
+    body = _plain(layout, t, (_rounded(*frame_room(layout), FRAME_CORNER),))
     return milled(layout, "frame", "Board frame", body, holes, {"screw": PLACE})
+
+
+def _wider(hole: str, least: float) -> Characteristic:
+    name = f"{hole.replace('_', ' ')} diameter"
+    return Characteristic(name, least, round(least + BORED, 9), least, between=(hole,))
+
+
+def post_play(layout: PlanarLayout) -> float:
+    """Most that a post is off its opening's middle, mm: places and plays in the foil and in the cover."""
+    foil_, process = layout.design.planar.thickness, layout.process
+    play = spigot_bore(layout, process, foil_).upper - layout.design.post.spigot + SPIGOT
+    zone = foil_zone(layout, process)
+    if layout.screwed:
+        bores = dowel_bore(layout, process, foil_).upper + dowel_bore(layout, None, foil_).upper
+        play += bores - 2.0 * dowel_limits(DOWEL)[0] + PLATE_ZONE + zone
+    return (play + PLACE + zone) / 2.0
+
+
+def travel_limit(layout: PlanarLayout, kind: Kind) -> float:
+    """Most by which an island's way down differs from the drawn one, mm: spacer, and land if it is sunk."""
+    return layout.design.tolerance.stop_gap / 2.0 + sunk(layout, kind) * LAND_DEPTH
+
+
+def sunk(layout: PlanarLayout, kind: Kind) -> bool:
+    """Whether its islands land below the base's upper face."""
+    return kind.table.stop_gap + layout.base_z > 1e-9
 
 
 def cover(layout: PlanarLayout) -> Part:
@@ -426,22 +419,32 @@ def cover(layout: PlanarLayout) -> Part:
     d = layout.design
     t = d.housing.cover_thickness
     opening = round(d.post.pad + 2.0 * d.housing.side_gap, 9)
-    bore = dowel_bore(layout, None, t)
-    return milled(
-        layout,
-        "cover",
-        "Cover",
-        Extrusion(_outline(layout), t),
-        [*_through(layout, t, bore, tapped=True), *_round_holes(layout, "post_opening", opening, t)],
-        {"dowel_hole": PLATE_ZONE, "screw": PLACE, "post_opening": PLACE},
-        bores=(bore,),
-    )
+    bore, room = dowel_bore(layout, None, t), _wider("post_opening", opening)
+    holes = [*_through(layout, t, bore, tapped=True), *bored("post_opening", layout.places, opening, t)]
+    zones, body = {"dowel_hole": PLATE_ZONE, "screw": PLACE, "post_opening": PLACE}, _plain(layout, t)
+    return milled(layout, "cover", "Cover", body, holes, zones, bores=(bore, room))
+
+
+def measured(layout: PlanarLayout) -> list[tuple[CellPlace, str, tuple[Measurement, ...]]]:
+    """Measurements on every cell of a cut foil."""
+    t = layout.design.planar.thickness
+    cut, of_foil = layout.process.tolerance(t), layout.design.foil_tolerance
+    edges, middle = "island's to frame's edge (mean of four)", "middle of each beam (mean of four)"
+
+    def of(k: Kind) -> tuple[Measurement, ...]:
+        sizes = (
+            ("beam width", k.table.beam_width, cut, True, middle, MICROSCOPE),
+            ("beam length", k.beam_length, cut, False, edges, MICROSCOPE),
+            ("thickness", t, of_foil, True, "on the border, near the cell", "micrometer, 0.0005 or better"),
+        )
+        return tuple(Measurement(of, v, v - off, v + off, key, "", *how) for of, v, off, key, *how in sizes)
+
+    return [(e, f"{layout.design.name}-foil", of(e.kind)) for e in layout.elements]
 
 
 def about(layout: PlanarLayout) -> str:
     p = layout.design.planar
     return (
-        f"{p.rows} x {p.columns} cells in a plane, pitch {p.pitch:g} mm, in one foil of {p.thickness:g} "
-        f"mm: each an island on "
-        "four beams, of two stiffnesses in turn, with a magnet over a three-axis Hall chip."
+        f"{p.rows} x {p.columns} cells in a plane, pitch {p.pitch:g} mm, in one foil of {p.thickness:g} mm: "
+        "each an island on four beams, of two stiffnesses in turn, with a magnet over a three-axis Hall chip."
     )

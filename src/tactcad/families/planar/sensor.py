@@ -5,22 +5,25 @@ from __future__ import annotations
 
 import argparse
 import json
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
+from itertools import product
+from typing import Any, cast
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tactcad.design.allowance import Allowance
+from tactcad.design.materials import Alloy
 from tactcad.design.messages import InputError
+from tactcad.mechanics.strength import goodman
 from tactcad.report.figures import aligned
 
 from . import beam
-from .cell import wrench
+from .beam import Array
+from .cell import unit_loads, wrench
 from .cell_layout import Kind, PlanarLayout
 from .cell_tables import Chip, PlanarDesign
-from .field import felt, field, sensitivity
+from .field import STEP, felt, field, sensitivity
 
-Array = NDArray[np.float64]
 NEIGHBOURS = 3  # pitches away at which a neighbour's field still counts: beyond, under 1 % of the nearest's
 
 
@@ -30,11 +33,13 @@ class CellEstimate:
 
     stiffness, shear_stiffness  at the pad, along z and across
     expected_error              of the stiffness, against solid elements, relative
+    fatigue_factor              Goodman's at the rated force, put on and off, by the von Mises stress
     rated_force                 the lesser of the force asked for and yield over its factor, with the rated
                                 shear
     stop_force                  at which the island meets the base
     linear_force                up to which K stays within rating.linearity
     field                       at the chip, cell at rest
+    condition, matrix_change    of the 3 x 3 matrix at rest; its largest change up to the rated force
     force_noise                 of fx, fy and fz, from one reading's noise
     """
 
@@ -49,12 +54,14 @@ class CellEstimate:
     stress: float
     yield_force: float
     rated_force: float
+    fatigue_factor: float
     elastic: bool
     stop_force: float
     linear_force: float
     field: float
     signal: float
     condition: float
+    matrix_change: float
     force_noise_x: float
     force_noise_z: float
     gauge_strain: None = None
@@ -63,15 +70,25 @@ class CellEstimate:
 
 def pad_compliance(kind: Kind, height: float) -> Array:
     """The pad's motion under a force on it, mm/N, 3 x 3."""
-    load = np.stack([wrench(f, height) for f in np.eye(3)], axis=1)
+    load = unit_loads(height)
     return load.T @ kind.cell.compliance @ load
 
 
 def chip_matrix(layout: PlanarLayout, kind: Kind) -> Array:
     """The field's change at the chip by a force on the pad, mT/N, 3 x 3, about the cell at rest."""
-    load = np.stack([wrench(f, layout.pad_height) for f in np.eye(3)], axis=1)
     _, slope = sensitivity(layout.magnet, layout.design.hall.gap, magnet_lever(layout))
-    return slope @ kind.cell.compliance @ load
+    return slope @ kind.cell.compliance @ unit_loads(layout.pad_height)
+
+
+def matrix_change(layout: PlanarLayout, kind: Kind) -> float:
+    """Largest change of `chip_matrix` up to the rated force with its shear, over its largest entry."""
+    rest, cell = chip_matrix(layout, kind), kind.cell
+    moved = cell.compliance @ _sheared(layout) * rated_force(layout, kind)[1]
+    moved[2:3] = cell.sunk(moved[2:3])
+    stiffer = np.array([1.0, 1.0, 1.0 + 3.0 * cell.stiffening * moved[2] ** 2, 1.0, 1.0, 1.0])
+    fields = felt(layout.magnet, layout.design.hall.gap, magnet_lever(layout), moved + 1j * STEP * np.eye(6))
+    there = fields.imag.T / STEP / stiffer @ cell.compliance @ unit_loads(layout.pad_height)
+    return float(np.abs(there - rest).max() / np.abs(rest).max())
 
 
 def magnet_lever(layout: PlanarLayout) -> float:
@@ -81,8 +98,7 @@ def magnet_lever(layout: PlanarLayout) -> float:
 
 def largest_field(layout: PlanarLayout, kind: Kind) -> float:
     """At the chip, at rest or at the rated force with its shear, mT."""
-    down = wrench(np.array([layout.design.rating.shear, 0.0, -1.0]), layout.pad_height)
-    motion = kind.cell.compliance @ down * rated_force(layout, kind)[1]
+    motion = kind.cell.compliance @ _sheared(layout) * rated_force(layout, kind)[1]
     at_rated = felt(layout.magnet, layout.design.hall.gap, magnet_lever(layout), motion)
     return max(field_at_rest(layout), float(np.abs(at_rated).max()))
 
@@ -93,14 +109,22 @@ def field_at_rest(layout: PlanarLayout) -> float:
 
 def force_noise(chip: Chip, matrix: Array) -> Array:
     """Of one reading's noise, N, of fx, fy and fz."""
-    noise = np.linalg.inv(matrix) * (1e-3 * np.array([chip.noise_xy, chip.noise_xy, chip.noise_z]))
-    return np.sqrt((noise**2).sum(axis=1))
+    return np.sqrt(((np.linalg.inv(matrix) * reading_noise(chip)) ** 2).sum(axis=1))
+
+
+def reading_noise(chip: Chip) -> Array:
+    """Of one reading of the three fields, mT."""
+    return 1e-3 * np.array([chip.noise_xy, chip.noise_xy, chip.noise_z])
 
 
 def rated_stress(layout: PlanarLayout, kind: Kind) -> float:
     """Stress of 1 N down with the rated shear, its own error added, MPa."""
-    down = wrench(np.array([layout.design.rating.shear, 0.0, -1.0]), layout.pad_height)
-    return kind.cell.stress(down) * (1.0 + stress_error())
+    return kind.cell.stress(_sheared(layout)) * (1.0 + stress_error())
+
+
+def _sheared(layout: PlanarLayout) -> Array:
+    """Wrench of 1 N down with the rated shear."""
+    return wrench(np.array([layout.design.rating.shear, 0.0, -1.0]), layout.pad_height)
 
 
 def stress_error() -> float:
@@ -124,23 +148,32 @@ def closing_force(layout: PlanarLayout, kind: Kind) -> float:
     return float(z / cell.compliance[2, 2] * (1.0 + cell.stiffening * z**2))
 
 
+def lowest(layout: PlanarLayout, kind: Kind, force: float) -> float:
+    """How deep the island's corner gets under a force with the rated shear towards it, mm."""
+    c = kind.cell.compliance
+    tilt = layout.design.rating.shear * force * layout.pad_height * float(c[4, 4])
+    return float(kind.cell.sunk(force * c[2, 2:3])[0]) + tilt * kind.corner
+
+
+def aside(layout: PlanarLayout, kind: Kind) -> float:
+    """How far a post moves sideways at the cover's upper face by the rated shear, mm."""
+    shear = np.array([layout.design.rating.shear * rated_force(layout, kind)[1], 0.0, 0.0])
+    motion = kind.cell.compliance @ wrench(shear, layout.pad_height)
+    return float(motion[0] + motion[4] * (layout.pad_height - layout.design.post.stand_out))
+
+
 def neighbours_field(layout: PlanarLayout) -> float:
     """Largest field of the other cells' magnets at a chip, mT, all at rest: known, and subtracted."""
     p, gap = layout.design.planar, layout.design.hall.gap
-    at = np.array(
-        [
-            (i * p.pitch, j * p.pitch, -gap)
-            for i in range(-min(NEIGHBOURS, p.columns - 1), min(NEIGHBOURS, p.columns - 1) + 1)
-            for j in range(-min(NEIGHBOURS, p.rows - 1), min(NEIGHBOURS, p.rows - 1) + 1)
-            if (i, j) != (0, 0)
-        ]
-    )
-    return float(np.abs(field(layout.magnet, at).sum(axis=0)).max()) if len(at) else 0.0
+    across, up = (min(NEIGHBOURS, n - 1) for n in (p.columns, p.rows))
+    places = product(range(-across, across + 1), range(-up, up + 1))
+    at = [(i * p.pitch, j * p.pitch, -gap) for i, j in places if (i, j) != (0, 0)]
+    return float(np.abs(field(layout.magnet, np.array(at)).sum(axis=0)).max()) if at else 0.0
 
 
 def rows(layout: PlanarLayout, _rung: str, force: float | None) -> list[CellEstimate]:
     design = layout.design
-    by_kind: dict[str, dict] = {}
+    by_kind: dict[str, CellEstimate] = {}
     for kind in layout.used:
         at_yield, rated = rated_force(layout, kind)
         pad, matrix = pad_compliance(kind, layout.pad_height), chip_matrix(layout, kind)
@@ -149,41 +182,46 @@ def rows(layout: PlanarLayout, _rung: str, force: float | None) -> list[CellEsti
         per_axis = force_noise(layout.chip, matrix)
         linear = kind.cell.linear_range(design.rating.linearity)
         stress = load * rated_stress(layout, kind)
-        by_kind[kind.name] = {
-            "kind": kind.name,
-            "arm": kind.beam_length,
-            "stiffness": stiffness,
-            "shear_stiffness": float(1.0 / pad[0, 0]),
-            "expected_error": stiffness_error(),
-            "force": load,
-            "sink": load / stiffness,
-            "stress": stress,
-            "yield_force": at_yield,
-            "rated_force": rated,
-            "elastic": load < at_yield,
-            "stop_force": closing_force(layout, kind),
-            "linear_force": stiffness * linear * (1.0 + design.rating.linearity),
-            "field": field_at_rest(layout),
-            "signal": float(abs(matrix[2, 2])),
-            "condition": float(np.linalg.cond(matrix)),
-            "force_noise_x": float(per_axis[0]),
-            "force_noise_z": float(per_axis[2]),
-            "peak_strain": stress / design.material.youngs_modulus,
-        }
-    return [CellEstimate(number=e.number, **by_kind[e.kind.name]) for e in layout.elements]
+        by_kind[kind.name] = CellEstimate(
+            number=0,
+            kind=kind.name,
+            arm=kind.beam_length,
+            stiffness=stiffness,
+            shear_stiffness=float(1.0 / pad[0, 0]),
+            expected_error=stiffness_error(),
+            force=load,
+            sink=load / stiffness,
+            stress=stress,
+            yield_force=at_yield,
+            rated_force=rated,
+            fatigue_factor=float(goodman(cast(Alloy, design.material), rated * rated_stress(layout, kind))),
+            elastic=load < at_yield,
+            stop_force=closing_force(layout, kind),
+            linear_force=stiffness * linear * (1.0 + design.rating.linearity),
+            field=field_at_rest(layout),
+            signal=float(abs(matrix[2, 2])),
+            condition=float(np.linalg.cond(matrix)),
+            matrix_change=matrix_change(layout, kind),
+            force_noise_x=float(per_axis[0]),
+            force_noise_z=float(per_axis[2]),
+            peak_strain=stress / design.material.youngs_modulus,
+        )
+    return [replace(by_kind[e.kind.name], number=e.number) for e in layout.elements]
 
 
 HEADINGS = (
-    ("kind", "kind", "", 1.0),
+    ("kind", "kind", "", 0.0),
     ("stiffness", "K", "N/mm", 1.0),
     ("shear_stiffness", "K across", "N/mm", 1.0),
     ("sink", "sink", "um", 1e3),
     ("stress", "stress", "MPa", 1.0),
     ("yield_force", "yields at", "N", 1.0),
     ("rated_force", "rated", "N", 1.0),
+    ("fatigue_factor", "Goodman", "", 1.0),
     ("stop_force", "stop closes", "N", 1.0),
     ("linear_force", "linear to", "N", 1.0),
     ("signal", "signal", "mT/N", 1.0),
+    ("matrix_change", "changes by", "%", 100.0),
     ("force_noise_x", "noise x, y", "mN", 1e3),
     ("force_noise_z", "noise z", "mN", 1e3),
 )
@@ -207,6 +245,7 @@ def run(args: argparse.Namespace, asked: Allowance, design: PlanarDesign) -> int
             "size_mm": size,
             "units": {"length": "mm", "force": "N", "stiffness": "N/mm", "stress": "MPa", "field": "mT"},
             "neighbours_field_mT": neighbours_field(layout),
+            "object_errors": object_errors(layout) if len(layout.used) == 2 else {},
             "elements": [asdict(row) for row in found],
         }
         print(json.dumps(document, indent=2))
@@ -216,15 +255,11 @@ def run(args: argparse.Namespace, asked: Allowance, design: PlanarDesign) -> int
         f"{found[0].force:g} N on each pad, {stated_size(size)} overall"
     )
     shown = list({row.kind: row for row in found}.values())
-    cells = [
-        [
-            (getattr(row, name) if name == "kind" else f"{scale * getattr(row, name):.4g}")
-            for name, _, _, scale in HEADINGS
-        ]
-        for row in shown
+    columns = [
+        (heading, unit, *(f"{v * scale:.4g}" if scale else v for v in (getattr(row, name) for row in shown)))
+        for name, heading, unit, scale in HEADINGS
     ]
-    table = aligned([[h for _, h, _, _ in HEADINGS], [u for _, _, u, _ in HEADINGS], *cells])
-    print(*table, sep="\n")
+    print(*aligned([*zip(*columns)]), sep="\n")
     print(
         f"K against solid elements: within {100 * stiffness_error():.2g} %; stress includes its own error of "
         f"{100 * stress_error():.2g} % and the rated shear; noise is of one reading of {layout.chip.name}"
@@ -237,23 +272,32 @@ def run(args: argparse.Namespace, asked: Allowance, design: PlanarDesign) -> int
     ratio = {row.kind: row.stiffness for row in shown}
     if len(ratio) == 2:
         print(f"K_r/K_m {max(ratio.values()) / min(ratio.values()):.3g}")
+        told = ", ".join(f"{100 * e:.1f} % at {k:g} N/mm" for k, e in object_errors(layout).items())
+        print(f"noise of one reading of a pair, one of its cells at its rated force: K_obj within {told}")
     return 0
 
 
+def object_errors(layout: PlanarLayout) -> dict[float, float]:
+    """By K_obj, N/mm: its relative standard deviation by the noise of one reading of a pair, one of whose
+    cells is at its rated force."""
+    from .cell_targets import KINDS, of_kind, variances
+
+    at = np.array([0.5, 1.0, 5.0, 20.0])
+    pair = [of_kind(layout, name) for name in KINDS]
+    soft, stiff, _ = variances(pair[0], pair[1], 1, 0.0, at)
+    found = zip(at.tolist(), np.sqrt(soft + stiff).tolist())
+    return {k: error for k, error in found if np.isfinite(error)}
+
+
 def golden(design: PlanarDesign) -> dict[str, dict]:
-    layout = PlanarLayout(design)
-    found = {row.number: row for row in rows(layout, "", None)}
+    layout, part = PlanarLayout(design), {"part_no": f"{design.name}-foil"}
     return {
-        e.designator: {
-            "part_no": f"{design.name}-foil",
-            "stiffness_n_per_mm": found[e.number].stiffness,
-            "yield_force_n": found[e.number].yield_force,
-        }
-        for e in layout.elements
+        e.designator: part | {"stiffness_n_per_mm": row.stiffness, "yield_force_n": row.yield_force}
+        for e, row in zip(layout.elements, rows(layout, "", None))
     }
 
 
-STRENGTH = ("kind", "stiffness", "rated_force", "yield_force", "stop_force", "linear_force", "stress")
+STRENGTH = "kind stiffness rated_force fatigue_factor yield_force stop_force linear_force stress".split()
 
 
 def strength(layout: PlanarLayout) -> bytes:
@@ -266,10 +310,10 @@ def strength(layout: PlanarLayout) -> bytes:
     return ("\r\n".join(lines) + "\r\n").encode()
 
 
-def stop_stress(layout: PlanarLayout, kind: Kind, gap: float) -> float:
-    """Stress of a cell that is pressed down on its stop, `gap` mm deep, with the rated shear of the force
-    that closes it, MPa: by bending, by the beams' stretch of 3 z^2/(5 s^2) if the island cannot turn, and by
-    tipping."""
+def stop_stress(layout: PlanarLayout, kind: Kind, gap: Any) -> Any:
+    """Stress of a cell that is pressed down on its stop, `gap` mm deep (or several), with the rated shear of
+    the force that closes it, MPa: by bending, by the beams' stretch of 3 z^2/(5 s^2) if the island cannot
+    turn, and by tipping."""
     cell = kind.cell
     down = wrench(np.array([0.0, 0.0, -1.0]), layout.pad_height) / cell.compliance[2, 2]
     tip = wrench(np.array([layout.design.rating.shear, 0.0, 0.0]), layout.pad_height)

@@ -50,7 +50,7 @@ def dowel(size: str, length: float) -> Part:
     )
     return Part(
         part_no=f"ISO8734-{size}x{length:g}-pin" if standard else f"GROUND-{size}m6x{length:g}-rod",
-        name=f"Dowel pin {size}x{length:g}",
+        name=f"{'Dowel pin' if standard else 'Ground rod'} {size}x{length:g}",
         process="bought",
         material=HARDENED,
         body=Extrusion(circle((0, 0), dowel_diameter(size)), length),
@@ -151,18 +151,12 @@ def o_ring(code: str) -> Part:
 
 @dataclass(frozen=True)
 class Stage:
-    """Two square plates of `size` and thickness `plate`, M4 at +-`hole`, moving +-`travel` (mm).
-
-    maker, part_no: if the row was read in the maker's own data (`verified`), else empty.
-    """
+    """Two square plates of `size` and thickness `plate`, M4 at +-`hole`, moving +-`travel` (mm)."""
 
     size: float
     plate: float
     hole: float
     travel: float
-    maker: str = ""
-    part_no: str = ""
-    verified: bool = False
 
     @property
     def height(self) -> float:
@@ -170,11 +164,6 @@ class Stage:
 
 
 STAGES = tuple(
-    Stage(
-        **{name: number(row[name]) for name in ("size", "plate", "hole", "travel")},
-        maker=row["maker"],
-        part_no=row["part_no"],
-        verified=row["verified"] == "true",
-    )
+    Stage(**{name: number(row[name]) for name in ("size", "plate", "hole", "travel")})
     for row in data_rows(__file__, "stages")
 )

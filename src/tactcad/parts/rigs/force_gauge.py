@@ -51,6 +51,7 @@ def force_gauge(rig: StandLayout) -> Part:
         )
         for z in GAUGE_THREADS
     )
+    maker, number = ("Sauter", "FH 5") if c.load_cell_range == 5.0 else ("", "")
     return Part(
         part_no=f"FORCE-GAUGE-{c.load_cell_range:g}N",
         name=f"Digital force gauge {c.load_cell_range:g} N",
@@ -62,8 +63,8 @@ def force_gauge(rig: StandLayout) -> Part:
         purchase=Purchase(
             f"digital force gauge {c.load_cell_range:g} N, {c.load_cell_resolution:g} N, "
             f"{c.load_cell_stiffness:g} N/mm at its shaft, M6 shaft",
-            manufacturer="Sauter",
-            mpn="FH 5",
+            manufacturer=maker,
+            mpn=number,
             alternates="any gauge of that range; enter its measured stiffness in "
             "calibration.load_cell_stiffness",
         ),

@@ -154,7 +154,9 @@ def rail(length: float) -> Part:
         features=holes,
         colour="#6f7378",
         purchase=Purchase(
-            f"miniature guide rail, width 9, length {length:g}, holes M3 at 20", alternates="MGN9R and alike"
+            f"miniature guide rail, width 9, length {length:g}, holes M3 at 20, the first 10 from its end",
+            alternates="any rail of that section and those holes",
+            source_verified=True,
         ),
     )
 
@@ -175,12 +177,12 @@ def carriage() -> Part:
     """
     section = chain(
         [
-            (-10, 2.2),
-            (-4.5, 2.2),
+            (-10, 2.0),
+            (-4.5, 2.0),
             (-4.5, 6.5),
             (4.5, 6.5),
-            (4.5, 2.2),
-            (10, 2.2),
+            (4.5, 2.0),
+            (10, 2.0),
             (10, RAIL_HEIGHT),
             (-10, RAIL_HEIGHT),
         ]
@@ -199,8 +201,9 @@ def carriage() -> Part:
         colour="#50575f",
         notes=("seals taken off: they drag 0.1 to 0.5 N",),
         purchase=Purchase(
-            "miniature guide carriage for rail width 9, no seals, light clearance (Z0), 4 x M3 at 15 x 10",
-            alternates="MGN9C and alike",
+            "miniature guide carriage for rail width 9, no seals, very light preload (Z0), 4 x M3 at 15 x 10",
+            alternates="any carriage of those dimensions",
+            source_verified=True,
         ),
         mass_override=16.0,
     )

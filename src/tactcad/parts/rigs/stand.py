@@ -320,12 +320,9 @@ def stage_fixed(stage: Stage) -> Part:
         purchase=Purchase(
             f"crossed roller stage {stage.size:g} x {stage.size:g} x {stage.height:g} mm, "
             f"travel +-{stage.travel:g} mm, M4 at {2 * stage.hole:g} x {2 * stage.hole:g}, screwed down from "
-            "its slideway, two screws at each end of its travel"
-            + ("" if stage.verified else "; no maker's drawing read: compare size, holes and travel"),
-            manufacturer=stage.maker,
-            mpn=stage.part_no,
-            alternates="any stage of that travel and hole pattern",
-            source_verified=stage.verified,
+            "its slideway, two screws at each end of its travel; no maker's drawing read: compare size, "
+            "holes and travel",
+            alternates="any stage of that size, travel and hole pattern",
         ),
     )
 
@@ -371,7 +368,6 @@ def micrometer(travel: float, resolution: float) -> Part:
         colour="#8a8d91",
         purchase=Purchase(
             f"micrometer head, travel {2 * travel:g} mm, resolution {resolution:g} mm, for the stage",
-            manufacturer="OptoSigma" if resolution < 0.005 else "",
             alternates="motorised actuator of the same travel",
         ),
     )

@@ -84,8 +84,7 @@ def _placed(layout: Layout, instead: Mapping[int, Part], stops: bool) -> Builder
     z = layout.carrier_bottom + fixing.under_head
     for sx, sy in ((1, -1), (-1, -1), (1, 1), (-1, 1)):
         at = (sx * layout.carrier_screw_x, sy * layout.end_plate_y, z)
-        name = b.place("SC", screw, at, DOWN, CARRIER)
-        b.meet(name, "CA1")
+        name = b.place("SC", screw, at, DOWN, CARRIER, "CA1")
         b.meet(name, "EP1" if sy < 0 else "EP2", "thread")
     if stops:
         _stop_plate(b, layout, on_ledge)
@@ -146,8 +145,7 @@ def _clamping(b: Builder, layout: Layout) -> None:
             _tie_rod(b, layout, x, c.screw)
             continue
         screw = screws.cap_screw(d.clamp.screw, c.screw)
-        name = b.place("SC", screw, (x, -(face + c.head_plate_web), z), ALONG_Y, COPLANAR)
-        b.meet(name, "EP1")
+        name = b.place("SC", screw, (x, -(face + c.head_plate_web), z), ALONG_Y, COPLANAR, "EP1")
         b.meet(name, "EP2", "thread")
     pin = standard_parts.dowel(d.clamp.dowel, c.dowel)
     for x in (side * x for side in (1, -1) for x in layout.dowel_x):
@@ -173,8 +171,7 @@ def _stop_plate(b: Builder, layout: Layout, on_ledge: list[str]) -> None:
     length = present(layout.hold_down.length)
     screw = screws.set_screw(layout.design.clamp.screw, length)
     for x, y in ((side * layout.hold_down_x, y) for side in (1, -1) for y in layout.hold_down_y):
-        name = b.place("SS", screw, (x, y, layout.stop_plate_top + length), DOWN, HOLD_DOWN)
-        b.meet(name, plate)
+        name = b.place("SS", screw, (x, y, layout.stop_plate_top + length), DOWN, HOLD_DOWN, plate)
         b.meet(name, "CA1", "thread")
 
 
@@ -412,9 +409,9 @@ def setting_words(layout: Layout) -> str:
     )
     strip = " and every blank on the strip" if layout.blanks() else ""
     return (
-        "Press both end plates down on the fixture's steps. With a bar of rubber on the ledges, between pads "
-        f"and dowels, press every pad down on the fixture's floor{strip}; pressing behind the dowels lifts "
-        "the pads. "
+        "For two: one presses, the other tightens. Press both end plates down on the fixture's steps, and "
+        "with a bar of rubber on each row's ledges, between pads and dowels, every pad down on the fixture's "
+        f"floor{strip}; pressing behind the dowels lifts the pads. Hold them so. "
         f"{tight} crosswise, in three rounds: to a third, two thirds and all of the torque. An element can "
         f"still turn about its dowel ({wedge(layout)}); pressed on its ledge, it lies at one end of this "
         f"play. {gap}No {2 * tolerance * 1e3:g} um feeler may pass under a pad. Then lay the array on its "
@@ -430,7 +427,12 @@ def flatness_tools(layout: Layout) -> tuple[str, ...]:
     feelers = f"feelers, {2 * tolerance * 1e3:g} um"
     if len(layout.design.array.row_arms) == ABREAST:
         feelers += f" and {2 * layout.pad_inner:g} mm"
-    return "surface plate, grade 1 or better", "bar of rubber", feelers, "lever indicator, 1 um, on a stand"
+    return (
+        "surface plate, grade 1 or better",
+        "bar of rubber for each row",
+        feelers,
+        "lever indicator, 1 um, on a stand",
+    )
 
 
 def carrier_tools(design: Design) -> tuple[str, ...]:

@@ -135,9 +135,7 @@ def _finger(b: Builder, rig: BondingLayout, y: float) -> str:
 
 
 def _pad(b: Builder, rig: BondingLayout, y: float) -> str:
-    pad = b.place("RP", rigs.bonding_pad(rig), (0, y, rig.gauge_face), UPRIGHT)
-    b.meet(pad, _first(rig).designator)
-    return pad
+    return b.place("RP", rigs.bonding_pad(rig), (0, y, rig.gauge_face), on=_first(rig).designator)
 
 
 LOUPE = "stereo microscope or loupe, 20x"

@@ -6,7 +6,6 @@ from collections.abc import Iterable, Iterator
 from math import floor
 
 from tactcad.design.fields import present
-from tactcad.design.messages import InputError
 from tactcad.design.tree import Design
 from tactcad.parts import rigs
 from tactcad.parts.array.element import deflected_element, element_number
@@ -25,7 +24,7 @@ from tactcad.parts.rules.calibration_rules import FITS
 
 from ..builder import Builder
 from ..moves import APPROACH, driver
-from ..rig import Rig
+from ..rig import Rig, require_element
 from ..rig_requirements import roller
 from ..scene import (
     AGAINST_Y,
@@ -66,6 +65,7 @@ FRONT = -250.0  # mm along y, where the mount is assembled
 IN_FRONT: Vector = (0.0, FRONT, RAISED / 2)  # from its final place
 BLOCK = (35.0, 9.0)  # mm: section of gauge blocks over 10 mm (ISO 3650)
 Names = tuple[str, ...]
+ROLLED = 0.8  # of the gauge's range, on the block; chosen: a step more is no overload
 Mounted = tuple[Names, str, Names, Names]  # array, mount, screws into the carrier and into the stage
 OUT_OF_X: Rotation = ((0, 0, -1), (0, 1, 0), (1, 0, 0))  # local z runs along -x
 
@@ -78,10 +78,7 @@ def calibration(design: Design, pose: Pose = REST) -> Scene:
     """
     rig = StandLayout(design)
     pads = pad_middles(rig.array)
-    if not 1 <= pose.element <= len(pads):
-        raise InputError(
-            "element", "the array has none of that number", value=pose.element, legal=f"1 to {len(pads)}"
-        )
+    require_element(pose, len(pads))
     px, py = pads[pose.element - 1]
     dx, dy = -px, py  # the array lies on its back: its y runs against the scene's
     b = Builder()
@@ -113,8 +110,9 @@ def calibration(design: Design, pose: Pose = REST) -> Scene:
     b.step(
         "Stiffness of gauge and stand",
         (0, 0, 0),
-        f"Measure the gauge in its stand on the block under the roller. {_series(design)} Drive the "
-        f"roller up by {RAISED:g} mm and take the block away.",
+        f"Measure the gauge in its stand on the block under the roller, in steps of the micrometer up to "
+        f"{ROLLED * c.load_cell_range:.3g} N and no further: the block does not give way. {_series(design)} "
+        f"Drive the roller up by {RAISED:g} mm and take the block away.",
         order=[raised(b), Move((block,), STILL, ((0.0, 0.0, RAISED / 2), (0.0, -150.0, RAISED / 2)))],
         needs=(
             Need((contact, under), "the roller presses a block on the upper stage"),
@@ -198,8 +196,8 @@ def _stages(b: Builder, rig: StandLayout, dx: float, dy: float) -> str:
         (0, 0, 55),
         "On the bench: set the y stage on the x stage, a quarter turn off, so that its micrometer points to "
         "the front where the other's points to the left. The square pattern of threads fits each way: look "
-        "at the micrometers. Drive the y stage to one end until two screws are free, fix them; drive it to "
-        "the other end and fix the other two, square to the x stage within 0.02 mm on 20 mm. Then drive "
+        "at the micrometers. Drive the y stage to one end until two holes are free, fix it there; drive it "
+        "to the other end and fix the other two, square to the x stage within 0.02 mm on 20 mm. Then drive "
         "it to the middle of its travel.",
         bench=True,
         at=BESIDE,
@@ -215,8 +213,8 @@ def _stages(b: Builder, rig: StandLayout, dx: float, dy: float) -> str:
         "Stages on the base plate",
         (0, 0, 30),
         "Set both on the base plate, the lower micrometer to the left (-x), the upper one to the front, away "
-        "from the post. Drive the x stage to one end until two screws are free, fix them; drive it to the "
-        "other end and fix the other two. Then drive it to the middle of its travel.",
+        "from the post. Drive the x stage to one end until two holes are free, fix it there; drive it to "
+        "the other end and fix the other two. Then drive it to the middle of its travel.",
         order=[
             Move((x_fixed, x_moving, x_micrometer, *upper, *on_x), BESIDE, (OVER, STILL)),
             *driven((x_moving, *upper, *on_x), fixings[0], (1.0, 0.0, 0.0), stage.travel, dx),

@@ -243,7 +243,8 @@ def _guide(b: Builder, rig: GuideLayout, post: str, latched: bool) -> str:
     rail = b.place("RL", rigs.rail(length), (0, front, z), AGAINST_Y)
     b.meet(riser, rail)
     rail_screws = [
-        b.screw("M3", 8.0, (0, front - 3.0, z + dz), (0, 1, 0), rail, riser) for dz in rail_holes(length)
+        b.screw("M3", 8.0, (0, front - 3.0, z + dz), (0, 1, 0), rail, riser)
+        for dz in sorted(rail_holes(length), key=abs)
     ]
     hole, y = -LATCH if latched else -LATCH_KEPT, front + LATCH_DEPTH - LATCH_LENGTH
     latch = b.place(

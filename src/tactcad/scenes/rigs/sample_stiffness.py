@@ -54,7 +54,8 @@ def sample_stiffness(design: Design, pose: Pose = REST) -> Scene:
         "Press",
         (0, 0, 0),
         f"Lower the tip until the gauge reads 0.01 N: that is zero. Then {s.step * 1e3:g} um steps to "
-        f"{s.travel * 1e3:g} um, three times; subtract the gauge's own {gauge.load_cell_stiffness:g} N/mm.",
+        f"{s.travel * 1e3:g} um, three times; from each sink subtract the gauge's own, "
+        f"{1e3 / gauge.load_cell_stiffness:.3g} um a newton.",
         order=[raised(b, down=True), raised(b), raised(b, down=True)],
         needs=(Need((sample, contact), "the tip presses the sample"),),
     )

@@ -12,7 +12,7 @@ from tactcad.parts.rigs.setting_fixture import BASE, PIN_OUT, SettingLayout
 
 from ..builder import Builder
 from ..moves import PRESS, TWEEZED
-from ..rig import Rig, none
+from ..rig import plain_rig
 from ..scene import REST, STILL, UPRIGHT, Contact, Held, Move, Pose, Rotation, Scene
 from .array import COPLANAR, STACKED, array, flatness_tools, narrow, setting_words, wedge
 
@@ -24,7 +24,7 @@ def setting(design: Design, pose: Pose = REST) -> Scene:
     rig = SettingLayout(design)
     layout, whole = rig.array, array(design)
     b = Builder()
-    b.supplies += supplies("setting", {})
+    b.supplies += supplies("setting", {"rows": len(design.array.row_arms)})
     foot = round(rig.floor - BASE, 9)
     fixture = b.place("FX", rigs.setting_fixture(rig), (-rig.half, 0, foot), ALONG_X)
     pin = dowel(design.clamp.dowel, rig.pin_length)
@@ -46,8 +46,7 @@ def setting(design: Design, pose: Pose = REST) -> Scene:
     if blanks:
         part = rigs.setting_strip(rig)
         turned = UPRIGHT if blanks[0].rotation[0][0] > 0 else ((-1, 0, 0), (0, -1, 0), (0, 0, 1))
-        strip = b.place("FS", part, (0, sum(rig.blanks_y) / 2, rig.floor), turned)
-        b.meet(strip, fixture)
+        strip = b.place("FS", part, (0, sum(rig.blanks_y) / 2, rig.floor), turned, on=fixture)
         b.step(
             "Strip under the blanks",
             (0, 0, 20),
@@ -117,14 +116,4 @@ def _among(scene: Scene, names: set[str]) -> tuple[Contact, ...]:
     return tuple(c for c in scene.contacts if {c.first, c.second} <= names)
 
 
-RIG = Rig(
-    name="setting",
-    tables=(),
-    make=setting,
-    poses=none,
-    under_sensor=none,
-    rules=(),
-    deflections=lambda _design: iter(()),
-    requirements=lambda _layout, _known: [],  # its limits are the array's: stacks/variables.py
-    checks=(),
-)
+RIG = plain_rig("setting", setting)  # its limits are the array's: stacks/variables.py

@@ -35,7 +35,7 @@ from tactcad.parts.rules.rule import misfit
 
 from ..builder import Builder
 from ..moves import APPROACH
-from ..rig import Rig, none
+from ..rig import plain_rig
 from ..scene import DOWN, REST, STILL, Move, Need, Pose, Rotation, Scene
 from .array import array, is_calibrated
 
@@ -145,7 +145,13 @@ def wiring(design: Design, pose: Pose = REST) -> Scene:
         "open circuit between black and the array's metal, and below 1 ohm between that wire and each "
         "element's rear body.",
         order=[Move((name,), vector((*parked[s][:2], LIFTED)), (parked[s],)) for s, name in sockets.items()],
-        tools=(SOLDERING, "solder and flux, as for the gauges", "ohmmeter, four wires, 0.01 ohm"),
+        tools=(
+            SOLDERING,
+            "solder and flux, as for the gauges",
+            "scraper",
+            "hot-air gun",
+            "ohmmeter, four wires, 0.01 ohm",
+        ),
         sets=("leads in their socket: all, by solder",),
         leaves=("sockets: lie loose on their plates",),
         needs=(Need((*fitted,), "leads are as long as the way to their board"),),
@@ -153,8 +159,8 @@ def wiring(design: Design, pose: Pose = REST) -> Scene:
     for stand, plate in zip(stood, plates):
         middle = at(stand, 0.0, CLAMP_AHEAD + CLAMP[1] / 2, PLATE)
         origin = vector((middle[0], middle[1], PLATE))
-        bar = b.place("LC", lead_clamp(design, channels_of(layout) * leads(layout)), origin, BAR[stand.side])
-        b.meet(bar, plate)
+        made = lead_clamp(design, channels_of(layout) * leads(layout))
+        bar = b.place("LC", made, origin, BAR[stand.side], on=plate)
         for side in (-1, 1):
             under = at(stand, side * CLAMP_SCREW_X, CLAMP_AHEAD, PLATE + CLAMP[2])
             b.screw(THREAD, CLAMP_SCREW, under, (0, 0, -1), bar, plate)
@@ -212,14 +218,4 @@ def _fitted(layout: Layout) -> str:
     return f" Parts are fitted as in the files {', '.join(told)}." if len(told) > 1 else ""
 
 
-RIG = Rig(
-    name="wiring",
-    tables=(),
-    make=wiring,
-    poses=none,
-    under_sensor=none,
-    rules=(),
-    deflections=lambda _design: iter(()),
-    requirements=lambda _layout, _known: [],  # its screws only
-    checks=(),
-)
+RIG = plain_rig("wiring", wiring)  # no requirements but its screws
