@@ -145,8 +145,8 @@ def pad_law(poisson: float, thickness: float, base: str, length: float, width: f
                 felt[i, j] = felt[i, j - 1] if j else felt[i - 1, j]
                 continue
             touching = np.flatnonzero(f)
-            both = np.concatenate([modes, basis])[:, touching]
-            grip = both @ np.linalg.solve(M[np.ix_(touching, touching)], both.T)
+            seen = np.concatenate([modes, basis])[:, touching]
+            grip = seen @ np.linalg.solve(M[np.ix_(touching, touching)], seen.T)
             rigid, way = np.linalg.eigh(grip[:3, :3])
             held = rigid > POINTS * rigid[-1]
             way = way[:, held]
@@ -245,7 +245,7 @@ class ManyPresses:
             self.between = others
             return
         self.between, self.field = between(*at)
-        self.whole = 0.0
+        self.whole = np.zeros(())
         self.whole = self.lifted(np.tile([1.0, 0.0, 0.0], (len(x), 1)))
 
     def lifted(self, r: np.ndarray) -> np.ndarray:
