@@ -164,10 +164,6 @@ def _names(where: str, path: str, table: Mapping[str, Any], needed: set[str], kn
 
 def _size(where: str, value: object) -> float:
     if not isinstance(value, int | float) or isinstance(value, bool) or not 0 < value <= 100:
-        raise InputError(
-            where,
-            "is no size",
-            value=value,
-            legal="mm, diameters, pitches, or as a feed is stated, more than 0, at most 100",
-        )
+        legal = "mm, diameters, pitches, or as a feed is stated, more than 0, at most 100"
+        raise InputError(where, "is no size", value=value, legal=legal)
     return float(value)

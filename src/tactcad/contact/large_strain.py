@@ -208,12 +208,8 @@ def press(contact: PadsOnBody, load: float, angle: tuple[float, float]) -> Press
         result = contact.press(load=load, angle=angle, hardened=hard)
         depth = result.force / hard / alone
         if depth.max() > depths[-1]:
-            raise InputError(
-                "--load",
-                f"presses a pad {depth.max():.3g} mm deep, and no rung reaches that",
-                value=load,
-                legal=f"at most {depths[-1]:.3g} mm by rung large",
-            )
+            what = f"presses a pad {depth.max():.3g} mm deep, and no rung reaches that"
+            raise InputError("--load", what, value=load, legal=f"at most {depths[-1]:.3g} mm by rung large")
         before, hard = hard, np.interp(depth, depths, factor)
         if np.abs(hard - before).max() < SETTLED:
             break

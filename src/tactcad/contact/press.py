@@ -263,12 +263,8 @@ def _by_least_squares(
 def _block_of_layer(pads: Pads, body: Body, one: np.ndarray) -> Callable[[float, float], np.ndarray]:
     least = THINNEST * (pads.length * pads.width) ** 0.5
     if body.thickness < least:
-        raise InputError(
-            "object thickness",
-            "too thin for this rung",
-            value=body.thickness,
-            legal=f"at least {least:.3g} mm, a quarter of a pad's side",
-        )
+        legal = f"at least {least:.3g} mm, a quarter of a pad's side"
+        raise InputError("object thickness", "too thin for this rung", value=body.thickness, legal=legal)
     return lambda dx, dy: influence(body, (one[0] + dx, one[1] + dy, *one[2:]), tuple(one))
 
 

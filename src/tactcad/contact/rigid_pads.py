@@ -5,8 +5,8 @@ face, with contact lost where it lifts. Because the body is linear, that law is 
 and slopes, twice the force) and proportional to the modulus, so it is tabulated over two ratios. Between
 pads, forces and moments move and incline each other's part of the face by a matrix, exact where whole pads
 touch. A pad lifted on one side presses, and feels its neighbours, with the rest of its area only: `lifted`
-gives the change from the moments of its pressure up to the fourth. `press` solves every patch instead; the
-tests compare the two.
+gives the change from the moments of its pressure up to the fourth, and from what the others' pressure changes
+in these. `press` solves every patch instead; the tests compare the two.
 
 `press_many` presses hundreds of pads once: what two pads do to each other is found as if no other were there,
 so that only 3 x 3 numbers a pair are kept.
@@ -31,6 +31,7 @@ ROUNDS = 60  # of Newton's method, at most
 COARSE = 6  # patches a side of a pad for what pads do to each other
 DEGREE = 4  # order of a pad's moments felt by its neighbours; 2 errs up to 0.4 % where it lifts
 POWERS = np.array([(a, k - a) for k in range(DEGREE + 1) for a in range(k, -1, -1)])  # of x and y
+SECOND = slice(3, 6)  # of POWERS: x^2, x y, y^2
 POINTS = 1e-4  # a pad that touches in so small a share of itself cannot bear a moment
 LOADED = 1e-9  # relative error of the load of `press_many`
 STRAYED = 1e-6  # of the largest depth: left of the equations when they count as not solved
@@ -43,14 +44,14 @@ HERMITE = np.array([[1.0, 0, 0, 0], [0, 0, 1, 0], [-3, 3, -2, -1], [2, -2, 1, 1]
 
 @dataclass(frozen=True)
 class PadLaw:
-    """Force and moments of one pad on a layer of 1 MPa; `cells` are a bicubic's coefficients. `spread` are
-    the
-    moments of the pressure by POWERS for each unit of force and moments (mm)."""
+    """Force and moments of one pad on a layer of 1 MPa; `cells` are a bicubic's coefficients. `felt` are the
+    moments of the pressure by POWERS for each unit of force and moments (mm), its `spread`; beside the second
+    ones, what these lose, at the same force and moments, where the face curves by them, its `relief`."""
 
     length: float
     width: float
     cells: np.ndarray  # [knot, knot, 3, 4, 4]
-    spread: np.ndarray  # [knot, knot, power, 3]
+    felt: np.ndarray  # [knot, knot, power, 6]
 
     def _place(self, r: np.ndarray) -> tuple[np.ndarray, ...]:
         """Size, the two ratios, their signs, and which pads touch."""
@@ -63,17 +64,19 @@ class PadLaw:
         touches = deepest > 0
         return size, np.where(touches[..., None], fall / size[..., None], 0.0), sign, touches
 
-    def moments(self, r: np.ndarray) -> np.ndarray:
-        """`spread` of pads at r, [..., power, 3]."""
-        _, ratio, sign, _ = self._place(r)
+    def moments(self, r: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """`spread` and `relief` of pads at r, [..., power, 3] and [..., 3, 3]."""
+        _, ratio, sign, touches = self._place(r)
         cell, u = _cell(ratio)
         u = u[..., None, None]
-        i, j = cell[..., 0], cell[..., 1]
-        low = (1 - u[..., 0, :, :]) * self.spread[i, j] + u[..., 0, :, :] * self.spread[i + 1, j]
-        high = (1 - u[..., 0, :, :]) * self.spread[i, j + 1] + u[..., 0, :, :] * self.spread[i + 1, j + 1]
+        i, j, of = cell[..., 0], cell[..., 1], self.felt
+        low = (1 - u[..., 0, :, :]) * of[i, j] + u[..., 0, :, :] * of[i + 1, j]
+        high = (1 - u[..., 0, :, :]) * of[i, j + 1] + u[..., 0, :, :] * of[i + 1, j + 1]
         found = (1 - u[..., 1, :, :]) * low + u[..., 1, :, :] * high
-        turn = np.concatenate([np.ones_like(sign[..., :1]), sign], -1)
-        return found * (sign[..., None, :] ** POWERS).prod(-1)[..., None] * turn[..., None, :]
+        odd = (sign[..., None, :] ** POWERS).prod(-1)
+        turn = np.concatenate([np.ones_like(sign[..., :1]), sign, odd[..., SECOND] * touches[..., None]], -1)
+        found = found * odd[..., None] * turn[..., None, :]
+        return found[..., :3], found[..., SECOND, 3:]
 
     def __call__(self, r: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Force (N) and moments (N mm) for each MPa, and their derivatives.
@@ -131,7 +134,7 @@ def pad_law(poisson: float, thickness: float, base: str, length: float, width: f
     t = np.linspace(0, 1, KNOTS)
     value = np.zeros((3, KNOTS, KNOTS))
     basis = _powers(one[0], one[1])
-    spread = np.zeros((KNOTS, KNOTS, len(basis), 3))
+    felt = np.zeros((KNOTS, KNOTS, len(basis), 6))
     for i, x in enumerate(t):
         f = np.ones(one.shape[1])
         for j, y in enumerate(t[: KNOTS - i]):
@@ -139,15 +142,19 @@ def pad_law(poisson: float, thickness: float, base: str, length: float, width: f
             f, _ = complementary(M, -(x * modes[1] + y * modes[2]), None, depth, np.ones(one.shape[1]), f > 0)
             value[:, i, j] = modes @ f
             if not f.any():  # a corner that just touches: as before it
-                spread[i, j] = spread[i, j - 1] if j else spread[i - 1, j]
+                felt[i, j] = felt[i, j - 1] if j else felt[i - 1, j]
                 continue
             touching = np.flatnonzero(f)
-            pressed = np.linalg.solve(M[np.ix_(touching, touching)], modes[:, touching].T)
-            rigid, way = np.linalg.eigh(modes[:, touching] @ pressed)
+            both = np.concatenate([modes, basis])[:, touching]
+            grip = both @ np.linalg.solve(M[np.ix_(touching, touching)], both.T)
+            rigid, way = np.linalg.eigh(grip[:3, :3])
             held = rigid > POINTS * rigid[-1]
             way = way[:, held]
-            spread[i, j] = basis[:, touching] @ pressed @ (way / rigid[held]) @ way.T / (1.0, length, width)
-        spread[i, KNOTS - i :] = spread[i, KNOTS - i - 1]
+            inverse = (way / rigid[held]) @ way.T
+            felt[i, j, :, :3] = grip[3:, :3] @ inverse / (1.0, length, width)
+            relief = grip[3:, 3:] - grip[3:, :3] @ inverse @ grip[:3, 3:]
+            felt[i, j, SECOND, 3:] = relief[SECOND, SECOND]
+        felt[i, KNOTS - i :] = felt[i, KNOTS - i - 1]
     step = 1 / (KNOTS - 1)
     cells = np.empty((KNOTS - 1, KNOTS - 1, 3, 4, 4))
     for k, of in enumerate(value):
@@ -162,7 +169,7 @@ def pad_law(poisson: float, thickness: float, base: str, length: float, width: f
         ]
         corner = np.array(both).reshape(4, 4, KNOTS - 1, KNOTS - 1)
         cells[:, :, k] = np.einsum("ia,abxy,jb->xyij", HERMITE, corner, HERMITE)
-    return PadLaw(length, width, cells, spread)
+    return PadLaw(length, width, cells, felt)
 
 
 def _powers(x: np.ndarray, y: np.ndarray) -> np.ndarray:
@@ -207,8 +214,9 @@ def between(
     area = (one[2] * one[3]) ** 0.5
     near = np.linalg.pinv((_powers(one[0], one[1]) * area).T) * area
     field = np.einsum("pm,imjk,qk->ipjq", near, face, near, optimize=True)
-    for each in (out, field):
-        each[np.arange(n), :, np.arange(n)] = 0.0  # a pad's own part is its law's
+    # a pad's own part is its law's, but for what its neighbours hold
+    field[np.arange(n), :, np.arange(n)] = 0.0
+    out[np.arange(n), :, np.arange(n)] -= np.linalg.inv(modes @ np.linalg.inv(face[0, :, 0]) @ modes.T)
     return out.reshape(3 * n, 3 * n), field
 
 
@@ -237,18 +245,20 @@ class ManyPresses:
             self.between = others
             return
         self.between, self.field = between(*at)
-        n, whole = len(x), self.law.spread[0, 0]
-        self.whole = np.einsum("pa,ipjq,qb->iajb", whole, self.field, whole).reshape(3 * n, 3 * n)
+        self.whole = 0.0
+        self.whole = self.lifted(np.tile([1.0, 0.0, 0.0], (len(x), 1)))
 
     def lifted(self, r: np.ndarray) -> np.ndarray:
         """Change, for pads at depths r, of their effects on each other's depth, [..., 3 pad, 3 pad]."""
-        n = len(self.x)
-        own = self.law.moments(r)
-        by = np.einsum("ipjq,...jqb->...ipjb", self.field, own, optimize=True)
-        return (
-            np.einsum("...ipa,...ipjb->...iajb", own, by, optimize=True).reshape(*r.shape[:-2], 3 * n, 3 * n)
-            - self.whole
-        )
+        n, m = len(self.x), len(POWERS)
+        own, relief = self.law.moments(r)
+        by = self.field.reshape(n * m, n, m).swapaxes(0, 1) @ own  # [..., loaded pad, pad and power, 3]
+        by = by.swapaxes(-3, -2).reshape(*r.shape[:-2], n, m, 3 * n)
+        felt = (own.swapaxes(-1, -2) @ by).reshape(*r.shape[:-2], 3 * n, 3 * n)
+        # pads whose face is curved by others press otherwise, and are felt so
+        curved = by[..., SECOND, :]
+        back = (relief @ curved).reshape(felt.shape)
+        return felt - curved.reshape(felt.shape).swapaxes(-1, -2) @ back - self.whole
 
     def system(
         self, modulus: np.ndarray, stiffness: np.ndarray, lifted: np.ndarray | None = None
@@ -271,7 +281,7 @@ class ManyPresses:
         if lifted is not None:
             M += lifted
         for i in range(n):
-            M[..., 3 * i : 3 * i + 3, 3 * i : 3 * i + 3] = spring[..., i, :, :]
+            M[..., 3 * i : 3 * i + 3, 3 * i : 3 * i + 3] += spring[..., i, :, :]
         return M
 
     def approached(self, approach: np.ndarray, slope: np.ndarray, height: np.ndarray) -> np.ndarray:

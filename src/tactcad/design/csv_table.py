@@ -269,12 +269,9 @@ def require_columns(table: Table, names: Sequence[str], optional: Sequence[str] 
     for name in names:
         if name not in table.header:
             alone = "; commas, semicolons or tabs between" if len(table.header) == 1 < len(names) else ""
-            raise InputError(
-                f"{table.path}:{table.header_line}:{len(table.header) + 1}",
-                f"column {name!r} is missing",
-                value=table.delimiter.join(table.header),
-                legal=", ".join(names) + alone,
-            )
+            where = f"{table.path}:{table.header_line}:{len(table.header) + 1}"
+            value, legal = table.delimiter.join(table.header), ", ".join(names) + alone
+            raise InputError(where, f"column {name!r} is missing", value=value, legal=legal)
 
 
 def refuse_duplicates(rows: Rows, names: tuple[str, ...], legal: str = "each once") -> None:
@@ -301,11 +298,8 @@ def refuse_duplicates(rows: Rows, names: tuple[str, ...], legal: str = "each onc
         at = 1 + np.flatnonzero(same)
         k = at[np.argmin(order[at])]
         what = " and ".join(f"{n} {column[order[k]]:g}" for n, column in zip(names, columns))
-        raise InputError(
-            rows.where(order[k], names[0]),
-            f"{what} is already on line {rows.lines[order[k - 1]]}",
-            legal=legal,
-        )
+        what = f"{what} is already on line {rows.lines[order[k - 1]]}"
+        raise InputError(rows.where(order[k], names[0]), what, legal=legal)
 
 
 def decimal_commas(texts: Iterable[str]) -> bool:
@@ -346,12 +340,9 @@ def _fitted(table: Table, line: int, row: list[str]) -> list[str]:
     """The row cut to the header's width; cells beyond must be blank."""
     width = len(table.header)
     if len(row) < width or any(row[width:]):
-        raise InputError(
-            f"{table.path}:{line}:{min(len(row), width) + 1}",
-            "a row of another length than the header (cut off, or a decimal comma?)",
-            value=len(row),
-            legal=f"{width} columns",
-        )
+        what = "a row of another length than the header (cut off, or a decimal comma?)"
+        legal = f"{width} columns"
+        raise InputError(f"{table.path}:{line}:{min(len(row), width) + 1}", what, value=len(row), legal=legal)
     return row[:width]
 
 
@@ -360,10 +351,6 @@ def _numbers(table: Table, field: Field, lines: np.ndarray, column: list[str]) -
     values = np.array([number(text) for text in column])
     for i in np.flatnonzero(~field.allowed(values))[:1]:
         wrong = "is not a number" if isnan(values[i]) else "is out of range"
-        raise InputError(
-            table.where(lines[i], field.name),
-            f"column {field.name!r} {wrong}",
-            value=column[i],
-            legal=field.legal,
-        )
+        what = f"column {field.name!r} {wrong}"
+        raise InputError(table.where(lines[i], field.name), what, value=column[i], legal=field.legal)
     return values

@@ -80,12 +80,8 @@ class OneOf:
 
     def read(self, value: Any, where: str) -> str:
         if not isinstance(value, str) or value not in self.options:
-            raise InputError(
-                where,
-                "unknown choice",
-                value=value,
-                legal=self.legal + in_brackets(did_you_mean(str(value), self.options)),
-            )
+            legal = self.legal + in_brackets(did_you_mean(str(value), self.options))
+            raise InputError(where, "unknown choice", value=value, legal=legal)
         return value
 
     def schema(self) -> dict:

@@ -229,21 +229,15 @@ def differences(name: str, given: Mapping[str, Any], origin: Mapping[str, str]) 
         if off > MOST_DIFFERENCE:
             other.append(difference)
         elif off > spread and not difference.origin:
-            raise InputError(
-                path,
-                f"{difference}, more than its spread of {spread:.1%}",
-                value=value,
-                legal=f'within it, or with the value\'s source in [origin] as "{path}" = "..."',
-            )
+            what = f"{difference}, more than its spread of {spread:.1%}"
+            legal = f'within it, or with the value\'s source in [origin] as "{path}" = "..."'
+            raise InputError(path, what, value=value, legal=legal)
         differing.append(difference)
     if other:
         legal = f"within {MOST_DIFFERENCE:.0%} of {'it' if len(other) == 1 else 'each'}"
-        raise InputError(
-            f"material.{other[0].name}",
-            f"not {name}: {'; '.join(map(str, other))}",
-            value=other[0].value,
-            legal=f"{legal}, left out ({name}'s are taken), or a label of its own in material.alloy",
-        )
+        what = f"not {name}: {'; '.join(map(str, other))}"
+        legal = f"{legal}, left out ({name}'s are taken), or a label of its own in material.alloy"
+        raise InputError(f"material.{other[0].name}", what, value=other[0].value, legal=legal)
     return tuple(differing)
 
 

@@ -80,12 +80,8 @@ def parse_toml(text: str, where: str) -> dict[str, Any]:
     long = next((token for token in _LONG_KEY.finditer(text) if token["long"]), None)
     if long:
         line = text.count("\n", 0, long.start()) + 1
-        raise InputError(
-            f"{where}:{line}",
-            "a key of too many names",
-            value=long["long"],
-            legal="names joined by at most 3 dots",
-        )
+        legal = "names joined by at most 3 dots"
+        raise InputError(f"{where}:{line}", "a key of too many names", value=long["long"], legal=legal)
     try:
         return tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:

@@ -62,11 +62,8 @@ def accuracy_data() -> dict:
     data = json.loads((Path(__file__).parent / "data" / "accuracy.json").read_text("utf-8"))
     measured = set.intersection(*(set(zone["promised"]) for zone in data["zones"]))
     for name in (c.name for c in CANDIDATES if c.name not in measured):
-        raise InputError(
-            f"rung {name} of mechanics/rungs",
-            "its errors are not measured",
-            legal="mechanics/data as `python benchmarks/ladder_fit.py src/tactcad/mechanics/data` writes it",
-        )
+        legal = "mechanics/data as `python benchmarks/ladder_fit.py src/tactcad/mechanics/data` writes it"
+        raise InputError(f"rung {name} of mechanics/rungs", "its errors are not measured", legal=legal)
     return data
 
 

@@ -242,12 +242,8 @@ def switched(excitation: float, gauge: Gauge, power: Power) -> Heating:
         If on_time is longer than the period.
     """
     if power.on_time > power.period:
-        raise InputError(
-            "readout.on_time",
-            "longer than readout.period",
-            value=power.on_time,
-            legal=f"up to {power.period:g} s",
-        )
+        legal = f"up to {power.period:g} s"
+        raise InputError("readout.on_time", "longer than readout.period", value=power.on_time, legal=legal)
     steady = continuous(excitation, gauge, power)
     tau = time_constant(gauge, power)
     if tau == 0.0:  # a grid on the bare metal

@@ -137,18 +137,11 @@ def _table2(rows: Rows) -> Table2:
     k, x = rows.values(measuring), rows.values(sample)
     k_once, x_once = list(dict.fromkeys(k)), list(dict.fromkeys(x))
     if len(rows) != len(k_once) * len(x_once):
-        raise InputError(
-            f"{rows.path}:{rows.lines[-1]}:1",
-            "not every measuring element has every sample",
-            value=len(rows),
-            legal=f"{len(k_once)} x {len(x_once)} rows",
-        )
+        what, legal = "not every measuring element has every sample", f"{len(k_once)} x {len(x_once)} rows"
+        raise InputError(f"{rows.path}:{rows.lines[-1]}:1", what, value=len(rows), legal=legal)
     if len(k_once) < 3 or len(x_once) < 2:
-        raise InputError(
-            f"{rows.path}:{rows.lines[-1]}:1",
-            "too few rows",
-            legal="three measuring elements and two samples at least",
-        )
+        legal = "three measuring elements and two samples at least"
+        raise InputError(f"{rows.path}:{rows.lines[-1]}:1", "too few rows", legal=legal)
     order = np.lexsort(([x_once.index(v) for v in x], [k_once.index(v) for v in k]))
     shape = (len(k_once), len(x_once))
 

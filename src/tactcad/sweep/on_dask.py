@@ -237,12 +237,8 @@ def _connected(client: type[Client], address: str) -> Client:
     try:
         return client(address, timeout=ANSWER)
     except (OSError, ValueError) as error:  # a timeout is an OSError
-        raise InputError(
-            "--scheduler",
-            "no scheduler answers there",
-            value=address,
-            legal="a Dask scheduler, as tcp://HOST:8786",
-        ) from error
+        legal = "a Dask scheduler, as tcp://HOST:8786"
+        raise InputError("--scheduler", "no scheduler answers there", value=address, legal=legal) from error
 
 
 def _refuse_without_tactcad(client: Client) -> None:

@@ -104,12 +104,8 @@ def claimed(study: Study, out: str | Path) -> Path:
         write_whole(folder / MARK, (json.dumps(mark, indent=1) + "\n").encode())
     found = mark_of(folder)
     if found.get("study") != study.identity:
-        raise InputError(
-            str(out),
-            f"holds another study, or this one as it was before a change: {found.get('name')}",
-            value=study.study.name,
-            legal="a folder of its own for every study",
-        )
+        what = f"holds another study, or this one as it was before a change: {found.get('name')}"
+        raise InputError(str(out), what, value=study.study.name, legal="a folder of its own for every study")
     return folder
 
 

@@ -378,12 +378,8 @@ def _refuse_contradictions(target: Target) -> None:
         )
     thinnest = THINNEST * (target.base.element.pad_length * max(target.stock.sheets)) ** 0.5
     if o.thickness is not None and o.thickness < thinnest:
-        raise InputError(
-            "object.thickness",
-            "too thin for rigid pads",
-            value=o.thickness,
-            legal=f"at least {thinnest:.3g} mm, {THINNEST:g} of a pad's side; left out for a half-space",
-        )
+        legal = f"at least {thinnest:.3g} mm, {THINNEST:g} of a pad's side; left out for a half-space"
+        raise InputError("object.thickness", "too thin for rigid pads", value=o.thickness, legal=legal)
     for path, values in (
         ("stock.sheets", target.stock.sheets),
         ("stock.hinge_tolerances", target.stock.hinge_tolerances),
@@ -403,19 +399,11 @@ def _refuse_contradictions(target: Target) -> None:
         if pair and pair[0] > pair[1]:
             raise InputError(path, "its first value is above its second", value=list(pair), legal="low, high")
     if 2 * e.of_a_kind > room.elements[1]:
-        raise InputError(
-            "elements.of_a_kind",
-            "two kinds of so many are more than room.elements allows",
-            value=e.of_a_kind,
-            legal=f"at most {int(room.elements[1]) // 2}",
-        )
+        where, what = "elements.of_a_kind", "two kinds of so many are more than room.elements allows"
+        raise InputError(where, what, value=e.of_a_kind, legal=f"at most {int(room.elements[1]) // 2}")
     if target.known.how == "calibrated" and target.base.calibration is None:
-        raise InputError(
-            "known.how",
-            f"design {target.base.name} has no [calibration] table",
-            value=target.known.how,
-            legal="drawn or inspected, or another target.base",
-        )
+        what, value = f"design {target.base.name} has no [calibration] table", target.known.how
+        raise InputError("known.how", what, value=value, legal="drawn or inspected, or another target.base")
     _refuse_between_steps(target)
     _refuse_illegal_pitch(target)
 
@@ -436,9 +424,6 @@ def _refuse_illegal_pitch(target: Target) -> None:
     for sheet in target.stock.sheets:
         spacer = round(target.room.pitch - sheet, 6)
         if spacer > spec.high:
-            raise InputError(
-                "room.pitch",
-                f"a sheet of {sheet:g} mm would need spacers of {spacer:g} mm",
-                value=target.room.pitch,
-                legal=f"at most {sheet + spec.high:g} mm: array.spacer is {spec.legal}",
-            )
+            what = f"a sheet of {sheet:g} mm would need spacers of {spacer:g} mm"
+            legal = f"at most {sheet + spec.high:g} mm: array.spacer is {spec.legal}"
+            raise InputError("room.pitch", what, value=target.room.pitch, legal=legal)

@@ -32,7 +32,7 @@ from .beam import Array
 from .cell_board import why_none
 from .cell_layout import PlanarLayout
 from .cell_tables import Planar, PlanarDesign
-from .parts import LAND_DEPTH
+from .parts import EDGE, LAND_DEPTH
 from .rules import design_rules
 from .sensor import chip_matrix, force_noise, lowest, pad_compliance, rated_force
 
@@ -181,9 +181,9 @@ def designed(t: CellTarget, c: CellChoice) -> PlanarDesign | None:
     process, corner = PlanarLayout(d).process, PlanarLayout(d).corner
     for name in KINDS:
         kind = getattr(d, name)
-        fillet = max(kind.fillet, corner)
-        slot = max(kind.slot, process.slot(c.foil), fillet + corner)
-        ear = max(kind.ear, 2.0 * corner, process.web(c.foil))
+        fillet = max(kind.fillet, corner + EDGE)
+        slot = max(kind.slot, process.slot(c.foil), fillet + corner + EDGE)
+        ear = max(kind.ear, 2.0 * corner + EDGE, process.web(c.foil))
         d = replace(d, **{name: replace(kind, fillet=fillet, slot=slot, ear=ear)})
     return replace(d, hall=replace(d.hall, buses=-(-columns * rows // PlanarLayout(d).chip.addresses)))
 

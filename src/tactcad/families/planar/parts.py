@@ -54,6 +54,7 @@ DOWEL_HOLE, PRESSED = "dowel hole diameter", f"{PRESS_FIT}, the pin pressed in"
 # one clamping; field of a reamed hole: ISO 286, H8 of 1 to 3 mm; depth of the sunk lands, plus and minus:
 # chosen.
 PLATE_ZONE, STOP_FLAT, REAMED, LAND_DEPTH = 0.02, 0.01, 0.014, 0.01
+EDGE = 0.01  # mm of straight edge between a foil's rounded corners; chosen: what its sheet can dimension
 BORED = 0.05  # mm by which wells and posts' openings may be wider than drawn; chosen: a drill
 FOOT_INSET = 0.03  # mm of island around its foot plate; chosen: the etching's tolerance
 WEB = 0.8  # mm of base left over the chips' pocket, at least: checks/data/shop.toml's floor of a pocket

@@ -16,7 +16,7 @@ from tactcad.parts.rules.rule import SAME, Rule, at_least, at_most, rule, wrong
 from . import beam, parts
 from .cell_layout import PlanarLayout
 from .field import pull
-from .parts import CHIP_ROOM, FOOT_INSET, SCREW, WEB, post_play, travel_limit
+from .parts import CHIP_ROOM, EDGE, FOOT_INSET, SCREW, WEB, post_play, travel_limit
 from .sensor import aside, largest_field, lowest, neighbours_field, rated_force, stop_stress
 
 LAND = 0.1  # mm of an island on the base around its well, at least; chosen
@@ -31,7 +31,8 @@ def no_less(layout: PlanarLayout, field: str, what: str, least: float, legal: st
 
 
 def no_more(layout: PlanarLayout, field: str, what: str, most: float) -> Iterator[Finding]:
-    return at_most(field, what, attrgetter(field)(layout.design), most)
+    legal = "" if most > 0.0 else "none beside the design's other values"
+    return at_most(field, what, attrgetter(field)(layout.design), most, legal)
 
 
 def _up(length: float) -> float:
@@ -66,16 +67,18 @@ def beams_can_be_cut(layout: PlanarLayout) -> Iterator[Finding]:
         own = kind.table
         yield from no_less(layout, width, "beam narrower than the process leaves", process.web(t))
         yield from no_less(layout, fillet, "fillet smaller than the process leaves", process.inside_radius(t))
+        most = (kind.beam_length - EDGE) / 2.0
+        yield from no_more(layout, fillet, "fillets leave nothing of the beam between them", most)
         if not kind.pinwheel:
-            most = (own.island - own.beam_width) / 2.0 - corner
+            most = (own.island - own.beam_width) / 2.0 - corner - EDGE
             yield from no_more(layout, fillet, "fillets do not fit the island's side", most)
             continue
-        least = max(process.slot(t), own.fillet + corner)
+        least = max(process.slot(t), own.fillet + corner + EDGE)
         yield from no_less(layout, slot, "slot narrower than the process or its fillets", least)
-        least = max(2.0 * corner, process.web(t))
+        least = max(2.0 * corner + EDGE, process.web(t))
         yield from no_less(layout, ear, "ear narrower than its corners, or than a web", least)
         yield from no_more(layout, ear, "ear meets the next beam's root", own.island)
-        yield from no_less(layout, fillet, "ear's corner does not fit over its beam", corner)
+        yield from no_less(layout, fillet, "ear's corner does not fit over its beam", corner + EDGE)
 
 
 @rule(after="beams_can_be_cut")
