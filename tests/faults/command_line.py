@@ -33,7 +33,9 @@ RIGS = ("cart", "holder", "sample", "calibration", "grasping", "bonding")
 def one_by_one(arm: float, revision: str) -> str:
     """The shipped array's file with one element and no rig."""
     text = (ROOT / "hardware" / "macro-array.toml").read_text(encoding="utf-8")
-    table = re.compile(rf"^\[(?:{'|'.join((*RIGS, 'origin'))})\]\n(?:(?!\[).*\n)*", re.MULTILINE)
+    table = re.compile(
+        rf"^\[(?:{'|'.join((*RIGS, 'origin', 'design[.]unchanged[.].*'))})\]\n(?:(?!\[).*\n)*", re.MULTILINE
+    )
     text = table.sub("", text + "\n").replace(
         "youngs_modulus = 69000\n", ""
     )  # the paper's, which wants an origin

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import fields, replace
+from math import ceil, floor
 from pathlib import Path
 from random import Random
 
@@ -83,7 +84,8 @@ def mended(design, finding):
         return None
     way, low, high = said.groups()
     value = float(low) if high is None or way else (float(low) + float(high)) / 2
-    value *= {"at least": 1 + 1e-5, "at most": 1 - 1e-5}.get(way, 1.0)  # limits are worded to six digits
+    # as a person writes it, to 0.1 um on the legal side
+    value = {"at least": ceil, "at most": floor}.get(way, round)(1e4 * value) / 1e4
     value = int(value) if name == "buses" else value
     return replace(design, **{table: replace(getattr(design, table), **{name: value})})
 
