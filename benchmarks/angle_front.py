@@ -53,18 +53,25 @@ HEADS = (
 
 
 def with_force(stand: Stand, force: float) -> Stand:
+    force = float(f"{min(max(force, FORCES[0]), FORCES[1]):.2g}")
     target = stand.target.with_("grasp.force", force).with_("grasp.overload", round(force * OVERLOAD, 3))
     rating = replace(stand.base.rating, overload_force=target.grasp.overload)
     return replace(stand, target=target, base=replace(stand.base, rating=rating))
 
 
 def around(stand: Stand, rng: np.random.Generator) -> Iterator[Stand]:
-    """As `others`, and with another force."""
+    """As `others`; on other pads with the same gap between rows and the force that goes with their area; with
+    another force."""
     yield from others(stand, rng)
+    d, (least, most), force = stand.base, FREE["elements.pads"], stand.target.grasp.force
+    for step in (-1.0, -0.25, 0.25, 1.0):
+        length = round(d.element.pad_length + step, 6)
+        array = replace(d.array, row_pitch=round(d.array.row_pitch + step, 6))
+        if least <= length <= most and array.row_pitch >= FREE["room.pitch"]:
+            base = replace(d, array=array, element=replace(d.element, pad_length=length))
+            yield with_force(replace(stand, base=base), force * length / d.element.pad_length)
     for factor in (0.5, 0.8, 0.93, 1.08, 1.25, 2.0):
-        force = float(f"{stand.target.grasp.force * factor:.2g}")
-        if FORCES[0] <= force <= FORCES[1]:
-            yield with_force(stand, force)
+        yield with_force(stand, force * factor)
 
 
 def started(target: Target, elements: int, kinds: int, pad: float, force: float) -> tuple[Stand, np.ndarray]:
@@ -90,8 +97,7 @@ def answer(stand: Stand, row: np.ndarray, angle: float) -> Found:
         found = search(stand, goal, rules=refusals, start=row, until=until, around=around)
         best = min((best or found, found), key=worth)
         stand, row = best.candidate.stand, best.row + rng.choice((0, 0, *BY), len(best.row))
-        force = float(f"{stand.target.grasp.force * rng.choice((0.7, 1.0, 1.4)):.2g}")
-        stand = with_force(stand, min(max(force, FORCES[0]), FORCES[1]))
+        stand = with_force(stand, stand.target.grasp.force * rng.choice((0.7, 1.0, 1.4)))
         row = np.clip(row, *stand.limits)
     assert best
     return best
