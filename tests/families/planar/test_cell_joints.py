@@ -188,6 +188,7 @@ def folder(tmp_path_factory) -> Path:
     for old, new in (("rows = 2", "rows = 1"), ("columns = 6", "columns = 2")):
         assert old in text
         text = text.replace(old, new)
+    text = re.sub(r"(?s)\[design\.unchanged\..*?\n\]\n", "", text)  # other parts, so no kept letters
     (work / "two.toml").write_text(text, "utf-8")
     assert main(["export", str(work / "two.toml"), "--robot", "--out", str(work / "out")]) == 0
     return work / "out" / "robot"
