@@ -126,7 +126,8 @@ def _print(layout: Layout, builds: Builds, lines: list[StackLine]) -> None:
         print(f"  {which:8} {100 * share:6.2f} % meet all requirements{f' ({why})' if why else ''}")
     low, high = builds.interval
     print(f"  yield    {100 * builds.share:6.2f} % ({100 * low:.4g} to {100 * high:.4g} %)")
-    print(f"  K        {100 * builds.near:6.2f} % have every K within {100 * NEAR:g} % of the drawn one")
+    if builds.near is not None:
+        print(f"  K        {100 * builds.near:6.2f} % have every K within {100 * NEAR:g} % of the drawn one")
     named = {line.requirement.name: _with_unit(line) for line in lines}
     wide = max(map(len, named.values()), default=0)
     print(f"  {'requirement':{wide}} {'nominal':>9} {'worst case':>21} {'sigma':>8}  largest contributor")

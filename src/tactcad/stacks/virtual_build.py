@@ -64,7 +64,8 @@ class Builds:
     kept         by distribution: share of arrays that meet every requirement
     failures     by distribution: how many arrays miss a requirement, by its name
     elements     as built
-    near         share of arrays of normal parts with every K within NEAR of the drawn one
+    near         share of arrays of normal parts with every K within NEAR of the drawn one; None if the family
+                 has no K as built
     """
 
     count: int
@@ -72,7 +73,7 @@ class Builds:
     kept: dict[str, float]
     failures: dict[str, dict[str, int]]
     elements: tuple[ElementBuilt, ...]
-    near: float = 0.0
+    near: float | None = None
 
     @property
     def worse(self) -> Distribution:
@@ -107,15 +108,16 @@ class Sensor:
         kept: dict[str, float] = {}
         failures: dict[str, dict[str, int]] = {}
         elements: tuple[ElementBuilt, ...] = ()
-        near = 0.0
+        near = None
         for name in (*DECIDING, "corners"):
             missed, arrays = self._all(count, name, np.random.default_rng(seed))
             kept[name] = float(1.0 - np.logical_or.reduce(list(missed.values())).mean())
             failures[name] = {r: int(m.sum()) for r, m in missed.items() if m.any()}
             if name == "normal":
                 elements = self._family.stack.elements(self.layout, arrays)
-                off = np.abs(arrays["stiffness"] / self._drawn() - 1.0).max(axis=1)
-                near = float((off <= NEAR).mean())
+                if "stiffness" in arrays:
+                    off = np.abs(arrays["stiffness"] / self._drawn() - 1.0).max(axis=1)
+                    near = float((off <= NEAR).mean())
         return Builds(count, seed, kept, failures, elements, near)
 
     def _drawn(self) -> Array:
