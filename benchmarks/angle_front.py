@@ -1,7 +1,7 @@
 """The least half-width of K_obj that an array can have, against the angle at which the object's face may lie:
 a table of docs/targets.md.
 
-    python benchmarks/angle_front.py docs/targets.md    half an hour of one core; set OMP_NUM_THREADS=1
+    python benchmarks/angle_front.py docs/targets.md    40 minutes of one core; set OMP_NUM_THREADS=1
 
 Three starts differ in number of elements and of kinds, places of the kinds, pitches, pads and force. Each
 goes through the angles from 0 up and back: its answer at one angle is where it starts at the next. An array
