@@ -205,6 +205,7 @@ class LoadedDesign:
         if not isinstance(changes, Mapping | None):
             raise InputError("with_", "not fields and values", value=changes, legal='{"array.pitch": 4.5}')
         made = copy.deepcopy(self.table)
+        made["design"].pop("unchanged", None)  # nothing shows that its parts are as they were
         given = {self._path(str(name)): value for name, value in {**(changes or {}), **named}.items()}
         if "material.alloy" in given:  # a new alloy comes with its own values
             made["material"] = {}

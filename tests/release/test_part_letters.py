@@ -16,13 +16,15 @@ import pypdf
 import pytest
 from variants import TINY_TEXT
 
+import tactcad as tc
 from tactcad.cli.main import main
 from tactcad.design.load import parse
 from tactcad.design.messages import CheckFailure, InputError
-from tactcad.export.golden_file import accept, check_golden, read_golden
+from tactcad.export.golden_file import UNPROVEN, accept, check_golden, read_golden
 from tactcad.export.inspection import inspection_bytes
 from tactcad.lab.inspection_sheet import read_sheet
 from tactcad.parts.array.layout import Layout
+from tactcad.release.make import golden_faults
 from tactcad.review.freecad import freecad_record
 from tactcad.scenes import make_scene
 
@@ -172,6 +174,32 @@ def test_a_golden_file_knows_since_when_a_part_is_as_it_is(tmp_path):
     issues = tomllib.loads(pasted("\n".join([*lines, ""])))["design"]["unchanged"]
     assert issues["D"]["parts"] == ["carrier", "element-a5mm"]
     assert {*issues["B"]["parts"]} == {*KEPT} - {"carrier"}
+
+
+def test_kept_letters_that_nothing_proves_are_told(tmp_path, capsys):
+    """A copy of a design whose element is another now, in a folder of its own, then recorded as B."""
+    file = tmp_path / "hardware" / "tiny.toml"
+    file.parent.mkdir()
+    table = TABLE.replace('"blank"', '"blank", "element-a5mm"')
+    file.write_text(C + table)
+    export = ["export", str(file), "--scene", "array", "--out", str(tmp_path / "out")]
+    assert main(export) == 0 and f"warning: {UNPROVEN}" in capsys.readouterr().err
+    alone = check_golden(parse(C + table, "c"), None)
+    assert [f.severity for f in alone] == ["flag"] and check_golden(parse(C, "c"), None) == []
+    assert golden_faults(parse(C + table, "c"), tmp_path / "tiny.toml") == [UNPROVEN]
+    (tmp_path / "exports" / "golden").mkdir(parents=True)
+    accept(parse(B, "b"), tmp_path / "exports" / "golden" / "tiny.json", [])
+    assert (
+        main(export) == 0
+        and "warning: tiny-element-a5mm: changed since revision B" in capsys.readouterr().err
+    )
+    file.write_text(C + TABLE)
+    assert main(export) == 0 and "warning" not in capsys.readouterr().err
+
+
+def test_a_design_changed_in_python_keeps_no_letters():
+    kept = tc.load("macro-array")
+    assert kept.design.design.unchanged and not kept.with_(hinge_thickness=0.26).design.design.unchanged
 
 
 def test_the_boards_follow_the_circuit_not_the_sheets(tmp_path):

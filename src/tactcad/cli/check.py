@@ -137,7 +137,7 @@ def _checked(source: str, args: argparse.Namespace, shop: Path, meshing: Meshing
 
     report = run_checks(design, names, shop, progress(sys.stderr).step, args.strict, meshing)
     path = golden_path(find(source), design)
-    if path:
+    if path or design.design.unchanged:
         report.run("golden", check_golden, design, path)
     return report
 

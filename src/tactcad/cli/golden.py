@@ -12,9 +12,9 @@ EXAMPLES = """\
   make golden                      those of every design in hardware/
 
 Runs every check first, prints what changed, and writes exports/golden/<design>.json only if nothing
-fails. Other content under the same revision letter is refused: give the design a new one. Then the lines are
-printed by which parts that did not change keep their letters ([design.unchanged]); one that changed and keeps
-its letter is refused."""
+fails. Other content under the same revision letter is refused: give the design a new one. It then prints the
+lines [design.unchanged] that let parts that did not change keep their letters. A part that changed is refused
+its old letter."""
 
 
 def configure(parser: argparse.ArgumentParser) -> None:

@@ -124,7 +124,7 @@ def _cell(ratio: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return cell, at - cell
 
 
-@lru_cache(maxsize=64)  # 1.2 MB each
+@lru_cache(maxsize=64)  # 1.8 MB each
 def pad_law(poisson: float, thickness: float, base: str, length: float, width: float) -> PadLaw:
     """The law of one rectangular pad, by solving its patches at every knot."""
     one = patches(length, width, False)

@@ -24,6 +24,10 @@ from .part_letters import kept_letters, since, to_paste, with_letters, wrong_let
 Severity = Literal["fail", "flag"]
 
 SCHEMA = "tactcad-golden-1"
+UNPROVEN = (
+    "parts keep letters ([design.unchanged]), and no golden file shows that they did not change: leave the "
+    "table out, or record each revision in a folder hardware/ with `tactcad golden`"
+)
 MOST_BYTES = 50_000_000  # the largest array, 2 x 500, takes under one
 
 
@@ -74,7 +78,16 @@ def read_golden(path: Path) -> Record:
     return record
 
 
-def check_golden(design: CommonTables, path: Path) -> list[Finding]:
+def doubts(design: CommonTables, path: Path | None) -> list[str]:
+    """Why letters that parts keep are not true, or not known to be."""
+    if not design.design.unchanged:
+        return []
+    if path is None or not path.exists():
+        return [UNPROVEN]
+    return wrong_letters(read_golden(path), golden_record(design))
+
+
+def check_golden(design: CommonTables, path: Path | None) -> list[Finding]:
     """Hold a design against its golden file.
 
     Parameters
@@ -82,7 +95,7 @@ def check_golden(design: CommonTables, path: Path) -> list[Finding]:
     design
         A design that keeps its rules.
     path
-        Of the golden file, which may be absent.
+        Of the golden file, which may be absent; None: the design can have none.
 
     Returns
     -------
@@ -90,6 +103,8 @@ def check_golden(design: CommonTables, path: Path) -> list[Finding]:
         Content that the golden file's revision does not have fails, and a letter kept by a part that changed;
         under a new revision, and if there is no golden file yet, what `make golden` would take up is flagged.
     """
+    if path is None:
+        return [_finding("flag", design, doubt) for doubt in doubts(design, path)]
     if not path.exists():
         return [
             _finding("flag", design, f"there is no {path.name} in exports/golden: `make golden` writes it")

@@ -176,10 +176,10 @@ def release(
 
 
 def golden_faults(design: CommonTables, design_file: Path) -> list[str]:
-    """Why the golden file does not allow a release of this revision; empty if it holds just this geometry,
-    or if the design is in no hardware/ and can have none."""
+    """Why the golden file does not allow a release of this revision; empty if it holds just this content,
+    or if the design is in no hardware/, can have none, and keeps no letters."""
     path = golden_path(design_file, design)
-    return [] if path is None else [finding.message for finding in check_golden(design, path)]
+    return [finding.message for finding in check_golden(design, path)]
 
 
 class NotReleased(CheckFailure):

@@ -83,7 +83,8 @@ def first_lines(contents: ReleaseContents, title: str) -> list[str]:
     return lines + paragraph(
         f"Issued {identity.date}{f' by {people}' if people else ''}. Made with tactcad {__version__}. "
         f"This is revision {identity.revision} as a whole; the tables name each part's own (rev): one that "
-        "has not changed since an earlier revision keeps that letter. Use no file of another letter."
+        "has not changed since an earlier revision keeps that letter. Do not use a file with any other "
+        "letter."
     )
 
 
