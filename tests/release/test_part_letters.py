@@ -20,7 +20,7 @@ import tactcad as tc
 from tactcad.cli.main import main
 from tactcad.design.load import parse
 from tactcad.design.messages import CheckFailure, InputError
-from tactcad.export.golden_file import UNPROVEN, accept, check_golden, read_golden
+from tactcad.export.golden_file import UNPROVEN, accept, check_golden, doubts, read_golden
 from tactcad.export.inspection import inspection_bytes
 from tactcad.lab.inspection_sheet import read_sheet
 from tactcad.parts.array.layout import Layout
@@ -177,7 +177,7 @@ def test_a_golden_file_knows_since_when_a_part_is_as_it_is(tmp_path):
 
 
 def test_kept_letters_that_nothing_proves_are_told(tmp_path, capsys):
-    """A copy of a design whose element is another now, in a folder of its own, then recorded as B."""
+    """A copy of a design whose element is another now, which no golden file knows; then one that holds B."""
     file = tmp_path / "hardware" / "tiny.toml"
     file.parent.mkdir()
     table = TABLE.replace('"blank"', '"blank", "element-a5mm"')
@@ -187,14 +187,11 @@ def test_kept_letters_that_nothing_proves_are_told(tmp_path, capsys):
     alone = check_golden(parse(C + table, "c"), None)
     assert [f.severity for f in alone] == ["flag"] and check_golden(parse(C, "c"), None) == []
     assert golden_faults(parse(C + table, "c"), tmp_path / "tiny.toml") == [UNPROVEN]
-    (tmp_path / "exports" / "golden").mkdir(parents=True)
-    accept(parse(B, "b"), tmp_path / "exports" / "golden" / "tiny.json", [])
-    assert (
-        main(export) == 0
-        and "warning: tiny-element-a5mm: changed since revision B" in capsys.readouterr().err
-    )
-    file.write_text(C + TABLE)
-    assert main(export) == 0 and "warning" not in capsys.readouterr().err
+    golden = tmp_path / "tiny.json"
+    accept(parse(B, "b"), golden, [])
+    (said,) = doubts(parse(C + table, "c"), golden)
+    assert said.startswith("tiny-element-a5mm: changed since revision B")
+    assert doubts(parse(C + TABLE, "c"), golden) == []
 
 
 def test_a_design_changed_in_python_keeps_no_letters():

@@ -110,7 +110,6 @@ def _exported(source: str, args: argparse.Namespace, say: Progress) -> tuple[dic
     from tactcad.design.files import refuse_overwriting
     from tactcad.design.load import find, read
     from tactcad.export.formats import ExportOptions
-    from tactcad.export.golden_file import doubts, golden_path
     from tactcad.export.pipeline import export
     from tactcad.parts.rules import broken_rules
     from tactcad.scenes import chosen_scenes, left_out, refuse_unknown_parts
@@ -149,8 +148,13 @@ def _exported(source: str, args: argparse.Namespace, say: Progress) -> tuple[dic
         picked = pick(export_grades(design, scenes, args.drawings, args.guide), asked, VOLUME)
         options = replace(options, meshing=meshing_of(picked.grade))
     done = export(design, options, out, say, args.others)
-    for doubt in doubts(design, golden_path(find(source), design)):
-        say.line(f"warning: {doubt}")
+    if design.design.unchanged and done.made:
+        from tactcad.export.golden_file import doubts, golden_path
+
+        golden = golden_path(find(source), design)
+        if not args.scene or not (golden and golden.exists()):  # golden files hold all scenes
+            for doubt in doubts(design, golden):
+                say.line(f"warning: {doubt}")
     missing = [] if args.scene else [str(left) for left in left_out(design)]
     for line in missing:
         say.line(f"warning: {line}")
