@@ -50,7 +50,7 @@ class PadLaw:
 
     length: float
     width: float
-    cells: np.ndarray  # [knot, knot, 3, 4, 4]
+    cells: np.ndarray  # [4, 4, 3, cell]
     felt: np.ndarray  # [knot, knot, power, 6]
 
     def _place(self, r: np.ndarray) -> tuple[np.ndarray, ...]:
@@ -90,30 +90,26 @@ class PadLaw:
         -------
         ndarray, [..., 3], and ndarray, [..., 3, 3]
         """
-        side = np.array([self.length, self.width])
         size, ratio, sign, touches = self._place(r)
-        cell, u = _cell(ratio)
-        coefficients = self.cells[cell[..., 0], cell[..., 1]]
-        power = np.stack([np.ones_like(u), u, u * u, u**3], -1)
-        slope = np.stack([np.zeros_like(u), np.ones_like(u), 2 * u, 3 * u * u], -1) * (KNOTS - 1)
-        along = np.einsum("...fij,...j->...fi", coefficients, power[..., 1, :])
-        across = np.einsum("...fij,...j->...fi", coefficients, slope[..., 1, :])
-        f = np.einsum("...fi,...i->...f", along, power[..., 0, :])
-        d = np.stack(
-            [
-                np.einsum("...fi,...i->...f", along, slope[..., 0, :]),
-                np.einsum("...fi,...i->...f", across, power[..., 0, :]),
-            ],
-            -1,
-        )  # of f by the two ratios
+        cell, place = _cell(ratio)
+        u, v = np.moveaxis(place, -1, 0)
+        c = self.cells.take(cell @ (KNOTS - 1, 1), -1)
+        along = ((c[:, 3] * v + c[:, 2]) * v + c[:, 1]) * v + c[:, 0]
+        across = (3 * c[:, 3] * v + 2 * c[:, 2]) * v + c[:, 1]
+        f = ((along[3] * u + along[2]) * u + along[1]) * u + along[0]
+        by_first = (3 * along[3] * u + 2 * along[2]) * u + along[1]
+        by_second = ((across[3] * u + across[2]) * u + across[1]) * u + across[0]
         # forces = size f(fall/size); by depth, and by each fall, of which size has 3/2 more
-        by_size = f - (d * ratio[..., None, :]).sum(-1)
-        by_fall = 1.5 * by_size[..., None] + d
-        turn = np.concatenate([np.ones_like(sign[..., :1]), sign], -1) * np.concatenate([[1.0], side])
-        forces = size[..., None] * f * turn
-        derivative = np.concatenate([by_size[..., None], by_fall * (sign * side)[..., None, :]], -1)
-        derivative = derivative * turn[..., None]
-        return forces * touches[..., None], derivative * touches[..., None, None]
+        by = np.stack([f, by_first, by_second], 1)  # [force, by what, ...]
+        by[:, 1:] *= KNOTS - 1
+        by[:, 0] -= by[:, 1] * ratio[..., 0] + by[:, 2] * ratio[..., 1]
+        by[:, 1:] += 1.5 * by[:, :1]
+        turn = np.ones((3, *size.shape))
+        turn[1:] = np.moveaxis(sign * (self.length, self.width), -1, 0)
+        forces = f * turn * (size * touches)
+        derivative = by * turn[:, None] * (turn * touches)
+        derivative = np.ascontiguousarray(np.moveaxis(derivative, (0, 1), (-2, -1)))
+        return np.ascontiguousarray(np.moveaxis(forces, 0, -1)), derivative
 
 
 def _cell(ratio: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -156,7 +152,7 @@ def pad_law(poisson: float, thickness: float, base: str, length: float, width: f
             felt[i, j, SECOND, 3:] = relief[SECOND, SECOND]
         felt[i, KNOTS - i :] = felt[i, KNOTS - i - 1]
     step = 1 / (KNOTS - 1)
-    cells = np.empty((KNOTS - 1, KNOTS - 1, 3, 4, 4))
+    cells = np.empty((4, 4, 3, (KNOTS - 1) ** 2))
     for k, of in enumerate(value):
         spline = RectBivariateSpline(t, t, of)
         data = np.array([[spline(t, t, dx=a, dy=b) * step ** (a + b) for b in (0, 1)] for a in (0, 1)])
@@ -168,7 +164,7 @@ def pad_law(poisson: float, thickness: float, base: str, length: float, width: f
             for q in (0, 1)
         ]
         corner = np.array(both).reshape(4, 4, KNOTS - 1, KNOTS - 1)
-        cells[:, :, k] = np.einsum("ia,abxy,jb->xyij", HERMITE, corner, HERMITE)
+        cells[:, :, k] = np.einsum("ia,abxy,jb->ijxy", HERMITE, corner, HERMITE).reshape(4, 4, -1)
     return PadLaw(length, width, cells, felt)
 
 
@@ -293,51 +289,55 @@ class ManyPresses:
         return b
 
     def rest(self, M: np.ndarray, b: np.ndarray, start: np.ndarray) -> tuple[np.ndarray, ...]:
-        """Depths that leave the pads at rest, the law's forces there, its derivatives and the equations', by
-        Newton's method: depth + M law(depth) = b."""
-        shape = b.shape
-        n3 = 3 * shape[-2]
-        r, eye = start.copy(), np.eye(n3)
+        """Depths that leave the pads at rest, the law's forces there, its derivatives, and the matrix J of
+        `pressing`, by Newton's method: depth + M law(depth) = b. What already rests is left out."""
+        shape, n3 = b.shape, 3 * b.shape[-2]
+        M, b, r = M.reshape(-1, n3, n3), b.reshape(-1, n3 // 3, 3), start.reshape(-1, n3 // 3, 3).copy()
 
-        def state(depth: np.ndarray) -> tuple[np.ndarray, ...]:
+        def state(M: np.ndarray, b: np.ndarray, depth: np.ndarray) -> tuple[np.ndarray, ...]:
             g, d = self.law(depth)
-            off = b - depth - (M @ g.reshape(*shape[:-2], n3, 1)).reshape(shape)
+            off = b - depth - (M @ g.reshape(-1, n3, 1)).reshape(depth.shape)
             return g, d, off, (off**2).sum((-1, -2))
 
-        g, d, off, size = state(r)
+        todo = np.arange(len(r))
+        g, d, off, size = state(M, b, r)
         close = (CLOSE * np.abs(b).max((-1, -2), initial=1e-9)) ** 2
         for _ in range(ROUNDS):
-            J = eye + columns(M, d)
-            if (size <= close).all():
-                return r, g, d, J
-            step = np.linalg.solve(J, off.reshape(*shape[:-2], n3, 1)).reshape(shape)
-            share = np.ones(size.shape)
+            todo = todo[size[todo] > close[todo]]
+            if not len(todo):
+                break
+            M_, b_, r_, d_, off_, size_ = (a[todo] for a in (M, b, r, d, off, size))
+            more = np.linalg.solve(pressing(M_, d_), (d_ @ off_[..., None]).reshape(-1, n3, 1))
+            step, share = off_ - (M_ @ more).reshape(r_.shape), np.ones(len(todo))
             for _ in range(12):
-                tried = state(r + share[..., None, None] * step)
-                worse = (tried[3] > size) & (size > close)
+                depth = r_ + share[:, None, None] * step
+                tried = state(M_, b_, depth)
+                worse = tried[3] > size_
                 if not worse.any():
                     break
                 share = np.where(worse, share / 2, share)
-            r = r + share[..., None, None] * step
-            g, d, off, size = tried
-        return r, g, d, eye + columns(M, d)
+            for old, now in zip((r, g, d, off, size), (depth, *tried)):
+                old[todo] = now
+        J = pressing(M, d).reshape(*shape[:-2], n3, n3)
+        return r.reshape(shape), g.reshape(shape), d.reshape(*shape, 3), J
 
     def near(self, M: np.ndarray, b: np.ndarray, r: np.ndarray) -> np.ndarray:
         """The law's forces at rest, of a body that hardly differs from one with the pads at rest at depths
         r.
         """
         g, d = self.law(r)
-        n3 = 3 * r.shape[-2]
-        off = b - r - (M @ g.reshape(*r.shape[:-2], n3, 1)).reshape(r.shape)
-        step = np.linalg.solve(np.eye(n3) + columns(M, d), off.reshape(*r.shape[:-2], n3, 1)).reshape(r.shape)
-        return g + (d @ step[..., None])[..., 0]
+        off = b - r - (M @ g.reshape(*M.shape[:-1], 1)).reshape(r.shape)
+        right = (d @ off[..., None]).reshape(*M.shape[:-1], 1)
+        return g + np.linalg.solve(pressing(M, d), right).reshape(r.shape)
 
 
-def columns(M: np.ndarray, d: np.ndarray) -> np.ndarray:
-    """M times the block diagonal of d, [..., 3 pad, 3 pad]."""
+def pressing(M: np.ndarray, d: np.ndarray) -> np.ndarray:
+    """J, [..., 3 pad, 3 pad]: where depths in the undisturbed face grow by db, forces of pads at rest grow by
+    J^-1 d db; d are the derivatives of the law's forces, pad by pad."""
     n = d.shape[-3]
-    parts = M.reshape(*M.shape[:-1], n, 3).swapaxes(-3, -2) @ d
-    return parts.swapaxes(-3, -2).reshape(M.shape)
+    J = d @ M.reshape(*M.shape[:-2], n, 3, 3 * n)
+    J.reshape(*M.shape[:-2], -1)[..., :: 3 * n + 1] += 1.0
+    return J.reshape(M.shape)
 
 
 def press_many(pads: Pads, body: Body, load: float, angle: tuple[float, float]) -> Pressed:
@@ -351,8 +351,7 @@ def press_many(pads: Pads, body: Body, load: float, angle: tuple[float, float]) 
     move = pads.compliance[:, :, 0] * K[:, None]
     slope = np.tan(np.radians(angle))
     at = ManyPresses(pads.x, pads.y, pads.length, pads.width, move, body, _between_two(pads, body))
-    E, along = body.modulus, np.zeros((3 * n, 1))
-    along[::3] = 1.0
+    E = body.modulus
     back = pads.height + pads.x * slope[0] + pads.y * slope[1]
     alone = at.law(np.array([1.0, 0.0, 0.0]))[0][0] * E
     each = 1 / (1 / alone + 1 / K)
@@ -384,7 +383,7 @@ def press_many(pads: Pads, body: Body, load: float, angle: tuple[float, float]) 
             if abs(off) < LOADED * load:
                 break
             low, high = (approach, high) if off > 0 else (low, approach)
-            steep = E * np.einsum("nj,nj->", d[:, 0], np.linalg.solve(J, along).reshape(n, 3))
+            steep = E * np.linalg.solve(J, d[..., 0].reshape(-1))[::3].sum()
             step = approach + off / steep if steep > 0 else inf
             if not low < step < high:  # bisect if the tangent leaves the bracket
                 step = (low + high) / 2 if high < inf else 2 * approach - low + load / alone

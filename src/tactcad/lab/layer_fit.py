@@ -25,7 +25,7 @@ from scipy.special import fdtrc
 
 from tactcad.contact.elastic_body import Body
 from tactcad.contact.press import Pads, pad_stiffness
-from tactcad.contact.rigid_pads import CLOSE, ManyPresses, columns
+from tactcad.contact.rigid_pads import CLOSE, ManyPresses, pressing
 from tactcad.lab.combine import DISAGREE, PRIOR_DOF
 from tactcad.lab.regression import KNOWN, t_quantile
 
@@ -183,58 +183,50 @@ class _Model:
         )
         M = contact.system(E, K, lifted)
         r, g, d, J = contact.rest(M, b, b if start is None else start)
-        sink = E[..., None] * np.einsum("gtni,ni->gtn", g, contact.move) / K
-        force = E[..., None] * g[..., 0]
+        over = E[..., None] / K
+        sinks = lambda g: over * np.einsum("gtni,ni->gtn", g, contact.move)  # noqa: E731
+        laid = g  # on the layer of this thickness
         if at.thicker is not None:
-            step = np.log1p(THICKER)
-            other = at.thicker.near(at.thicker.system(E, K, lifted), b, r)
-            by_force = E[..., None] * (other - g)[..., 0] / step
-            by_sink = E[..., None] * np.einsum("gtni,ni->gtn", other - g, contact.move) / K / step
-            off = q[:, part["thickness"]][:, None]
-            sink, force = sink + off * by_sink, force + off * by_force
+            grown = (at.thicker.near(at.thicker.system(E, K, lifted), b, r) - g) / np.log1p(THICKER)
+            laid = g + q[:, part["thickness"], None, None] * grown
+        sink, force = sinks(laid), E[..., None] * laid[..., 0]
         resting = q[:, part["offset"], None]
         if self.time is not None:
             resting = resting + q[:, part["rate"], None] * self.time
         signal = resting + K_v[..., None] * sink[..., rows].swapaxes(1, 2)
-        # by approach, slopes, heights, K, own modulus: right-hand sides of J dr
-        right = np.zeros((G, T, n, 3, 3 + 2 * n + m))
-        right[..., 0, 0] = 1.0
-        right[..., 0, 1], right[..., 1, 1] = -contact.x, -1.0
-        right[..., 0, 2], right[..., 2, 2] = -contact.y, -1.0
-        i = np.arange(n)
-        right[:, :, i, 0, 3 + i] = -1.0
-        right[:, :, i, :, 3 + n + i] = (sink[..., None] * contact.move).transpose(2, 0, 1, 3)
-        blocks = M.reshape(G, T, 3 * n, n, 3)
-        right[..., 3 + 2 * n :] = -np.einsum("gtrnk,gtnk->gtrn", blocks, g)[..., rows].reshape(G, T, n, 3, m)
-        dr = np.linalg.solve(J, right.reshape(G, T, 3 * n, -1)).reshape(right.shape)
-        dg = np.einsum("gtnij,gtnjq->gtniq", d, dr)
-        ds = np.einsum("gtniq,ni->gtnq", dg, contact.move) * (E[..., None] / K)[..., None]
-        df = E[..., None, None] * dg[..., 0, :]
-        ds[:, :, i, 3 + n + i] -= sink
-        ds[:, :, rows, 3 + 2 * n + np.arange(m)] += sink[..., rows]
-        df[:, :, rows, 3 + 2 * n + np.arange(m)] += force[..., rows]
-        sums = df.sum(2)
-        A, B = np.zeros((G, m, T, self.size)), np.zeros((G, T, self.size))
+        # sinks and load by more of the law's forces, then by depths of each pad in the undisturbed face (its
+        # middle's, and slopes), by its hinge's motion, and by its forces
         t, e = np.arange(T), np.arange(m)
-        of = ds[:, :, rows].swapaxes(1, 2) * K_v[:, :, None, None]
-        A[:, :, t, part["approach"].start + t] = of[..., 0]
-        B[:, t, part["approach"].start + t] = sums[..., 0]
-        for name, columns_ in (
-            ("slope", slice(1, 3)),
-            ("height", slice(3, 3 + n)),
-            ("K", slice(3 + n, 3 + 2 * n)),
-            ("own", slice(3 + 2 * n, None)),
-        ):
-            A[..., part[name]], B[..., part[name]] = of[..., columns_], sums[..., columns_]
+        seen = np.zeros((n, 3, m + 1))
+        seen[rows, :, e], seen[:, 0, m] = contact.move[rows], 1.0
+        more = np.linalg.solve(
+            J.swapaxes(-1, -2), np.broadcast_to(seen.reshape(3 * n, -1), (*J.shape[:-1], m + 1))
+        )
+        more *= np.concatenate([over[..., rows], E[..., None]], -1)[:, :, None]
+        ways = np.concatenate([d, d @ contact.move[..., None], g[..., None]], -1).swapaxes(-1, -2)
+        back = np.moveaxis(
+            ways @ more.reshape(G, T, n, 3, m + 1), (3, 4), (0, 3)
+        )  # [way, grasp, load, seen, pad]
+        by = np.zeros((G, T, m + 1, self.size))
+        by[:, t, :, part["approach"].start + t] = back[0].sum(-1).swapaxes(0, 1)
+        for k, along in enumerate((contact.x, contact.y)):
+            by[..., part["slope"].start + k] = -back[0] @ along - back[k + 1].sum(-1)
+        by[..., part["height"]], by[..., part["own"]] = -back[0], back[4][..., rows]
+        by[..., part["K"]] = back[3] * sink[:, :, None]
+        by[:, :, e, part["K"].start + rows] -= sink[..., rows]
         # all springs softer alike is a stiffer body, but for the size of the forces
-        A[..., 0], B[..., 0] = -A[..., part["K"]].sum(-1), force.sum(-1) - B[..., part["K"]].sum(-1)
+        by[..., 0] = -by[..., part["K"]].sum(-1)
+        by[:, :, m, 0] += force.sum(-1)
+        if at.thicker is not None:
+            by[:, :, :m, part["thickness"].start] = sinks(grown)[..., rows]
+            by[:, :, m, part["thickness"].start] = E * grown[..., 0].sum(-1)
+            by[:, :, e, part["own"].start + e] += sinks(laid - g)[..., rows]
+            by[:, :, m, part["own"]] += (E[..., None] * (laid - g)[..., 0])[..., rows]
+        A, B = by[:, :, :m].swapaxes(1, 2) * K_v[..., None, None], by[:, :, m]
         A[:, e, :, part["offset"].start + e] = 1.0
         if self.time is not None:
             A[:, e, :, part["rate"].start + e] = self.time
         A[:, e, :, part["K_v"].start + e] = (signal - resting).swapaxes(0, 1)
-        if at.thicker is not None:
-            A[..., part["thickness"].start] = K_v[..., None] * by_sink[..., rows].swapaxes(1, 2)
-            B[..., part["thickness"].start] = by_force.sum(-1)
         return signal, force.sum(-1), r, force, A, B
 
 
@@ -348,17 +340,20 @@ def _fit(
         downhill = (A * off / noise[i, None, None]).sum(1) + B * over * load_weight
         return downhill / ((A**2).sum(1) + B**2 * load_weight)
 
-    every = np.arange(G)
     q = _start(model, pressed, before, load[touching])
     state = model.signals(q)
     lifted = at.contact.lifted(state[2])
+    every = unsettled = np.arange(G)
+    cost, noise_now, dof = np.ones((3, G))
     for stage in range(STAGES):
         chosen = free if stage else plain
         if stage:
-            lifted = at.contact.lifted(state[2])
-            state = model.signals(q, state[2], lifted)
-        cost = cost_of(every, q, state)[0]
-        damping, at_work = np.full(G, 1e-6), every
+            lifted[unsettled] = at.contact.lifted(state[2][unsettled])
+            again = model.signals(q[unsettled], state[2][unsettled], lifted[unsettled])
+            for old, new in zip(state, again):
+                old[unsettled] = new
+        cost[unsettled] = cost_of(unsettled, q[unsettled], tuple(a[unsettled] for a in state))[0]
+        damping, at_work = np.full(G, 1e-6), unsettled
         for _ in range(STEPS):
             i = at_work
             now = tuple(a[i] for a in state)
@@ -396,19 +391,23 @@ def _fit(
         if not stage:
             noise = 2 * by_law  # from once, fits on inclined faces run out of steps
             continue
-        N, down = normal(every, q, state)
-        down_loose = (down + q @ weigh - q @ loose)[:, free]
+        i = unsettled
+        N, down = normal(i, q[i], tuple(a[i] for a in state))
+        down_loose = (down + q[i] @ (weigh - loose))[:, free]
         N_loose = (N + loose)[:, free[:, None], free]
         gain = np.einsum("gi,gi->g", down_loose, _solve(N_loose, down_loose[..., None])[..., 0])
-        quiet = cost - np.einsum("gi,ij,gj->g", q, weigh - loose, q) - gain
+        quiet = cost[i] - np.einsum("gi,ij,gj->g", q[i], weigh - loose, q[i]) - gain
         inverse = _solve(N_loose, np.broadcast_to(np.eye(len(free)), N_loose.shape))
         # loads are met far better than their weight says: as readings they would make the noise too small
-        by_load = state[5][..., free] * load_weight**0.5
+        by_load = state[5][i][..., free] * load_weight**0.5
         known = loose[free[:, None], free] + by_load.swapaxes(1, 2) @ by_load
-        dof = np.maximum(count - len(free) + np.einsum("gij,gji->g", inverse, known), 1.0)
-        noise_now = noise * np.maximum(quiet, 1e-18 * count) ** 0.5 / dof**0.5
-        noise, before_ = np.hypot(noise_now, by_law), noise
-        if ((noise < 1.5 * before_) & (noise > before_ / 1.5)).all():
+        dof[i] = np.maximum(count - len(free) + np.einsum("gij,gji->g", inverse, known), 1.0)
+        noise_now[i] = noise[i] * np.maximum(quiet, 1e-18 * count) ** 0.5 / dof[i] ** 0.5
+        before_ = noise[i]
+        noise[i] = np.hypot(noise_now[i], by_law[i])
+        # each grasp by its own noise, so that in a stream it is what it is alone
+        unsettled = i[~((noise[i] < 1.5 * before_) & (noise[i] > before_ / 1.5))]
+        if not len(unsettled):
             break
     K = model.K[rows]
     r = int(np.argmax(K)) if reference is None else int(np.flatnonzero(element == reference)[0])
@@ -749,10 +748,12 @@ def _approaches(model: _Model, q: np.ndarray) -> np.ndarray:
         todo, d, off, miss, size = todo[rough], d[rough], off[rough], miss[rough], size[rough]
         if not len(todo):
             break
-        right = np.zeros((len(todo), 3 * n, 2))
-        right[..., 0], right[:, ::3, 1] = off.reshape(len(todo), -1), 1.0  # as is, and by the approach
-        step = np.linalg.solve(np.eye(3 * n) + columns(M[todo], d), right).reshape(*off.shape, 2)
-        bears = E[todo, None] * np.einsum("gnj,gnjk->gk", d[..., 0, :], step)
+        right = np.stack([(d @ off[..., None])[..., 0], d[..., 0]], -1)  # as is, and by the approach
+        more = np.linalg.solve(pressing(M[todo], d), right.reshape(-1, 3 * n, 2))
+        step = -(M[todo] @ more).reshape(*off.shape, 2)
+        step[..., 0] += off
+        step[..., 0, 1] += 1.0
+        bears = E[todo, None] * more[:, ::3].sum(1)
         by = (miss - bears[:, 0]) / np.maximum(bears[:, 1], 1e-3 * alone[todo])
         deeper, share, left = step[..., 0] + by[:, None, None] * step[..., 1], 1.0, np.arange(len(todo))
         now = [d, off, miss, size]

@@ -100,10 +100,8 @@ class _Samples:
             b = self.contact.approached(p, slopes, np.broadcast_to(height, K.shape))
             r, g, d, J = self.contact.rest(M, b, start)
             start = r
-            one = np.zeros((*p.shape, 3 * n, 1))
-            one[..., ::3, 0] = 1.0
-            dr = np.linalg.solve(J, one).reshape(r.shape)
-            rise = E * np.einsum("stnj,stnj->st", d[..., 0, :], dr)
+            by_approach = np.linalg.solve(J, d[..., 0].reshape(*J.shape[:-1], 1))
+            rise = E * by_approach[..., ::3, 0].sum(-1)
             off = self.load - E * g[..., 0].sum(-1)
             if (np.abs(off) < 1e-6 * self.load).all():
                 break
