@@ -94,7 +94,12 @@ def scene_step(scene: Scene, shapes: Mapping[str, TopoDS_Shape], header: Header)
     under_way("writing")
     data = written(document, header)
     under_way("reading back")
-    _check_scene(data, scene, header.name)
+    read = read_assembly(data)
+    if read.name != header.name or not read.valid:
+        raise CheckFailure(f"scene {scene.name}: STEP file reads back as {read.name!r}, valid: {read.valid}")
+    for part in scene.parts:
+        _check_volume(read, part)
+    _check_instances(read.instances, scene.placements, scene.name)
     return data
 
 
@@ -262,15 +267,6 @@ def _check_volume(read: Assembly, part: Part) -> None:
         raise CheckFailure(
             f"{part.part_no}: STEP file reads back with volumes {volumes} mm3, not {part.volume:.9g}"
         )
-
-
-def _check_scene(data: bytes, scene: Scene, name: str) -> None:
-    read = read_assembly(data)
-    if read.name != name or not read.valid:
-        raise CheckFailure(f"scene {scene.name}: STEP file reads back as {read.name!r}, valid: {read.valid}")
-    for part in scene.parts:
-        _check_volume(read, part)
-    _check_instances(read.instances, scene.placements, scene.name)
 
 
 def _check_instances(instances: Sequence[Instance], placements: Sequence[Placement], name: str) -> None:
