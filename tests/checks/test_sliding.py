@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tactcad.checks.on_solids.interference import Bounds, check_interference
+from tactcad.checks.on_solids.interference import Surroundings, check_interference
 from tactcad.contour import Contour, Line, chain, circle, rectangle
 from tactcad.parts.language.description import Extrusion, Hole, Material, ModelFile, Part, Pocket, Revolution
 from tactcad.scenes.scene import Placement, Scene
@@ -28,7 +28,7 @@ SHAFT = made("SHAFT", Revolution(chain([(0, 0), (3, 0), (3, 30), (2, 30), (2, 50
 
 def seen(part: Part, *at: float) -> tuple | None:
     """What lies around a cube of 1 mm at a place."""
-    return Bounds(part).near(np.array([at, np.add(at, 1.0)]), np.array(at))
+    return Surroundings(part).near(np.array([at, np.add(at, 1.0)]), np.array(at))
 
 
 ALIKE = {  # places of the cube, and how far along an axis it sees the same

@@ -78,7 +78,7 @@ def check_interference(
     local = {part.part_no: bounding_box(shapes[part.part_no]) for part in scene.parts}
     boxes = np.array([placed_box(p, local[p.part.part_no]) for p in scene.placements])
     faces: dict[str, Faces] = {}
-    around = {part.part_no: Bounds(part) for part in scene.parts}
+    around = {part.part_no: Surroundings(part) for part in scene.parts}
     known = {} if known is None else known
     findings = []
     met: set[frozenset[str]] = set()
@@ -133,7 +133,7 @@ def _seen_from(p: Placement, point: Vector) -> Vector:
 
 
 def _situations(
-    pair: tuple[Placement, Placement], local: Mapping[str, list], around: Mapping[str, Bounds]
+    pair: tuple[Placement, Placement], local: Mapping[str, list], around: Mapping[str, Surroundings]
 ) -> Iterator[tuple[tuple, Placement]]:
     """Keys that two pairs share only if they have the same verdict, each with the part in whose frame its
     point is: by what of one part lies near the other one, or else by their relative position."""
@@ -230,7 +230,7 @@ NEAR_MM = 0.1
 SOMEWHERE = np.array([0.437, 0.561, 0.5])  # of a box's sides; chosen: drawn edges hardly pass there
 
 
-class Bounds:
+class Surroundings:
     """What bounds a described part: segments of its contours or of its turned profile, and its features, each
     with a box around it, in the part's own frame, mm."""
 

@@ -31,7 +31,7 @@ from tactcad.solids.triangles import triangles
 from tactcad.stacks.mechanic import TAKEN_AS_SET
 
 from ..check import Check
-from .interference import Bounds
+from .interference import Surroundings
 from .tools import REACH as KEY
 from .tools import tool_of
 
@@ -264,10 +264,10 @@ class Trial:
         return found
 
     def _near(self, p: Placement, box: np.ndarray, at: Sequence[float]) -> tuple | None:
-        """What bounds a part in place in a box and around it, as seen from a point (`Bounds.near`)."""
+        """What bounds a part in place in a box and around it, as seen from a point (`Surroundings.near`)."""
         key = ("bounds", p.part.part_no)
         if key not in self.known:
-            self.known[key] = Bounds(p.part)
+            self.known[key] = Surroundings(p.part)
         turn = np.array(p.rotation).T
         off = -turn @ np.array(p.origin)
         return self.known[key].near(boxed(box, turn, off), turn @ np.array(at) + off)
