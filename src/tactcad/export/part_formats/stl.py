@@ -77,6 +77,4 @@ STL = PartFormat(
     has=lambda part: not part.bought,
     asked=lambda options: options.meshing,
     make=_made,
-    released="",
-    ordered=0,
 )
