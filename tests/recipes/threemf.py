@@ -9,7 +9,7 @@ from xml.etree import ElementTree
 from tactcad.design.messages import CheckFailure
 from tactcad.parts.language.description import Part
 
-from ..formats import PartFormat
+from ..formats import PartFormat, always
 from ..shapes import Shapes
 from ..step_text import Header
 
@@ -56,6 +56,7 @@ FORM = PartFormat(
     path="3mf/{part_no}_{revision}.3mf",
     place=6,
     has=lambda part: not part.bought,
+    asked=always,
     make=part_3mf,
     released="every part made as a mesh, for printers",
     ordered=3,

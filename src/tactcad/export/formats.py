@@ -53,11 +53,10 @@ class PartFormat:
     path      below the export's folder, with {part_no} and {revision}
     place     among the formats: what every export holds first, by number
     has       which parts have such a file
+    asked     the options it depends on, part of its key in the cache; None: not asked for
     make      the part, the shapes, the file's header, and what was asked, to bytes that were read back and
               compared with the part; raises CheckFailure if they differ. It imports what it needs when it
               runs: formats are known without kernel
-    asked     the options it depends on, part of its key in the cache; None: not asked for; by default none,
-              for what every export has
     released  the release README's text on the path's folder; "": shops do not get such a file
     ordered   its rank among the files for making the part: the bill names the highest; 0: none
     """
@@ -66,10 +65,10 @@ class PartFormat:
     path: str
     place: int
     has: Callable[[Part], bool]
+    asked: Callable[[ExportOptions], object]
     make: Callable[[Part, Shapes, Header, object], bytes]
-    asked: Callable[[ExportOptions], object] = lambda _: ()
-    released: str = ""
-    ordered: int = 0
+    released: str
+    ordered: int
 
     def __post_init__(self) -> None:
         if "{part_no}" not in self.path or "/" not in self.path:
@@ -83,6 +82,11 @@ class PartFormat:
     def folder(self) -> str:
         """The path's folder, with its "/"."""
         return self.path.partition("/")[0] + "/"
+
+
+def always(options: ExportOptions) -> object:
+    """For a format that every export has."""
+    return ()
 
 
 def has_limits(part: Part) -> bool:

@@ -77,4 +77,6 @@ STL = PartFormat(
     has=lambda part: not part.bought,
     asked=lambda options: options.meshing,
     make=_made,
+    released="",
+    ordered=0,
 )

@@ -6,7 +6,7 @@ from tactcad.parts.language.description import Part
 from tactcad.parts.language.stock import cut_section
 from tactcad.scenes.scene import Placement
 
-from ..formats import PartFormat, has_limits
+from ..formats import PartFormat, always, has_limits
 from ..shapes import Shapes, picture_bytes
 from ..step_text import Header
 
@@ -42,16 +42,31 @@ def _picture(part: Part, shapes: Shapes, head: Header, _: object) -> bytes:
 
 
 STEP = PartFormat(
-    "step-part", "step/{part_no}_{revision}.step", 1, lambda part: True, _step, released=SOLIDS, ordered=1
+    kind="step-part",
+    path="step/{part_no}_{revision}.step",
+    place=1,
+    has=lambda part: True,
+    asked=always,
+    make=_step,
+    released=SOLIDS,
+    ordered=1,
 )
 STEP_PMI = PartFormat(
-    "step-pmi", "step/{part_no}_{revision}-ap242.step", 2, has_limits, _step_pmi, released=SOLIDS
+    kind="step-pmi",
+    path="step/{part_no}_{revision}-ap242.step",
+    place=2,
+    has=has_limits,
+    asked=always,
+    make=_step_pmi,
+    released=SOLIDS,
+    ordered=0,
 )
 DXF = PartFormat(
     kind="dxf",
     path="dxf/{part_no}_{revision}.dxf",
     place=3,
     has=lambda part: cut_section(part) is not None,
+    asked=always,
     make=_dxf,
     released="cut files, exact nominal contours, millimetres, one part a file: the wire-cut parts whole, of "
     "milled and ground plates the blank, larger on every edge and without holes. Compensation for wire "
@@ -59,4 +74,13 @@ DXF = PartFormat(
     "yours.",
     ordered=2,  # a shop cuts by it, and makes the rest by the STEP file
 )
-PICTURE = PartFormat("picture", "pictures/{part_no}.svg", 4, lambda part: not part.bought, _picture)
+PICTURE = PartFormat(
+    kind="picture",
+    path="pictures/{part_no}.svg",
+    place=4,
+    has=lambda part: not part.bought,
+    asked=always,
+    make=_picture,
+    released="",
+    ordered=0,
+)
