@@ -24,7 +24,8 @@ from tactcad.paper.published import Published
 from tactcad.paper.reference_stiffness import Table2Study
 from tactcad.parts.array.element import WIRE_TOLERANCE
 from tactcad.report import plots as d
-from tactcad.report.report import Picture, ReportSection, ReportTable, listed, percent, sig
+from tactcad.report.figures import listed, percent, sig
+from tactcad.report.report import Picture, ReportSection, ReportTable
 
 from .grasp_figures import elements_in_parallel
 from .prose import drawn, effect_text, section, tabulated

@@ -15,7 +15,8 @@ from tactcad.paper.array_model import ArrayModel
 from tactcad.paper.published import Published
 from tactcad.paper.reference_stiffness import Table2Study
 from tactcad.report import plots as d
-from tactcad.report.report import Picture, ReportSection, ReportTable, interval, percent, sig, signed_percent
+from tactcad.report.figures import interval, percent, sig, signed_percent
+from tactcad.report.report import Picture, ReportSection, ReportTable
 
 from .prose import drawn, section, tabulated
 

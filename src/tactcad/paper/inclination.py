@@ -21,7 +21,8 @@ from tactcad.paper.grasp_figures import elements_in_parallel
 from tactcad.paper.published import Published
 from tactcad.paper.reference_stiffness import Table2Study
 from tactcad.report import plots as d
-from tactcad.report.report import Picture, ReportSection, ReportTable, interval, listed, percent, sig
+from tactcad.report.figures import interval, listed, percent, sig
+from tactcad.report.report import Picture, ReportSection, ReportTable
 
 from .prose import drawn, section, tabulated
 

@@ -12,7 +12,8 @@ from tactcad.lab.regression import t_quantile
 from tactcad.mechanics import lumped
 from tactcad.paper.reference_stiffness import Table2Study, solve
 from tactcad.report import plots as d
-from tactcad.report.report import Marked, Picture, ReportSection, ReportTable, interval, percent, sig
+from tactcad.report.figures import interval, percent, sig
+from tactcad.report.report import Marked, Picture, ReportSection, ReportTable
 
 from .prose import drawn, section, table
 

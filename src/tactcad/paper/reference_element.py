@@ -19,17 +19,8 @@ from tactcad.paper.published import Published
 from tactcad.paper.reference_stiffness import Table2Study
 from tactcad.paper.residuals import matched, solve
 from tactcad.report import plots as d
-from tactcad.report.report import (
-    Cell,
-    Marked,
-    Picture,
-    ReportSection,
-    ReportTable,
-    interval,
-    listed,
-    percent,
-    sig,
-)
+from tactcad.report.figures import interval, listed, percent, sig
+from tactcad.report.report import Cell, Marked, Picture, ReportSection, ReportTable
 
 from .prose import drawn, section, table, tabulated
 

@@ -19,19 +19,8 @@ from tactcad.paper.array_model import ArrayModel
 from tactcad.paper.published import Published
 from tactcad.parts.array.element import WIRE_TOLERANCE
 from tactcad.report import plots as d
-from tactcad.report.report import (
-    Cell,
-    Marked,
-    Picture,
-    ReportSection,
-    ReportTable,
-    exact,
-    interval,
-    listed,
-    percent,
-    sig,
-    signed_percent,
-)
+from tactcad.report.figures import exact, interval, listed, percent, sig, signed_percent
+from tactcad.report.report import Cell, Marked, Picture, ReportSection, ReportTable
 
 from .prose import drawn, section, table, tabulated
 

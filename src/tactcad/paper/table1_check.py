@@ -14,17 +14,8 @@ import numpy as np
 from tactcad.lab.regression import fit_lines, t_quantile
 from tactcad.paper.published import Column, Published
 from tactcad.report import plots as d
-from tactcad.report.report import (
-    Marked,
-    Picture,
-    ReportSection,
-    ReportTable,
-    exact,
-    interval,
-    listed,
-    sig,
-    signed_percent,
-)
+from tactcad.report.figures import exact, interval, listed, sig, signed_percent
+from tactcad.report.report import Marked, Picture, ReportSection, ReportTable
 
 from .prose import drawn, section, table
 

@@ -8,17 +8,8 @@ import numpy as np
 
 from tactcad.paper.published import Published
 from tactcad.report import plots as d
-from tactcad.report.report import (
-    Marked,
-    Picture,
-    ReportSection,
-    ReportTable,
-    interval,
-    listed,
-    percent,
-    sig,
-    signed_percent,
-)
+from tactcad.report.figures import interval, listed, percent, sig, signed_percent
+from tactcad.report.report import Marked, Picture, ReportSection, ReportTable
 
 from .prose import drawn, section, table
 from .reference_element import ReferenceElement
