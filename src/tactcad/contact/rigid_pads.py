@@ -93,7 +93,7 @@ class PadLaw:
         size, ratio, sign, touches = self._place(r)
         cell, place = _cell(ratio)
         u, v = np.moveaxis(place, -1, 0)
-        c = self.cells.take(cell @ (KNOTS - 1, 1), -1)
+        c = self.cells.take(cell[..., 0] * (KNOTS - 1) + cell[..., 1], -1)
         along = ((c[:, 3] * v + c[:, 2]) * v + c[:, 1]) * v + c[:, 0]
         across = (3 * c[:, 3] * v + 2 * c[:, 2]) * v + c[:, 1]
         f = ((along[3] * u + along[2]) * u + along[1]) * u + along[0]
