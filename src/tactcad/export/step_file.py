@@ -90,16 +90,7 @@ def scene_step(scene: Scene, shapes: Mapping[str, TopoDS_Shape], header: Header)
     CheckFailure
         If it does not read back to the same names, places (1e-7 mm) and volumes.
     """
-    document, shape_tool = new_document()
-    prototypes = {p.part_no: add_prototype(document, shape_tool, p, shapes[p.part_no]) for p in scene.parts}
-    top = shape_tool.NewShape()
-    _name(top, header.name)
-    for p in scene.placements:
-        _name(
-            shape_tool.AddComponent(top, prototypes[p.part.part_no], location(p.origin, p.rotation)),
-            p.designator,
-        )
-    shape_tool.UpdateAssemblies()
+    document = scene_document(scene, shapes, header.name)
     under_way("writing")
     data = written(document, header)
     under_way("reading back")
@@ -110,6 +101,21 @@ def scene_step(scene: Scene, shapes: Mapping[str, TopoDS_Shape], header: Header)
         _check_volume(read, part)
     _check_instances(read.instances, scene.placements, scene.name)
     return data
+
+
+def scene_document(scene: Scene, shapes: Mapping[str, TopoDS_Shape], name: str) -> TDocStd_Document:
+    """The assembly of that name, before it is written."""
+    document, shape_tool = new_document()
+    prototypes = {p.part_no: add_prototype(document, shape_tool, p, shapes[p.part_no]) for p in scene.parts}
+    top = shape_tool.NewShape()
+    _name(top, name)
+    for p in scene.placements:
+        _name(
+            shape_tool.AddComponent(top, prototypes[p.part.part_no], location(p.origin, p.rotation)),
+            p.designator,
+        )
+    shape_tool.UpdateAssemblies()
+    return document
 
 
 def new_document() -> tuple[TDocStd_Document, XCAFDoc_ShapeTool]:
