@@ -34,7 +34,7 @@ from tactcad.fem.mapped_mesh import plane_mesh
 from tactcad.fem.shape import ElementShape, reference_shape
 from tactcad.mechanics import ladder, register
 from tactcad.mechanics.section import REFERENCE, HingeSection
-from tactcad.report.report import sig
+from tactcad.report.figures import sig
 
 try:
     from sksparse.cholmod import cholesky

@@ -23,7 +23,7 @@ from tables import filled, lines, markdown
 
 from tactcad.design.messages import InputError
 from tactcad.mechanics.register import rungs
-from tactcad.report.report import sig
+from tactcad.report.figures import sig
 
 REFERENCE = "benchmarks/results/reference.json"
 DOCUMENT = "docs/benchmarks.md"

@@ -20,7 +20,7 @@ from pathlib import Path
 import numpy as np
 from scipy.special import stdtrit
 
-from tactcad.report.report import sig
+from tactcad.report.figures import sig
 
 # How a value is shown by its unit: the value is in s, mm, rad, bytes, or a ratio.
 SCALES = {"": 1.0, "s": 1.0, "ms": 1e3, "us": 1e6, "kB": 1e-3, "MB": 1e-6, "%": 100.0, "ppm": 1e6}

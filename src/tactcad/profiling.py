@@ -162,9 +162,8 @@ def _peak_memory_mb() -> float:
         import resource  # not on every system, and only a profile needs it
 
         most = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
-        return round(
-            most * (1e-6 if sys.platform == "darwin" else 1.024e-3), 1
-        )  # bytes there, kibibytes elsewhere
+        # bytes there, kibibytes elsewhere
+        return round(most * (1e-6 if sys.platform == "darwin" else 1.024e-3), 1)
     return round(kibibytes * 1.024e-3, 1)
 
 

@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from itertools import combinations
+from itertools import combinations, product
 from math import pi
 
 import numpy as np
 import pytest
 from built import shape_of, shapes_of
 
+from tactcad.checks.on_solids import interference
 from tactcad.checks.on_solids.interference import TOUCH_MM, check_interference, near_pairs, relative
-from tactcad.contour import circle, rectangle
-from tactcad.parts.language.description import Extrusion, Hole, Material, Part
+from tactcad.contour import chain, circle, rectangle
+from tactcad.parts.language.description import Extrusion, Hole, Material, Part, Revolution
 from tactcad.parts.language.finding import Finding
 from tactcad.scenes.scene import UPRIGHT, Contact, Placement, Scene
 
@@ -36,6 +37,8 @@ TAPPED = block(
     "TAPPED", 10, 10, 10, Hole("tap", (5, 5, 0), (0, 0, 1), 3.3, 10, True, thread="M4", thread_depth=10)
 )
 PIN = pin("PIN", 4.0, 20.0)
+STEP = chain([(0, -3), (0.7, -3), (0.7, 0), (1.1, 0), (1.1, 6), (0, 6)])
+STEPPED = Part("STEPPED", "STEPPED", "turned", STEEL, Revolution(STEP))
 
 
 def found(placements, contacts=()) -> list[Finding]:
@@ -204,6 +207,53 @@ def test_boxes_that_are_a_hair_apart_still_meet():
         [[[0, 0, 0], [1, 1, 1]], [[1 + 1e-7, 0, 0], [2, 1, 1]], [[2.001, 0, 0], [3, 1, 1]]], float
     )
     assert list(near_pairs(boxes)) == [(0, 1)]
+
+
+def sheet(columns: int, rows: int, *odd: tuple[float, float]) -> Part:
+    """A sheet with a grid of slots and holes, pitch 8 mm; slots and holes at `odd` places are 0.2 wider."""
+    middles = [(8.0 * i, 8.0 * j) for i, j in product(range(columns), range(rows))]
+    wide = {at: 0.2 if at in odd else 0.0 for at in middles}
+    slots = tuple(rectangle(x - 3, y - 1 - w, x - 1, y + 1 + w) for (x, y), w in wide.items())
+    holes = tuple(Hole("h", (x + 1, y, 0), (0, 0, 1), 2.0 + w, 1.0, True) for (x, y), w in wide.items())
+    outer = rectangle(-4, -4, 8 * columns - 4, 8 * rows - 4)
+    return Part("SHEET", "SHEET", "milled", STEEL, Extrusion(outer, 1.0, slots), holes)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_pairs_alike_have_the_verdict_that_each_has_alone(seed):
+    random = np.random.default_rng(seed)
+    parts = [block("BIT", 1.7, 2, 0.5), pin("ROUND", 1.8, 3.0), STEPPED]
+    base = Placement("S", sheet(4, 3, (8.0, 8.0)))
+    placed = []
+    for n in range(30):
+        x, y, turned = 8.0 * random.integers(0, 4), 8.0 * random.integers(0, 3), random.random() < 0.3
+        dx, dz = random.choice([-3.0, -2.85, 1.0, 1.0, 1.1]), random.choice([-0.5, 0.0, 0.2, 1.0])
+        at = (float(x + dx), float(y + random.choice([-1.0, 0.0, 0.0, 0.1])), float(dz))
+        placed.append(Placement(f"P{n}", parts[n % 3], at, TURNED if turned else UPRIGHT))
+    placed += [Placement(f"CLEAR{n}", parts[1], (8.0 * n + 1, 0.0, -1.0)) for n in range(3)]
+    together = [f for f in found([base, *placed]) if "S (SHEET)" in f.message]
+    alone = [f for p in placed for f in found([base, p])]
+    assert [(f.check, f.message.split(" overlap")[0]) for f in together] == [
+        (f.check, f.message.split(" overlap")[0]) for f in alone
+    ]
+    assert [f.value for f in together] == pytest.approx([f.value for f in alone], rel=1e-6, abs=1e-9)
+    assert len({f.check for f in alone}) == 2 and len(alone) < len(placed)
+    assert all(abs(p - q) < 10.0 for f, g in zip(together, alone) for p, q in zip(f.place, g.place)), (
+        "in the same opening"
+    )
+
+
+def test_a_larger_grid_asks_the_kernel_no_more(monkeypatch):
+    def asked(columns: int, rows: int) -> int:
+        calls = []
+        real = interference.meeting
+        monkeypatch.setattr(interference, "meeting", lambda *a: calls.append(a) or real(*a))
+        places = product(range(columns), range(rows))
+        pins = [Placement(f"P{i} {j}", PIN, (8.0 * i + 5, 8.0 * j, -1.0)) for i, j in places]
+        found([Placement("S", sheet(columns + 1, rows)), *pins])
+        return len(calls)
+
+    assert asked(2, 2) == asked(5, 4) < 4
 
 
 # --- the shipped array ---

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tactcad.checks.on_solids.interference import check_interference, stretch, zones
+from tactcad.checks.on_solids.interference import Surroundings, check_interference
 from tactcad.contour import Contour, Line, chain, circle, rectangle
 from tactcad.parts.language.description import Extrusion, Hole, Material, ModelFile, Part, Pocket, Revolution
 from tactcad.scenes.scene import Placement, Scene
@@ -26,39 +26,45 @@ STEPPED = made(  # a bar along x that grows thicker, with a hole and a pocket
 SHAFT = made("SHAFT", Revolution(chain([(0, 0), (3, 0), (3, 30), (2, 30), (2, 50), (0, 50)])))
 
 
-def test_zones_by_hand():
-    x, y, z = zones(STEPPED)
-    assert x == ((0, 0), (18.5, 21.5), (37, 43), (60, 60), (100, 100))
-    assert z == ((0, 6),)  # the hole goes all through
-    assert y[0] == (0, 0) and y[-1] == (8, 8)
-    _, _, along = zones(SHAFT)
-    assert along == ((0, 0), (30, 30), (50, 50))
-    assert zones(made("FILE", ModelFile("x.step", "", 1.0, ((0, 0, 0), (1, 1, 1))))) is None
+def seen(part: Part, *at: float) -> tuple | None:
+    """What lies around a cube of 1 mm at a place."""
+    return Surroundings(part).near(np.array([at, np.add(at, 1.0)]), np.array(at))
 
 
-def test_a_slope_and_an_arc_change_all_along():
+ALIKE = {  # places of the cube, and how far along an axis it sees the same
+    "on the upper edge": ((4, 5, 2), (11, 5, 2)),
+    "before the step, beyond the hole": ((22, 5, 2), (58.5, 5, 2)),
+    "beyond the step": ((61, 8, 2), (98.5, 8, 2)),
+    "inside, off all faces": ((4, 2, 2), (11, 3, 4)),
+}
+
+
+@pytest.mark.parametrize("name", ALIKE)
+def test_places_alike(name):
+    one, other = ALIKE[name]
+    assert seen(STEPPED, *one) == seen(STEPPED, *other)
+
+
+def test_places_that_differ():
+    """In and off the material, by the ends, over hole, pocket and step, a micrometre higher or deeper."""
+    edge = (4, 5, 2)
+    others = [
+        (4, 30, 2), (4, 2, 2), (0, 5, 2), (18, 3.5, 5), (30, 3.5, 5), (40, 3.5, 5), (60, 5, 2), (70, 7, 2),
+        (4, 5.001, 2), (4, 5, 5.95), (4, 5, 6.0), (4, 5, 6.001), (4, 5, -0.5),
+    ]  # fmt: skip
+    told = [seen(STEPPED, *at) for at in (edge, *others)]
+    assert len({*told}) == len(told)
+
+
+def test_a_slope_an_arc_and_a_shaft():
     wedge = made(
         "W", Extrusion(Contour((Line((0, 0), (10, 0)), Line((10, 0), (0, 5)), Line((0, 5), (0, 0)))), 1.0)
     )
-    assert zones(wedge)[0] == ((0, 10),)
-    assert zones(made("D", Extrusion(circle((5, 0), 4), 1.0)))[0] == ((3, 7),)
-
-
-@pytest.mark.parametrize(
-    ("low", "high", "expected"),
-    [
-        (1, 2, 1),
-        (-5, -1, 0),
-        (5, 7, 2),
-        (0.05, 2, None),
-        (-1, 1, None),
-        (2, 3.95, None),
-        (4.5, 4.6, None),
-        (11, 12, 3),
-    ],
-)
-def test_stretch(low, high, expected):
-    assert stretch(((0.0, 0.0), (4.0, 5.0 - 0.2), (10.0, 10.0)), low, high) == expected
+    assert seen(wedge, 4, 3, 0) != seen(wedge, 2, 4, 0)
+    disc = made("D", Extrusion(circle((5, 0), 4), 1.0))
+    assert seen(disc, 4, -0.5, 0) != seen(disc, 4.1, -0.5, 0)
+    assert seen(SHAFT, 2, 0, 5) == seen(SHAFT, 2, 0, 25) != seen(SHAFT, 2, 0, 35) != seen(SHAFT, 2.1, 0, 35)
+    assert seen(made("FILE", ModelFile("x.step", "", 1.0, ((0, 0, 0), (1, 1, 1)))), 0, 0, 0) is None
 
 
 @pytest.mark.cad

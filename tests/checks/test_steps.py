@@ -20,7 +20,7 @@ from tactcad.parts.rigs import stand
 from tactcad.parts.rules import load
 from tactcad.scenes import make_scene, scene_names
 from tactcad.scenes.builder import Builder
-from tactcad.scenes.moves import guide_json, settles, step_moves
+from tactcad.scenes.moves import TWEEZED, guide_json, settles, step_moves
 from tactcad.scenes.scene import DOWN, STILL, Contact, Held, Move, Need, Placement, Scene, Step
 
 pytestmark = pytest.mark.cad
@@ -53,6 +53,25 @@ def step(*names: str, **more) -> Step:
 
 def found(scene: Scene) -> list:
     return check_steps(scene, shapes_of(scene))
+
+
+def test_pairs_alike_share_a_trial_and_the_odd_one_is_found(monkeypatch):
+    """Pins into a plate's 12 holes: one hole is 2 mm narrower, one blind, one pin stands 1 mm aside."""
+    tried = []
+    real = Trial._tried
+    monkeypatch.setattr(Trial, "_tried", lambda *a: tried.append(a) or real(*a))
+
+    def hole(n: int, wide: float, deep: float) -> Hole:
+        return Hole("h", (8.0 * n - 44, 0, 4), (0, 0, -1), wide, deep, deep == 4.0)
+
+    holes = [hole(n, 1.2 if n == 5 else 3.2, 2.0 if n == 9 else 4.0) for n in range(12)]
+    plate, pin = Placement("P1", block("PLATE", 100, 8, 4, *holes)), dowel("3", 6.0)
+    at = [(8.0 * n - 44, 1.0 if n == 3 else 0.0, 0.0) for n in range(12)]
+    pins = [Placement(f"DW{n}", pin, place) for n, place in enumerate(at)]
+    steps = (step("P1"), step(*(p.designator for p in pins), by=TWEEZED))
+    cut = [f.part for f in found(Scene("pins", (plate, *pins), steps=steps)) if f.check == "insertion"]
+    assert cut == ["DW3", "DW5", "DW9"]
+    assert len(tried) == 4
 
 
 def on_rail(wide: float) -> Scene:

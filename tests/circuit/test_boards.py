@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from variants import variant
 
-from tactcad.circuit import boards
+from tactcad.circuit import board_layout as boards
 from tactcad.circuit.board_layout import lay_out
 from tactcad.circuit.bridges import netlist
 from tactcad.circuit.copper import BoardCopper

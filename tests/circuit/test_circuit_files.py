@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 from variants import FACING_ROWS, variant
 
-from tactcad.circuit import boards
+from tactcad.circuit import board_layout as boards
 from tactcad.circuit.bridges import netlist
 from tactcad.circuit.netlist_files import wiring
 from tactcad.circuit.read_board import board_netlist

@@ -16,7 +16,7 @@ from test_boards import checked, needs_kicad
 from variants import variant
 
 from tactcad.checks.facing_rows.circuit import check_bridges, check_circuit, check_inputs
-from tactcad.circuit import boards
+from tactcad.circuit import board_layout as boards
 from tactcad.circuit.bridges import netlist
 from tactcad.circuit.digital_readout import digital_readout, settings_header, settings_json
 from tactcad.circuit.element_signals import element_signals, reading_noise

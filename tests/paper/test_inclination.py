@@ -27,13 +27,14 @@ def test_angles_agree_with_those_of_single_patches(found, paper, array):
     x, y = array.pad_x[at], array.pad_y[at]
     lever = -np.sign(x) * np.broadcast_to(array.section.load_arm, array.number.shape)[at]
     width = float(np.broadcast_to(array.section.width, array.number.shape)[0])
-    nu, h = array.rig.sample_poisson, found.thickness
+    nu, h = array.sample.poisson, found.thickness
     bench = labs.Bench(x, y, array.pad_length, width, lever, nu, h, 6, 8)
     one = labs.Bench(x[:1], y[:1], array.pad_length, width, np.full(1, 1e9), nu, h, 6, 8)
     K = truth.stiffness.copy()
     K[r] = found.inclined.reference
     rows = [int(np.argmin(np.abs(truth.stiffness - k))) for k in paper.table2.measuring_stiffness.value]
-    load = array.rig.moving_weight + array.rig.weight * array.rig.weights * np.array([0.0, 0.5, 1.0])
+    g = array.grasping
+    load = g.moving_weight + g.weight * g.weights * np.array([0.0, 0.5, 1.0])
     level = np.linalg.solve(one.C, np.ones(one.m)) @ one.area  # K_obj of a level pad at 1 MPa
 
     def ln_ratio(sample: int, slope: np.ndarray) -> np.ndarray:

@@ -20,6 +20,7 @@ import pytest
 from built import shapes_of
 from OCP.BRep import BRep_Tool
 from OCP.BRepMesh import BRepMesh_IncrementalMesh
+from OCP.gp import gp_Trsf
 from OCP.IFSelect import IFSelect_RetDone
 from OCP.IMeshTools import IMeshTools_MeshAlgoType, IMeshTools_Parameters
 from OCP.STEPCAFControl import STEPCAFControl_Reader
@@ -33,7 +34,7 @@ from OCP.TopLoc import TopLoc_Location
 from OCP.TopoDS import TopoDS
 from OCP.XCAFDoc import XCAFDoc_DocumentTool, XCAFDoc_ShapeTool
 
-from tactcad.export.step_file import scene_step
+from tactcad.export.step_file import scene_document, written
 from tactcad.export.step_text import Header
 from tactcad.parts.rules import load
 from tactcad.scenes import make_scene, scene_names
@@ -57,7 +58,8 @@ def exported(design, name: str, folder: Path) -> tuple[Path, dict]:
     scene = make_scene(design, name)
     path = folder / f"{name}.step"
     shapes = shapes_of(scene)
-    path.write_bytes(scene_step(scene, shapes, Header(name, name, "A", "2026-01-01", "", "")))
+    document = scene_document(scene, shapes, name)  # read back by this file's own code alone
+    path.write_bytes(written(document, Header(name, name, "A", "2026-01-01", "", "")))
     return path, json.loads(guide_json(scene))
 
 
@@ -68,7 +70,7 @@ def solids(path: Path) -> dict[str, manifold3d.Manifold]:
     reader.SetNameMode(True)
     assert reader.ReadFile(str(path)) == IFSelect_RetDone and reader.Transfer(document)
     tool = XCAFDoc_DocumentTool.ShapeTool_s(document.Main())
-    roots, found = TDF_LabelSequence(), {}
+    roots, found, meshes = TDF_LabelSequence(), {}, {}
     tool.GetFreeShapes(roots)
 
     def walk(label, where):
@@ -82,15 +84,17 @@ def solids(path: Path) -> dict[str, manifold3d.Manifold]:
                 walk(of, at)
             else:
                 assert one.FindAttribute(TDataStd_Name.GetID_s(), name)
-                shape = XCAFDoc_ShapeTool.GetShape_s(of)
-                found[name.Get().ToExtString()] = closed(shape.Located(at))
+                if (entry := of.Tag()) not in meshes:
+                    meshes[entry] = mesh(XCAFDoc_ShapeTool.GetShape_s(of))
+                found[name.Get().ToExtString()] = closed(*meshes[entry], at.Transformation())
 
     for i in range(1, roots.Length() + 1):
         walk(roots.Value(i), TopLoc_Location())
     return found
 
 
-def closed(shape) -> manifold3d.Manifold:
+def mesh(shape) -> tuple[np.ndarray, np.ndarray]:
+    """Points in the part's own frame, and triangles."""
     asked = IMeshTools_Parameters()
     asked.Deflection, asked.Angle = 0.02, 0.1
     asked.MeshAlgo = IMeshTools_MeshAlgoType.IMeshTools_MeshAlgoType_Delabella
@@ -100,27 +104,35 @@ def closed(shape) -> manifold3d.Manifold:
         face, where = TopoDS.Face_s(faces.Current()), TopLoc_Location()
         mesh = BRep_Tool.Triangulation_s(face, where)
         turn, base = where.Transformation(), len(points)
-        points += [mesh.Node(i).Transformed(turn).Coord() for i in range(1, mesh.NbNodes() + 1)]
+        nodes = [mesh.Node(i) for i in range(1, mesh.NbNodes() + 1)]
+        points += [(n if where.IsIdentity() else n.Transformed(turn)).Coord() for n in nodes]
         for i in range(1, mesh.NbTriangles() + 1):
             a, b, c = (base + k - 1 for k in mesh.Triangle(i).Get())
             corners.append((a, c, b) if face.Orientation() == TopAbs_REVERSED else (a, b, c))
         faces.Next()
-    unique, index = np.unique(np.round(points, 7), axis=0, return_inverse=True)
+    _, first, index = np.unique(np.round(points, 7), axis=0, return_index=True, return_inverse=True)
     triangles = index.reshape(-1)[np.array(corners)]
-    triangles = triangles[[len({*t}) == 3 for t in triangles.tolist()]]
-    made = manifold3d.Manifold(manifold3d.Mesh64(unique, triangles.astype(np.uint64)))
+    return np.array(points)[first], triangles[[len({*t}) == 3 for t in triangles.tolist()]]
+
+
+def closed(points: np.ndarray, triangles: np.ndarray, at: gp_Trsf) -> manifold3d.Manifold:
+    matrix = np.array([[at.Value(r, c) for c in (1, 2, 3, 4)] for r in (1, 2, 3)])
+    placed = np.round(points @ matrix[:, :3].T + matrix[:, 3], 7)
+    made = manifold3d.Manifold(manifold3d.Mesh64(placed, triangles.astype(np.uint64)))
     assert made.status() == manifold3d.Error.NoError
     return made
 
 
 @dataclass
 class Tried:
-    """Of a scene: steps, moves, places looked at, freedoms tried; and what met, or was free."""
+    """Of a scene: steps, moves, places looked at, freedoms tried; and what met, or was free. `every`: those
+    freedoms too that no step sets, for the table that shows them."""
 
     steps: int = 0
     moves: int = 0
     places: int = 0
     freedoms: int = 0
+    every: bool = False
     met: list[str] = field(default_factory=list)
     named: dict[tuple[str, ...], list[str]] = field(default_factory=dict)  # by `named`'s last columns
 
@@ -128,8 +140,8 @@ class Tried:
         return f"{self.steps}/{self.moves}/{self.places}/{self.freedoms}"
 
 
-def tried(path: Path, told: dict) -> Tried:
-    found = Tried(len(told["steps"]))
+def tried(path: Path, told: dict, every: bool = False) -> Tried:
+    found = Tried(len(told["steps"]), every=every)
     bodies = solids(path)
     aids = {a["designator"]: np.array(a["box"]) for a in told["aids"]}
     bodies |= {n: manifold3d.Manifold.cube(list(b[1] - b[0])).translate(list(b[0])) for n, b in aids.items()}
@@ -206,7 +218,7 @@ def held(said: str, bodies: dict[str, manifold3d.Manifold], found: Tried) -> Non
         now, far = (body ^ holding).volume(), np.degrees(2 * SHIFT / np.linalg.norm(box[1] - box[0]))
         pivots = [np.reshape(b.bounding_box(), (2, 3)).mean(axis=0) for b in (body, *(bodies[n] for n in by))]
         free = []
-        for freedom in FREEDOMS:
+        for freedom in FREEDOMS if found.every else sorted(stated):
             k = "xyz".index(freedom[-1])
             inside = [np.all(np.delete((box[0] < p) & (p < box[1]), k)) for p in pivots]
             cuts = []
@@ -261,7 +273,7 @@ def shown() -> dict[str, dict[str, str]]:
 
 def whole(design: str, folder: Path) -> dict[str, Tried]:
     made = load(design)
-    return {name: tried(*exported(made, name, folder)) for name in scene_names(made)}
+    return {name: tried(*exported(made, name, folder), design == NAMED) for name in scene_names(made)}
 
 
 def test_a_part_in_the_way_is_seen(tmp_path):

@@ -15,7 +15,7 @@ from variants import DROP, variant
 from tactcad.checks.on_solids.interference import check_interference
 from tactcad.checks.on_solids.steps import check_steps
 from tactcad.checks.on_solids.tools import check_tools
-from tactcad.circuit.boards import laid_out
+from tactcad.circuit.board_layout import laid_out
 from tactcad.drawing.guide import page
 from tactcad.parts.array.layout import Layout
 from tactcad.parts.array.leads import boards

@@ -20,8 +20,11 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field, replace
 
 from tactcad.design.messages import CheckFailure
-from tactcad.parts.array.board_plate import CARD_FROM_EDGE, LEADS_FROM_EDGE, BoardOutline
+from tactcad.parts.array.board_plate import BOARD_OUTLINE, CARD_FROM_EDGE, LEADS_FROM_EDGE, BoardOutline
 from tactcad.parts.array.board_plate import PITCH as PIN
+from tactcad.parts.array.layout import Layout
+from tactcad.parts.array.leads import boards, leads
+from tactcad.parts.bought.electronic_parts import converter_of
 
 from .copper import (
     BOTTOM,
@@ -38,9 +41,10 @@ from .copper import (
     Via,
     rounded,
 )
+from .digital_board import digital_netlist
 from .footprints import Pad, footprint
 from .netlist import Component, Netlist
-from .read_board import OUTSIDE
+from .read_board import OUTSIDE, board_netlist
 
 PITCH, ROW = 0.75, 0.9  # mm: vias of neighbours are 1.17 apart, their openings in the planes 1 wide
 APART = 1.15  # mm between vias in one row, of one net or two
@@ -529,3 +533,18 @@ def _nets_of_both(board: dict[str, Component], selecting: Sequence[str] = SELECT
 
 def _of_cell(name: str) -> bool:
     return name[0] in "RC" and 10 < int(name[1:]) < 90
+
+
+def netlist_of_board(layout: Layout, used: int) -> Netlist:
+    """Netlist of the board for so many elements: with amplifier and card, or with a converter."""
+    converter = converter_of(layout.design)
+    if converter:
+        return digital_netlist(layout, converter, used)
+    return board_netlist(layout.design, used, leads(layout))
+
+
+def laid_out(layout: Layout) -> tuple[BoardCopper, ...]:
+    """One for each number of elements that a board reads, the largest first. Raises CheckFailure if the
+    outline is too small."""
+    used = sorted({len(board.places) for board in boards(layout)}, reverse=True)
+    return tuple(lay_out(netlist_of_board(layout, n), BOARD_OUTLINE) for n in used)

@@ -26,7 +26,7 @@ from tactcad.parts.array.layout import Layout
 from tactcad.parts.array.leads import LeadRoute, ReadBoard, boards, colours, lead_ohm, lead_routes, leads
 from tactcad.parts.bought.electronic_parts import GAUGE, TERMINAL, converter_of, lead_part
 
-from .boards import netlist_of_board
+from .board_layout import netlist_of_board
 from .digital_board import OUTPUT
 from .netlist import GROUND, Component, Netlist
 from .read_board import LOGIC, NEGATIVE, OUTSIDE, POSITIVE, two

@@ -206,7 +206,7 @@ def settings_json(layout: Layout, name: str) -> bytes:
                     "element": p.number,
                     "AINP": 2 * i,
                     "AINM": 2 * i + 1,
-                    "resolution_mN": _of(found, layout, p),
+                    "resolution_mN": round(float(found.resolution[layout.elements.index(p)]) * 1e3, 4),
                 }
                 for i, p in enumerate(places)
             ],
@@ -236,10 +236,6 @@ def settings_json(layout: Layout, name: str) -> bytes:
         "chips": chips,
     }
     return (json.dumps(data, indent=1) + "\n").encode()
-
-
-def _of(found: DigitalReadout, layout: Layout, place: ElementPlace) -> float:
-    return round(float(found.resolution[layout.elements.index(place)]) * 1e3, 4)
 
 
 def settings_header(layout: Layout, name: str) -> bytes:

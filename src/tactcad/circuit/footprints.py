@@ -153,7 +153,6 @@ def pin_header(pins: int) -> Footprint:
     )
 
 
-SMD = "tactcad"
 QFN_16 = (4, 0.5, (2.9, 3.1), (0.3, 0.5), (0.18, 0.30), 1.45, 0.9)
 FOOTPRINTS = {
     f.name: f

@@ -14,7 +14,7 @@ from tactcad.parts.array.layout import Layout
 from tactcad.parts.array.leads import ReadBoard, boards
 from tactcad.parts.bought.electronic_parts import COMPLETION
 
-from .boards import laid_out
+from .board_layout import laid_out
 from .bridges import array_net
 from .copper import BOTTOM, PLANES, TOP, VIA_DRILL, BoardCopper, Point
 from .netlist import Component, Netlist

@@ -87,7 +87,13 @@ def run(args: argparse.Namespace) -> int:
         from tactcad.design.tree import ASKED_FORCE
 
         ASKED_FORCE.read(args.force, "--force")
-    asked = _asked(args)
+    # --accuracy is --within by its older name
+    asked = allowance(args)
+    if args.accuracy is not None:
+        if args.within is not None:
+            raise InputError("--accuracy", "is the same as --within; leave one out", value=args.accuracy)
+        asked = replace(asked, within=read_within(args.accuracy, "--accuracy"))
+    refuse_named(asked, "--model", args.model)
     if args.batch is not None:
         return _batch(args, asked)
     if args.out is not None:
@@ -146,17 +152,6 @@ def estimate_design(args: argparse.Namespace, asked: Allowance, design: Design) 
         if picked:
             print(picked.text())
     return 0
-
-
-def _asked(args: argparse.Namespace) -> Allowance:
-    """--accuracy is --within by its older name."""
-    asked = allowance(args)
-    if args.accuracy is not None:
-        if args.within is not None:
-            raise InputError("--accuracy", "is the same as --within; leave one out", value=args.accuracy)
-        asked = replace(asked, within=read_within(args.accuracy, "--accuracy"))
-    refuse_named(asked, "--model", args.model)
-    return asked
 
 
 def _chosen(layout: Layout, asked: Allowance) -> tuple[Candidate, Picked]:

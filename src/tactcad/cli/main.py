@@ -156,13 +156,6 @@ def _profiled(run: Callable[[argparse.Namespace], int], args: argparse.Namespace
             print(json.dumps(record, indent=1) if as_json else text(record), file=sys.stderr)
 
 
-def _report_overrun(asked: str | None, took: float) -> None:
-    """A line on standard error if a command took longer than --in allows (s)."""
-    if asked is not None and took > LATE * read_seconds(asked, "--in"):
-        why = "the least work takes so long here, or this machine is busy"
-        print(f"tactcad: took {took:.3g} s, more than --in {asked}: {why}", file=sys.stderr)
-
-
 def parser_of(command: str, raises: bool = False) -> Parser:
     """The parser of one of COMMANDS, as its --help and the reference pages show it; `raises` as of Parser."""
     module = importlib.import_module(f"tactcad.cli.{command}")
@@ -205,7 +198,12 @@ def _dispatch(argv: list[str]) -> int:
         run = importlib.import_module(f"tactcad.cli.{argv[0]}").run
         started = perf_counter()
         status = _profiled(run, args) if os.environ.get("TACTCAD_PROFILE") else run(args)
-        _report_overrun(getattr(args, "seconds", None), perf_counter() - started)
+        # A line on standard error if a command took longer than --in allows (s)
+        asked = getattr(args, "seconds", None)
+        took = perf_counter() - started
+        if asked is not None and took > LATE * read_seconds(asked, "--in"):
+            why = "the least work takes so long here, or this machine is busy"
+            print(f"tactcad: took {took:.3g} s, more than --in {asked}: {why}", file=sys.stderr)
         return status
     if argv[:1] == ["help"] and len(argv) == 2 and argv[1] in COMMANDS:
         parser_of(argv[1]).print_help()

@@ -61,7 +61,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     from tactcad.design.files import refuse_overwriting, write_whole
     from tactcad.design.messages import InputError
-    from tactcad.lab import log_plot, log_readings
+    from tactcad.lab import log_readings
 
     refuse_overwriting(args.out, args.file, args.map)
     plot = Path(args.out).with_suffix(".svg")
@@ -70,7 +70,7 @@ def run(args: argparse.Namespace) -> int:
     refuse_overwriting(plot, args.file, args.map, args.out)
     taken = from_log(args.file, args.map)
     (log_readings.calibration if taken.kind == "calibration" else log_readings.grasps)(taken)  # they read it
-    picture = log_plot.picture(taken)
+    picture = log_readings.picture(taken)
     write_whole(args.out, taken.table.encode())
     write_whole(plot, picture.encode())
     if args.json:

@@ -65,7 +65,16 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     if args.study[0] == "plot":
-        return _plot(args)
+        from tactcad.sweep.study_page import write_page
+
+        if len(args.study) != 2:
+            raise InputError("plot", "takes one folder", legal="tactcad sweep plot DIR")
+        for name in ("out", "scheduler", "store", "workers", "csv", "within", "seconds", "json"):
+            if given := getattr(args, name):
+                option = "--in" if name == "seconds" else f"--{name}"
+                raise InputError(option, "belongs to a study, not to its plot", value=given, legal="left out")
+        print(f"{write_page(args.study[1])}: written")
+        return 0
     return _sweep(args)
 
 
@@ -141,16 +150,3 @@ def _print(study: Study, got: Swept, picked: Picked | None) -> None:
     print(f"{got.folder}: {', '.join(got.files)}")
     if picked:
         print(picked.text())
-
-
-def _plot(args: argparse.Namespace) -> int:
-    from tactcad.sweep.study_page import write_page
-
-    if len(args.study) != 2:
-        raise InputError("plot", "takes one folder", legal="tactcad sweep plot DIR")
-    for name in ("out", "scheduler", "store", "workers", "csv", "within", "seconds", "json"):
-        if given := getattr(args, name):
-            option = "--in" if name == "seconds" else f"--{name}"
-            raise InputError(option, "belongs to a study, not to its plot", value=given, legal="left out")
-    print(f"{write_page(args.study[1])}: written")
-    return 0

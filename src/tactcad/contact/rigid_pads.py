@@ -177,19 +177,24 @@ def _powers(x: np.ndarray, y: np.ndarray) -> np.ndarray:
     return np.array([x**a * y**b for a, b in POWERS])
 
 
+def _apart(at: np.ndarray) -> dict[tuple[int, int], np.ndarray]:
+    """Where one pad lies from another, once for all pairs alike, by the same in whole nm."""
+    return {_nm(at[i] - at[j]): at[i] - at[j] for i in range(len(at)) for j in range(i + 1)}
+
+
+def _nm(apart: np.ndarray) -> tuple[int, int]:
+    return round(apart[0] * 1e6), round(apart[1] * 1e6)
+
+
 @lru_cache(maxsize=2)
 def _mean_inverses(x: bytes, y: bytes, length: float, width: float) -> list[np.ndarray]:
-    """Mean inverses common to every layer under these pads: for each pair of pads, [patch, patch]."""
+    """Mean inverses common to every layer under these pads: for each of `_apart`, [patch, patch]."""
     at = np.stack([np.frombuffer(x), np.frombuffer(y)], -1)
     one = patches(length, width, False, COARSE)
-    return [
-        mean_inverse((one[0] + dx, one[1] + dy, *one[2:]), tuple(one))
-        for i in range(len(at))
-        for dx, dy in at[i] - at[: i + 1]
-    ]
+    return [mean_inverse((one[0] + dx, one[1] + dy, *one[2:]), tuple(one)) for dx, dy in _apart(at).values()]
 
 
-@lru_cache(maxsize=64)
+@lru_cache(maxsize=512)  # some 0.1 MB each
 def between(
     x: bytes, y: bytes, length: float, width: float, poisson: float, thickness: float, base: str
 ) -> tuple[np.ndarray, np.ndarray]:
@@ -202,11 +207,13 @@ def between(
     modes = np.stack([np.ones(m), one[0], one[1]])
     unit = Body(1.0, poisson, thickness, base)
     face = np.empty((n, m, n, m))
-    means = iter(_mean_inverses(x, y, length, width))
+    blocks = {
+        nm: influence(unit, (one[0] + dx, one[1] + dy, *one[2:]), tuple(one), mean)
+        for (nm, (dx, dy)), mean in zip(_apart(at).items(), _mean_inverses(x, y, length, width))
+    }
     for i in range(n):
         for j in range(i + 1):
-            dx, dy = at[i] - at[j]
-            block = influence(unit, (one[0] + dx, one[1] + dy, *one[2:]), tuple(one), next(means))
+            block = blocks[_nm(at[i] - at[j])]
             face[i, :, j], face[j, :, i] = block, block.T
     full = np.linalg.inv(face.reshape(n * m, n * m)).reshape(n, m, n, m)
     grip = np.einsum("am,imjk,bk->iajb", modes, full, modes).reshape(3 * n, 3 * n)

@@ -243,7 +243,9 @@ def rounded_polygon(corners: list[Corner]) -> Contour:
         arc, next_arc = arcs[i], arcs[after]
         start = arc.end if arc else corner.at
         end = next_arc.start if next_arc else corners[after].at
-        room = _along(corner.at, corners[after].at, start, end)
+        # Distance from start to end, counted positive in the direction from a to b
+        ux, uy = _unit(corner.at, corners[after].at)
+        room = (end[0] - start[0]) * ux + (end[1] - start[1]) * uy
         if room < -ROUNDING_MM:
             raise ValueError(f"fillets overlap by {-room:.6g} mm on the edge {corner.edge!r}")
         if arc:
@@ -312,9 +314,3 @@ def _unit(a: Point, b: Point) -> Point:
         raise ValueError(f"two corners coincide at {a}")
     # axis-parallel edges, the rule here, give exact units
     return (dx / size, dy / size)
-
-
-def _along(a: Point, b: Point, start: Point, end: Point) -> float:
-    """Distance from start to end, counted positive in the direction from a to b."""
-    ux, uy = _unit(a, b)
-    return (end[0] - start[0]) * ux + (end[1] - start[1]) * uy

@@ -144,9 +144,7 @@ def _side(piece: _Piece, p: Point, q: Point) -> Literal["material", "void"] | No
         if abs(_cross(v, outward[0])) > SAME_DIRECTION:
             return None
         return "void" if lean > 0 else "material"
-    sign = (
-        1 if corner > 0 else -1
-    )  # a corner of the material opens to the void, an inside corner to the material
+    sign = 1 if corner > 0 else -1  # the material's corner opens to the void, an inside one to the material
     shares = _cross(v, outward[1]) / corner * sign, _cross(outward[0], v) / corner * sign
     if min(shares) < -SAME_DIRECTION:
         return None

@@ -527,9 +527,7 @@ class CommonTables:
     design: Identity
     material: SheetMaterial
     origin: dict[str, str] = field(default_factory=dict, kw_only=True)
-    added: tuple[Any, ...] = field(
-        default=(), kw_only=True
-    )  # parts that Python added, scenes.scene.AddedPart
+    added: tuple[Any, ...] = field(default=(), kw_only=True)  # by Python, scenes.scene.AddedPart
 
     @classmethod
     def completed(cls, tables: dict[str, Any]) -> dict[str, Any]:

@@ -51,7 +51,10 @@ HOLE = re.compile(rf'\(footprint "tactcad:hole" .*?\(at {NUMBER} {NUMBER}\)\n.*\
 
 def board_scene(board: BoardCopper, name: str) -> Scene:
     """The board, and blocks on it under their designators."""
-    bare = _bare(board, f"{name}-bare")
+    part_no = f"{name}-bare"
+    holes = tuple(circle((x, board.height - y), d) for x, y, d in board.holes)
+    body = Extrusion(rectangle(0.0, 0.0, board.width, board.height), board.thickness, holes)
+    bare = Part(part_no, "bare board", "reference", FR4, body, colour="#1f6b3a")
     blocks = {f: _block(f, name) for f in {p.footprint for p in board.placed if p.component.fitted}}
     placed = (
         Placement(
@@ -64,12 +67,6 @@ def board_scene(board: BoardCopper, name: str) -> Scene:
         if p.component.fitted
     )
     return Scene(name, (Placement("BOARD", bare), *placed))
-
-
-def _bare(board: BoardCopper, part_no: str) -> Part:
-    holes = tuple(circle((x, board.height - y), d) for x, y, d in board.holes)
-    body = Extrusion(rectangle(0.0, 0.0, board.width, board.height), board.thickness, holes)
-    return Part(part_no, "bare board", "reference", FR4, body, colour="#1f6b3a")
 
 
 def _block(f: Footprint, name: str) -> Part:

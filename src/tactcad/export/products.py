@@ -192,11 +192,6 @@ def _read(plan: Plan) -> bool:
     return ARRAY in plan.options.scenes and family_of(plan.design).readout is not None
 
 
-def _converter(design: CommonTables) -> str:
-    """The converter of its bridges."""
-    return getattr(getattr(design, "readout", None), "converter", "card")
-
-
 @product(_read)
 def circuit_files(plan: Plan) -> Iterator[Batch]:
     """The circuit that reads the array: its netlist in three forms, and the leads to cut."""
@@ -207,7 +202,8 @@ def circuit_files(plan: Plan) -> Iterator[Batch]:
     design, family = plan.design, family_of(plan.design)
     circuit = family.must("readout", "export").netlist(family.layout(design))
     key = digest(("circuit", plan.shapes.made_by, circuit, design.design))
-    converter = _converter(design)
+    # The converter of its bridges
+    converter = getattr(getattr(design, "readout", None), "converter", "card")
     for name, kind, make in (
         ("circuit_{}.csv", "netlist", files.table_file),
         ("circuit_{}.cir", "netlist", files.deck_file),

@@ -90,21 +90,32 @@ def scene_step(scene: Scene, shapes: Mapping[str, TopoDS_Shape], header: Header)
     CheckFailure
         If it does not read back to the same names, places (1e-7 mm) and volumes.
     """
+    document = scene_document(scene, shapes, header.name)
+    under_way("writing")
+    data = written(document, header)
+    under_way("reading back")
+    read = read_assembly(data)
+    if read.name != header.name or not read.valid:
+        raise CheckFailure(f"scene {scene.name}: STEP file reads back as {read.name!r}, valid: {read.valid}")
+    for part in scene.parts:
+        _check_volume(read, part)
+    _check_instances(read.instances, scene.placements, scene.name)
+    return data
+
+
+def scene_document(scene: Scene, shapes: Mapping[str, TopoDS_Shape], name: str) -> TDocStd_Document:
+    """The assembly of that name, before it is written."""
     document, shape_tool = new_document()
     prototypes = {p.part_no: add_prototype(document, shape_tool, p, shapes[p.part_no]) for p in scene.parts}
     top = shape_tool.NewShape()
-    _name(top, header.name)
+    _name(top, name)
     for p in scene.placements:
         _name(
             shape_tool.AddComponent(top, prototypes[p.part.part_no], location(p.origin, p.rotation)),
             p.designator,
         )
     shape_tool.UpdateAssemblies()
-    under_way("writing")
-    data = written(document, header)
-    under_way("reading back")
-    _check_scene(data, scene, header.name)
-    return data
+    return document
 
 
 def new_document() -> tuple[TDocStd_Document, XCAFDoc_ShapeTool]:
@@ -256,15 +267,6 @@ def _check_volume(read: Assembly, part: Part) -> None:
         raise CheckFailure(
             f"{part.part_no}: STEP file reads back with volumes {volumes} mm3, not {part.volume:.9g}"
         )
-
-
-def _check_scene(data: bytes, scene: Scene, name: str) -> None:
-    read = read_assembly(data)
-    if read.name != name or not read.valid:
-        raise CheckFailure(f"scene {scene.name}: STEP file reads back as {read.name!r}, valid: {read.valid}")
-    for part in scene.parts:
-        _check_volume(read, part)
-    _check_instances(read.instances, scene.placements, scene.name)
 
 
 def _check_instances(instances: Sequence[Instance], placements: Sequence[Placement], name: str) -> None:

@@ -62,7 +62,7 @@ FAMILY = Family(
         mechanism=Late("tactcad.robot.cantilevers:cantilevers"), jobs=Late("tactcad.robot.robot_files:jobs")
     ),
     boards=FamilyBoards(
-        made=Late("tactcad.circuit.boards:laid_out"),
+        made=Late("tactcad.circuit.board_layout:laid_out"),
         supplies=Late("tactcad.parts.array.supplies:electronic_supplies"),
     ),
 )

@@ -55,7 +55,12 @@ def stiffness(s: HingeSection, layers: Sequence[Layer]) -> float:
     b = float(s.width)
     groups = [(bare.cells, float(s.youngs_modulus), float(s.poisson))]
     face = bare.shape.low
-    edges = _face_edges(bare)
+    # x of the nodes of every element's edge on the gauge's face, (edges, order + 1), rising
+    sides = np.concatenate([bare.cells[:, :, 0], bare.cells[:, :, -1], bare.cells[:, 0], bare.cells[:, -1]])
+    on = np.all(np.abs(sides[..., 1] - bare.shape.low) < 1e-9 * np.ptp(bare.cells[..., 0]), axis=1)
+    x = sides[on][..., 0]
+    x = np.where((x[:, 0] > x[:, -1])[:, None], x[:, ::-1], x)
+    edges = x[np.argsort(x[:, 0])]
     for layer in layers:
         covered = _covered(edges, layer.reach)
         for share in np.unique(covered[covered > 0.0]):
@@ -74,15 +79,6 @@ def stiffness(s: HingeSection, layers: Sequence[Layer]) -> float:
     f[2 * end + 1] = load
     u = elasticity.solve(A, f, fixed_unknowns(space.nodes, mesh, 2))
     return float(1.0 / (f @ u))
-
-
-def _face_edges(mesh: PlaneMesh) -> Array:
-    """x of the nodes of every element's edge on the gauge's face, (edges, order + 1), rising."""
-    sides = np.concatenate([mesh.cells[:, :, 0], mesh.cells[:, :, -1], mesh.cells[:, 0], mesh.cells[:, -1]])
-    on = np.all(np.abs(sides[..., 1] - mesh.shape.low) < 1e-9 * np.ptp(mesh.cells[..., 0]), axis=1)
-    x = sides[on][..., 0]
-    x = np.where((x[:, 0] > x[:, -1])[:, None], x[:, ::-1], x)
-    return x[np.argsort(x[:, 0])]
 
 
 def _covered(edges: Array, reach: tuple[float, float]) -> Array:

@@ -30,9 +30,8 @@ def stiffness_matrix(basis: Basis, lam: float, mu: float) -> csc_matrix:
     matrix product an element gives the integrals T[a,i,b,j] = int d_i a d_j b dx.
     """
     dim, functions = basis.mesh.dim(), basis.Nbfun
-    grad = np.stack(
-        [np.broadcast_to(b[0].grad, (dim, *basis.dx.shape)) for b in basis.basis]
-    )  # a, i, element, point
+    # a, i, element, point
+    grad = np.stack([np.broadcast_to(b[0].grad, (dim, *basis.dx.shape)) for b in basis.basis])
     g = np.ascontiguousarray(grad.transpose(2, 0, 1, 3)).reshape(len(basis.dx), functions * dim, -1)
     T = np.matmul(g * basis.dx[:, None, :], g.transpose(0, 2, 1))
     T = T.reshape(-1, functions, dim, functions, dim)

@@ -172,7 +172,16 @@ def read(contour: Contour, load_x: float) -> ElementShape:
     outer = contour if contour.ccw else contour.reversed()
     x0, _, x1, _ = outer.box
     arm_at_right = abs(load_x - x1) < abs(load_x - x0)
-    fillets = _hinge_fillets(outer)
+    corners = [
+        c
+        for i, s in enumerate(outer.segments)
+        if isinstance(s, Arc) and not s.ccw
+        for c in _slot_corners(outer, s, i)
+    ]
+    if not corners:
+        raise CheckFailure("the contour has no slot with rounded corners between clamp edge and load line")
+    thinnest = min(c.high - c.low for c in corners)
+    fillets = [c for c in corners if c.high - c.low <= thinnest * (1.0 + 1e-9)]
     floor_low, floor_high = fillets[0].low, fillets[0].high
     by_place: dict[tuple[bool, bool], _SlotCorner] = {}
     for corner in fillets:
@@ -210,19 +219,6 @@ class _SlotCorner:
     low: float
     high: float
     face: float  # z where the slot's wall ends
-
-
-def _hinge_fillets(outer: Contour) -> list[_SlotCorner]:
-    corners = [
-        c
-        for i, s in enumerate(outer.segments)
-        if isinstance(s, Arc) and not s.ccw
-        for c in _slot_corners(outer, s, i)
-    ]
-    if not corners:
-        raise CheckFailure("the contour has no slot with rounded corners between clamp edge and load line")
-    thinnest = min(c.high - c.low for c in corners)
-    return [c for c in corners if c.high - c.low <= thinnest * (1.0 + 1e-9)]
 
 
 def _slot_corners(outer: Contour, arc: Arc, index: int) -> list[_SlotCorner]:

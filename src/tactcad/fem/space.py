@@ -112,9 +112,8 @@ class PlaneSpace:
         nodes = self.elements.reshape(count, -1)
         J = np.einsum("cen,knq->eckq", self.nodes[:, nodes], local, optimize=True)
         determinant = J[:, 0, 0] * J[:, 1, 1] - J[:, 0, 1] * J[:, 1, 0]
-        inverse = (
-            np.stack([[J[:, 1, 1], -J[:, 1, 0]], [-J[:, 0, 1], J[:, 0, 0]]]) / determinant
-        )  # c, k, element, point
+        # c, k, element, point
+        inverse = np.stack([[J[:, 1, 1], -J[:, 1, 0]], [-J[:, 0, 1], J[:, 0, 0]]]) / determinant
         x, z = np.einsum("ckeq,knq->cenq", inverse, local, optimize=True)
         area = (np.abs(determinant) * np.outer(weights, weights).ravel())[:, None]
         one = np.broadcast_to(product(value, value), x.shape)

@@ -132,7 +132,16 @@ def _by_closed_form(
 ) -> list[ElementEstimate]:
     K, grid = np.asarray(ladder.stiffness(section, rung)), layout.design.gauge.grid_length
     errors = strain.stated(section, grid, rung)
-    strains = _closed_form_strains(section, rung, grid)
+    peak = strain.peak(section, 1.0, rung)
+    try:
+        gauge = strain.gauge(section, 1.0, grid, rung)
+    except CheckFailure:  # the grid reaches onto a two-sided hinge's fillets: only the gauge has no estimate
+        gauge = np.array(np.nan)
+    if rung in ladder.FITTED:
+        stress, face = strain.peak_stress(section, 1.0), strain.face_stress(section, 1.0)
+    else:  # these rungs have no fillet
+        stress = face = peak * section.youngs_modulus
+    strains = _PerNewton(*(np.broadcast_to(x, section.shape) for x in (gauge, peak, stress, face)))
     return _estimates(layout, places, section, K, strains, expected_error_of(section, rung), errors, force)
 
 
@@ -174,19 +183,6 @@ class _PerNewton:
     fillet: Array
     fillet_stress: Array  # largest over the width
     face_stress: Array
-
-
-def _closed_form_strains(s: HingeSection, rung: str, grid: float) -> _PerNewton:
-    peak = strain.peak(s, 1.0, rung)
-    try:
-        gauge = strain.gauge(s, 1.0, grid, rung)
-    except CheckFailure:  # the grid reaches onto a two-sided hinge's fillets: only the gauge has no estimate
-        gauge = np.array(np.nan)
-    if rung in ladder.FITTED:
-        stress, face = strain.peak_stress(s, 1.0), strain.face_stress(s, 1.0)
-    else:  # these rungs have no fillet
-        stress = face = peak * s.youngs_modulus
-    return _PerNewton(*(np.broadcast_to(x, s.shape) for x in (gauge, peak, stress, face)))
 
 
 def _by_elements(

@@ -81,9 +81,7 @@ class Grasp:
     pairs: tuple[Pair, ...]
     combined: Interval
     combined_by_noise: Interval  # by noise and calibration alone
-    combined_by_limits: tuple[
-        tuple[str, Interval], ...
-    ]  # with each quantity known within limits added one by one
+    combined_by_limits: tuple[tuple[str, Interval], ...]  # what is known within limits added one by one
     noise: float  # standard deviation of one signal about the common approach, V
     dof: int
     disagreement_p: float  # probability that noise alone makes the elements disagree this much

@@ -14,7 +14,6 @@ from tactcad.design.fields import Number, Numbers, OneOf, TextLine, Whole, given
 from tactcad.design.files import read_text
 from tactcad.design.load import MOST_BYTES, read_table, unknown_field
 from tactcad.design.messages import InputError
-from tactcad.design.schema import table_text
 from tactcad.design.text_values import parse_toml
 from tactcad.lab.column_units import FORCES, LENGTHS, VOLTAGES
 
@@ -200,10 +199,3 @@ def _channels(table: dict[str, Any], where: str) -> dict[str, Channel]:
             what = f"element {found[name].element} has two channels, {others[0]} and {name}"
             raise InputError(f"{where}: channels", what, legal="one each")
     return found
-
-
-def map_text() -> str:
-    """Every table of a mapping file with its fields, for help."""
-    lines = [line for name, kind in TABLES.items() for line in table_text(name, kind, name == "signal")]
-    lines += table_text("channels.COLUMN", Channel, True)
-    return "\n".join([*lines, *table_text("load", MappedQuantity, True)])

@@ -92,10 +92,7 @@ def calibration_of(table: Table) -> CalibrationReadings:
         refuse_duplicates(rows, ("element", "run", scaled["displacement"][0]), legal)
     displacement, force, signal = (rows.values(name) * factor for name, factor in scaled.values())
     element, run = (rows.values(name).astype(int) for name in ("element", "run"))
-    time, named = (
-        rows.values(TIME.name) if timed else None,
-        tuple(rows.columns)[2:5],
-    )  # behind element and run
+    time, named = rows.values(TIME.name) if timed else None, tuple(rows.columns)[2:5]  # behind element, run
     read = (element, run, displacement, force, signal)
     out = CalibrationReadings(*read, rows.lines, rows.path, named, time)
     if timed:

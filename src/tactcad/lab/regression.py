@@ -297,7 +297,7 @@ def _by_law(elements: Sequence[Readings], weight: list[np.ndarray]) -> list[np.n
         held = np.minimum(measured / variance, STRANGE)
         least = variance.min()
         law = least * nnls(*_normal_form(terms * (least / variance)[:, None], held))[0]
-        variance = np.concatenate([_in_range(v) for v in np.split(terms @ law, ends)])
+        variance = np.concatenate([np.maximum(v, v.max() / RANGE) for v in np.split(terms @ law, ends)])
     return np.split(1 / np.maximum(variance, smallest), ends)
 
 
@@ -316,10 +316,6 @@ def _start(square: np.ndarray) -> float:
     """First guess of an element's variance, from the median of its squared residuals; their mean if the
     median is zero."""
     return float(np.median(square)) / MEDIAN or float(square.mean())
-
-
-def _in_range(variance: np.ndarray) -> np.ndarray:
-    return np.maximum(variance, variance.max() / RANGE)
 
 
 @dataclass(frozen=True)

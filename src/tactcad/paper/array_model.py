@@ -8,7 +8,7 @@ import numpy as np
 
 from tactcad.design.materials import modulus_per_kelvin
 from tactcad.design.messages import InputError
-from tactcad.design.tree import Design, Tolerance
+from tactcad.design.tree import Calibration, Design, Grasping, Sample, Tolerance
 from tactcad.fem.bonded_leaf import Layer
 from tactcad.lab import pads
 from tactcad.mechanics.gauge_signal import Gauge, Power
@@ -17,24 +17,6 @@ from tactcad.mechanics.section import HingeSection
 from tactcad.parts.array.bridge_figures import power_of, zero_drift
 from tactcad.parts.array.hinge_section import design_gauge, design_readout, hinge_section
 from tactcad.parts.array.layout import Layout
-
-
-@dataclass(frozen=True)
-class MeasuringRig:
-    """Calibration and grasping; N, N/mm, mm. load_point: half-width of the roller's place;
-    load_cell_accuracy: relative."""
-
-    load_cell_stiffness: float
-    load_cell_accuracy: float
-    load_cell_resolution: float
-    micrometer_resolution: float
-    load_point: float
-    friction: float
-    sample_thickness: float
-    sample_poisson: float
-    moving_weight: float
-    weight: float
-    weights: int
 
 
 @dataclass(frozen=True)
@@ -55,7 +37,9 @@ class ArrayModel:
     tolerance: Tolerance
     stiffness_factor: float  # of the material's own modulus over the design's
     modulus_per_kelvin: float  # 1/K, by which the modulus falls
-    rig: MeasuringRig
+    calibration: Calibration
+    sample: Sample
+    grasping: Grasping
     layers: tuple[Layer, ...]  # on the leaf: the bond line first, if the design has one
     bond_line: bool
 
@@ -91,19 +75,9 @@ def from_design(design: Design) -> ArrayModel:
         replace(design.tolerance, zero_drift=zero_drift(layout)),
         design.stiffness_factor or 1.0,
         modulus_per_kelvin(design.material.alloy),
-        MeasuringRig(
-            calibration.load_cell_stiffness,
-            calibration.load_cell_accuracy,
-            calibration.load_cell_resolution,
-            calibration.micrometer_resolution,
-            calibration.load_point,
-            calibration.friction,
-            sample.thickness,
-            sample.poisson,
-            grasping.moving_weight,
-            grasping.weight,
-            grasping.weights,
-        ),
+        calibration,
+        sample,
+        grasping,
         gauge_layers(design),
         design.bonding is not None,
     )

@@ -24,7 +24,8 @@ from tactcad.paper.published import Published
 from tactcad.paper.reference_stiffness import Table2Study
 from tactcad.parts.array.element import WIRE_TOLERANCE
 from tactcad.report import plots as d
-from tactcad.report.report import Picture, ReportSection, ReportTable, listed, percent, sig
+from tactcad.report.figures import listed, percent, sig
+from tactcad.report.report import Picture, ReportSection, ReportTable
 
 from .grasp_figures import elements_in_parallel
 from .prose import drawn, effect_text, section, tabulated
@@ -194,7 +195,7 @@ def _contact(pair: BudgetPair, array: ArrayModel) -> list[Effect]:
     large."""
     found = []
     for key, name, half, better in (
-        ("load point", "load_arm", array.pad_length / 2, array.rig.load_point),
+        ("load point", "load_arm", array.pad_length / 2, array.calibration.load_point),
         ("one pass", "hinge_thickness", WIRE_TOLERANCE["1 pass"], 0.0),
     ):
         now, then = pair.change(name, half), pair.change(name, better)
@@ -216,12 +217,8 @@ def _bonded(pair: BudgetPair, array: ArrayModel) -> list[Effect]:
     whole = pair.log_change(lambda s: gauge_signal.stiffness(s, array.gauge), ladder.stiffness)
     found = [effect("gauge", gauge, pair.together(*gauge), 0.0, bound=whole[0])]
     if bond:
-        adhesive = array.layers[0]
-        thickness = adhesive.thickness * 1e3
-        on_object = pair.together(*glued)
-        found.append(
-            effect("bond line", glued, on_object, 0.0, thickness=thickness, modulus=adhesive.modulus)
-        )
+        line = {"thickness": array.layers[0].thickness * 1e3, "modulus": array.layers[0].modulus}
+        found.append(effect("bond line", glued, pair.together(*glued), 0.0, **line))
     return found
 
 
@@ -232,19 +229,13 @@ def _models(pair: BudgetPair, array: ArrayModel) -> list[Effect]:
     error = (CLOSED_FORM_ERROR,) * 2
     warm = (array.modulus_per_kelvin * ROOM_SWING,) * 2
     warmed = pair.together(*warm)
+    room = {"swing": ROOM_SWING, "per_kelvin": array.modulus_per_kelvin}
     return [
         effect("plane stress", width, pair.together(*width), pair.apart(*error)),
         effect("design's modulus", other, pair.together(*other), 0.0),
         *_bonded(pair, array),
         effect("closed form", error, pair.apart(*error), pair.apart(0.001, 0.001)),
-        effect(
-            "temperature",
-            warm,
-            warmed,
-            warmed / ROOM_SWING,
-            swing=ROOM_SWING,
-            per_kelvin=array.modulus_per_kelvin,
-        ),
+        effect("temperature", warm, warmed, warmed / ROOM_SWING, **room),
     ]
 
 
@@ -253,7 +244,7 @@ def _models(pair: BudgetPair, array: ArrayModel) -> list[Effect]:
 
 def _calibration(pair: BudgetPair, data: Published, array: ArrayModel) -> list[Effect]:
     """The paper's calibration: force sensor on the pad."""
-    rig = array.rig
+    rig = array.calibration
 
     def stuck(mu: float) -> tuple[float, float]:
         rubbing = {"pad_height": array.pad_height, "friction": mu}
@@ -278,17 +269,17 @@ def stage_error(data: Published, array: ArrayModel) -> float:
     """Relative half-width of one run's slope from the micrometer alone, over the paper's steps."""
     step = data.figure["calibration_step"] * 1e-3
     points = round(data.figure["calibration_travel"] / data.figure["calibration_step"]) + 1
-    return array.rig.micrometer_resolution / (step * ((points**2 - 1) * points / 12) ** 0.5)
+    return array.calibration.micrometer_resolution / (step * ((points**2 - 1) * points / 12) ** 0.5)
 
 
 def _grasp(pair: BudgetPair, data: Published, array: ArrayModel) -> list[Effect]:
     """Pads out of plane, where R is made of totals instead of slopes."""
     K, _ = _in_parallel(pair, data, array)
-    z = float(approach(np.array([array.rig.moving_weight]), K, pair.x)[0][0])
+    z = float(approach(np.array([array.grasping.moving_weight]), K, pair.x)[0][0])
     height, tilt = array.tolerance.pad_height, array.tolerance.tilt
     span = float(max(np.ptp(array.pad_x), np.ptp(array.pad_y)))
     tilted = span / 2 * tan(radians(tilt))
-    at = {"load": array.rig.moving_weight, "approach": z * 1e3}
+    at = {"load": array.grasping.moving_weight, "approach": z * 1e3}
     uneven = pair.by_ratio * 2**0.5 * height / z
     by_tilt = {"tilt": tilt, "span": span, "tilted": tilted * 1e3}
     return [
@@ -307,10 +298,11 @@ def _in_parallel(pair: BudgetPair, data: Published, array: ArrayModel) -> tuple[
 
 def _sample(pair: BudgetPair, data: Published, array: ArrayModel) -> list[Effect]:
     """Effects of the rubber and of its test."""
-    rig, x, cell = array.rig, pair.x, array.rig.load_cell_stiffness
+    nu, thickness = array.sample.poisson, array.sample.thickness
+    rig, x, cell = array.calibration, pair.x, array.calibration.load_cell_stiffness
     stiffest, accuracy = float(data.table2.object_stiffness.value.max()), rig.load_cell_accuracy
     # Tangential over normal stiffness of a pad, 2(1 - nu)/(2 - nu): Johnson, Contact Mechanics.
-    lateral = x * 2 * (1 - rig.sample_poisson) / (2 - rig.sample_poisson)
+    lateral = x * 2 * (1 - nu) / (2 - nu)
     lever = array.pad_height + float(pair.short.hinge_thickness.item()) / 2
     shear_r, shear_m = (
         lateral * (lever / float(s.load_arm.item())) ** 2 / K
@@ -318,14 +310,12 @@ def _sample(pair: BudgetPair, data: Published, array: ArrayModel) -> list[Effect
     )
     sheared = pair.together(shear_r, shear_m)
     relaxed = RELAXATION_PER_DECADE * abs(log10(GRASP_TIME / SAMPLE_TEST_TIME))
-    thick, thin = (
-        pair.by_ratio * abs(log(_coupled(pair, data, array, h))) for h in (inf, rig.sample_thickness)
-    )
+    thick, thin = (pair.by_ratio * abs(log(_coupled(pair, data, array, h))) for h in (inf, thickness))
     own = {"stiffest": stiffest, "becomes": stiffest * cell / (cell - stiffest), "accuracy": accuracy}
     times = {"share": RELAXATION_PER_DECADE, "test": SAMPLE_TEST_TIME, "grasp": GRASP_TIME}
     return [
         effect("own compliance", NOT_ON_K, cell / (cell - x) - 1, x / cell * accuracy, **own),
-        effect("pads coupled", NOT_ON_K, thick, thin, thickness=rig.sample_thickness),
+        effect("pads coupled", NOT_ON_K, thick, thin, thickness=thickness),
         effect("rubber shears", (shear_r, shear_m), sheared, sheared / 5),
         effect("relaxation", NOT_ON_K, relaxed, RELAXATION_PER_DECADE * log10(2), **times),
     ]
@@ -348,7 +338,7 @@ def _coupled(pair: BudgetPair, data: Published, array: ArrayModel, thickness: fl
         array.pad_length,
         float(np.max(array.section.width)),
         thickness,
-        array.rig.sample_poisson,
+        array.sample.poisson,
     )
     return float(shares.ratio[measuring])
 
@@ -358,18 +348,18 @@ def _coupled(pair: BudgetPair, data: Published, array: ArrayModel, thickness: fl
 
 def _signal(pair: BudgetPair, data: Published, array: ArrayModel) -> list[Effect]:
     K, reference = _in_parallel(pair, data, array)
-    rig, factor, averaged = array.rig, array.gauge.factor, array.readout.averaged_noise
+    rig, factor, averaged = array.grasping, array.gauge.factor, array.readout.averaged_noise
     _, deflection = approach(np.array([rig.moving_weight]), K, pair.x)
     d = np.array([deflection[reference, 0], deflection[int(np.argmin(np.abs(K - pair.K_m))), 0]])
-    q = np.array(
-        [gauge_signal.foil_strain_per_deflection(s, array.gauge).item() for s in (pair.short, pair.long)]
-    )
+    strained = gauge_signal.foil_strain_per_deflection
+    q = np.array([strained(s, array.gauge).item() for s in (pair.short, pair.long)])
     bend = np.abs(readout.bridge_nonlinearity(factor * q * d))
     per_mm = readout.volts_per_strain(factor, array.readout) * q
     noise = pair.by_ratio * 2 * float(((averaged / (per_mm * d)) ** 2).sum() ** 0.5)
     drift = abs(gauge_signal.continuous(array.readout.excitation, array.gauge, array.power).drift)
     warm = pair.by_ratio * float((drift / (factor * q * d)).max())
-    leads = pair.by_ratio * float(((array.tolerance.zero_drift / (factor * q * d)) ** 2).sum() ** 0.5)
+    zero_drift = array.tolerance.zero_drift
+    leads = pair.by_ratio * float(((zero_drift / (factor * q * d)) ** 2).sum() ** 0.5)
     slope = rig.moving_weight / (rig.weight * max(rig.weights, 1))
     creep = pair.by_ratio * 2**0.5 * array.tolerance.creep
     n = rig.weights + 1  # loads; root sum of squares about their mean, N, by which a slope's noise is divided
@@ -381,9 +371,7 @@ def _signal(pair: BudgetPair, data: Published, array: ArrayModel) -> list[Effect
     return [
         effect("bridge", NOT_ON_K, pair.by_ratio * float(abs(bend[1] - bend[0])), 0.0, **at),
         effect("noise", NOT_ON_K, noise, steady, noise=averaged * 1e3, **at),
-        effect(
-            "leads", NOT_ON_K, leads, leads * min(slope, 1.0), zero_drift=array.tolerance.zero_drift, **at
-        ),
+        effect("leads", NOT_ON_K, leads, leads * min(slope, 1.0), zero_drift=zero_drift, **at),
         effect("creep", NOT_ON_K, crept, creep * log10(2), **times),
         effect("self-heating", NOT_ON_K, warm, 0.0, **at),
     ]
@@ -447,23 +435,9 @@ def _plot(b: Budget) -> Picture:
     with d.panels(size=(11.2, 0.31 * len(shown) + 1.3)) as (figure, ax):
         y = np.arange(len(shown))[::-1]
         least = 3e-4
-        ax.barh(
-            y,
-            [e.on_object for e in shown],
-            0.62,
-            color=d.BLUE,
-            label="as the paper's rig stood, K from the drawing",
-            left=0,
-        )
-        ax.plot(
-            [max(e.remaining, least) for e in shown],
-            y,
-            "D",
-            color=d.ORANGE,
-            mec=d.BLACK,
-            ms=7,
-            label="with the remedy",
-        )
+        stood, left = "as the paper's rig stood, K from the drawing", [max(e.remaining, least) for e in shown]
+        ax.barh(y, [e.on_object for e in shown], 0.62, color=d.BLUE, label=stood, left=0)
+        ax.plot(left, y, "D", color=d.ORANGE, mec=d.BLACK, ms=7, label="with the remedy")
         ax.set(xscale="log", xlim=(least, max(e.on_object for e in shown) * 1.6))
         ax.set_xticks([1e-3, 1e-2, 0.1, 1.0], ["0.1 %", "1 %", "10 %", "100 %"])
         ax.set_yticks(y, [e.name for e in shown])

@@ -18,19 +18,8 @@ from tactcad.paper.array_model import ArrayModel
 from tactcad.paper.published import Published
 from tactcad.paper.residuals import matched
 from tactcad.report import plots as d
-from tactcad.report.report import (
-    Cell,
-    Marked,
-    Picture,
-    ReportSection,
-    ReportTable,
-    exact,
-    interval,
-    listed,
-    percent,
-    sig,
-    signed_percent,
-)
+from tactcad.report.figures import exact, interval, listed, percent, sig, signed_percent
+from tactcad.report.report import Cell, Marked, Picture, ReportSection, ReportTable
 
 from .prose import drawn, section, table, tabulated
 
@@ -90,10 +79,8 @@ def fit(data: Published, array: ArrayModel) -> GainFit:
         how(array.readout.excitation, array.gauge, array.power)
         for how in (gauge_signal.continuous, gauge_signal.switched)
     )
-    newtons = [
-        abs(h.drift) * float(readout.volts_per_strain(1.0, array.readout)) / signal.per_force
-        for h in (on, off)
-    ]
+    volts = float(readout.volts_per_strain(1.0, array.readout))
+    newtons = [abs(h.drift) * volts / signal.per_force for h in (on, off)]
     return GainFit(
         element=t1.element[here],
         arm=t1.arm.value[here],
@@ -237,15 +224,9 @@ def _lengths(g: GainFit) -> ReportTable:
 def _plot(g: GainFit) -> Picture:
     with d.panels(1, 2, size=(11.2, 4.4)) as (figure, (left, right)):
         span = np.array([g.predicted.min() * 0.7, g.predicted.max() * 1.4])
-        left.fill_between(
-            span,
-            span * np.exp(-g.scatter),
-            span * np.exp(g.scatter),
-            color=d.SKY,
-            alpha=0.35,
-            lw=0,
-            label="± one standard deviation",
-        )
+        low, high = span * np.exp(-g.scatter), span * np.exp(g.scatter)
+        shade = {"color": d.SKY, "alpha": 0.35, "lw": 0}
+        left.fill_between(span, low, high, label="± one standard deviation", **shade)
         left.plot(span, span, color=d.BLACK, lw=1.2)
         left.plot(g.predicted, g.measured, "o", color=d.RED, ms=8, mec="white")
         used: list[tuple[float, float]] = []
@@ -253,33 +234,14 @@ def _plot(g: GainFit) -> Picture:
             shift = 9 if not any(abs(x - a) < 0.05 * x and abs(y - b) < 0.06 * y for a, b in used) else -22
             d.note(left, f"{n}", (x, y), (shift, -4), fontsize=10)
             used.append((x, y))
-        for axis in (left.xaxis, left.yaxis):
-            axis.axes.set_xscale("log")
-            axis.axes.set_yscale("log")
-        d.log_ticks(left.xaxis, (3, 4, 5, 6, 8, 10))
-        d.log_ticks(left.yaxis, (2, 3, 4, 6, 8, 10))
-        left.set(
-            xlim=span,
-            xlabel="K_v predicted with one gain, V/mm",
-            ylabel="K_v printed, V/mm",
-            title="by element number",
-        )
+        d.log_axes(left, x=(3, 4, 5, 6, 8, 10), y=(2, 3, 4, 6, 8, 10))
+        left.set(xlim=span, xlabel="K_v predicted with one gain, V/mm", ylabel="K_v printed, V/mm")
+        left.set_title("by element number")
         left.legend(loc="upper left")
         right.plot(g.lengths, g.gain_at_length, "-", color=d.BLUE, lw=2)
         right.axhline(g.design_gain, color=d.RED, ls="--", lw=1.6)
-        d.note(
-            right,
-            "the design's read-out",
-            (g.lengths[-1], g.design_gain),
-            (0, -15),
-            ha="right",
-            color=d.RED,
-            fontsize=10,
-        )
-        right.set(
-            xlabel="slot length l, mm",
-            ylabel="gain that fits K_v best, V per unit strain",
-            title="gain and length: every point on the line fits equally well",
-            ylim=0,
-        )
+        end, style = (g.lengths[-1], g.design_gain), {"ha": "right", "color": d.RED, "fontsize": 10}
+        d.note(right, "the design's read-out", end, (0, -15), **style)
+        right.set(ylim=0, xlabel="slot length l, mm", ylabel="gain that fits K_v best, V per unit strain")
+        right.set_title("gain and length: every point on the line fits equally well")
         return drawn(figure, "gain")

@@ -15,7 +15,8 @@ from tactcad.paper.array_model import ArrayModel
 from tactcad.paper.published import Published
 from tactcad.paper.reference_stiffness import Table2Study
 from tactcad.report import plots as d
-from tactcad.report.report import Picture, ReportSection, ReportTable, interval, percent, sig, signed_percent
+from tactcad.report.figures import interval, percent, sig, signed_percent
+from tactcad.report.report import Picture, ReportSection, ReportTable
 
 from .prose import drawn, section, tabulated
 
@@ -44,9 +45,7 @@ class Figure6:
     as_printed: Simulated
     as_supported: Simulated
     with_pad_heights: Simulated  # supported stiffness, pads out of plane by the tolerance: R from totals
-    slopes_with_pad_heights: (
-        np.ndarray
-    )  # R from slopes of the same grasps, mean over many, by measuring element
+    slopes_with_pad_heights: np.ndarray  # R from slopes of the same grasps, mean over many, by element
 
 
 def elements_in_parallel(data: Published, array: ArrayModel) -> tuple[Truth, int]:
@@ -73,7 +72,7 @@ def figure_6(data: Published, array: ArrayModel, supported: float, rng: np.rando
     rows = np.array([int(np.argmin(np.abs(truth.stiffness - k))) for k in K_m])
     x = data.figure["figure_6_sample"]
     column = int(np.argmin(np.abs(data.table2.object_stiffness.value - x)))
-    load = array.rig.moving_weight + array.rig.weight * np.arange(array.rig.weights + 1)
+    load = array.grasping.moving_weight + array.grasping.weight * np.arange(array.grasping.weights + 1)
     noise = array.readout.averaged_noise
     heights = array.tolerance.pad_height / 2 * rng.standard_normal((REPEATS, len(truth.element)))
 
@@ -113,9 +112,7 @@ class Figure7:
     printed: np.ndarray  # [measuring element, axis]
     supported: np.ndarray
     supported_stiffness: float
-    slope: (
-        np.ndarray
-    )  # straight line R = c + slope K_m/K_obj through each element's points, as the paper draws
+    slope: np.ndarray  # of the straight line R = c + slope K_m/K_obj through each element's points
     line_rms: float  # of R about these lines
     model_rms: float  # of R about equation (2) with the supported stiffness
     line_parameters: int
@@ -251,30 +248,13 @@ def _figure6(six: Figure6) -> Picture:
         )
         for ax, (s, title) in zip(axes, shown):
             for i, k in enumerate(six.measuring):
-                ax.errorbar(
-                    six.load,
-                    s.ratio[i],
-                    yerr=2 * s.deviation[i],
-                    fmt=d.MARKERS[i],
-                    color=d.SERIES[i],
-                    ms=5,
-                    lw=1.1,
-                    capsize=2,
-                    label=f"K_m = {k:g}",
-                )
+                bars = {"ms": 5, "lw": 1.1, "capsize": 2, "label": f"K_m = {k:g}"}
+                d.with_bars(ax, i, six.load, s.ratio[i], 2 * s.deviation[i], **bars)
                 d.series(ax, i, six.load[-1] + 1.1, six.measured[i], hollow=True, mew=1.6)
             ax.set_title(title, fontsize=10.5)
             ax.set(xlabel="grasping force, N", xlim=(six.load[0] - 0.7, six.load[-1] + 1.8))
         axes[0].set(ylabel="deflection ratio R", ylim=(0, None))
-        handles, labels = axes[0].get_legend_handles_labels()
-        figure.legend(
-            handles,
-            labels,
-            loc="outside lower center",
-            ncols=len(labels),
-            columnspacing=1.2,
-            handletextpad=0.3,
-        )
+        d.legend_below(figure, axes[0].get_legend_handles_labels()[0])
         return drawn(figure, "figure-6", object_stiffness=six.object_stiffness)
 
 
@@ -285,9 +265,8 @@ def _figure7(seven: Figure7) -> Picture:
             (axes[1], seven.supported, f"equation (2), K_r = {seven.supported_stiffness:.1f} N/mm"),
         ):
             for i, k in enumerate(seven.measuring):
-                own = (seven.axis >= seven.relative[i].min() * 0.93) & (
-                    seven.axis <= seven.relative[i].max() * 1.07
-                )
+                least, most = seven.relative[i].min() * 0.93, seven.relative[i].max() * 1.07
+                own = (seven.axis >= least) & (seven.axis <= most)
                 ax.plot(seven.axis[own], curves[i][own], color=d.SERIES[i], lw=2)
                 d.series(ax, i, seven.relative[i], seven.ratio[i], label=f"K_m = {k:g}")
             d.log_axes(ax, x=(0.6, 1, 2, 4, 8, 16))

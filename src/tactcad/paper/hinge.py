@@ -19,16 +19,8 @@ from tactcad.paper.array_model import ArrayModel
 from tactcad.paper.published import Published
 from tactcad.paper.residuals import matched
 from tactcad.report import plots as d
-from tactcad.report.report import (
-    UNREPORTED,
-    Picture,
-    ReportSection,
-    ReportTable,
-    interval,
-    percent,
-    sig,
-    signed_percent,
-)
+from tactcad.report.figures import interval, percent, sig, signed_percent
+from tactcad.report.report import UNREPORTED, Picture, ReportSection, ReportTable
 
 from .prose import drawn, section, table, tabulated
 
@@ -58,9 +50,7 @@ class Form:
     design_high: float
     effective_length: float  # mean E b t^3/(12 K L^2) of the fitted elements: what K identifies
     effective_spread: float  # over the 95 % region: (largest - least)/mean
-    radius_from_strain: tuple[
-        float, float
-    ]  # radii with a face strain that agrees with the printed strains; NaN if none
+    radius_from_strain: tuple[float, float]  # radii whose face strain agrees with the print; NaN if none
 
 
 @dataclass(frozen=True)
@@ -108,11 +98,9 @@ def fit(data: Published, array: ArrayModel, rung: str = "solid") -> HingeFit:
     t = float(np.median(s.hinge_thickness))
     strains = _strains(data, t, array)
     own = bool(np.any(s.two_sided))
-    forms, logs = [], {}
-    for name, two in (("one-sided", False), ("two-sided", True)):
-        log_k = _grid(s.with_(two_sided=two), rung)
-        logs[two] = log_k
-        forms.append(_form(name, two, log_k, K, s, design_r, strains))
+    logs = {two: _grid(s.with_(two_sided=two), rung) for two in (False, True)}
+    names = {False: "one-sided", True: "two-sided"}
+    forms = [_form(names[two], two, log_k, K, s, design_r, strains) for two, log_k in logs.items()]
     n = len(K)
     sums = [np.nanmin(f.square_sum) for f in forms]
     region = min(sums) * (1 + 2 * fdtri(2, n - 2, 0.95) / (n - 2))
@@ -170,13 +158,8 @@ def _form(
     region = filled <= filled.min() * (1 + 2 * fdtri(2, n - 2, 0.95) / (n - 2))
     effective = s.youngs_modulus * s.width * s.hinge_thickness**3 / (12 * np.exp(log_k) * s.load_arm**2)
     effective = effective.mean(-1)
-    fitted = zip(RADII, at_radius)
-    factor = np.array(
-        [
-            float(np.median(face_factor(s.with_(fillet_radius=r, hinge_length=l, two_sided=two))))
-            for r, l in fitted
-        ]
-    )
+    fitted = (s.with_(fillet_radius=r, hinge_length=l, two_sided=two) for r, l in zip(RADII, at_radius))
+    factor = np.array([float(np.median(face_factor(hinge))) for hinge in fitted])
     agrees = np.abs(factor / strains.factor - 1) <= 2 * STRAIN_ACCURACY
     radii = (float(RADII[agrees].min()), float(RADII[agrees].max())) if agrees.any() else (np.nan, np.nan)
     return Form(
@@ -366,22 +349,12 @@ def _map(h: HingeFit) -> Picture:
             least = np.nanmin(f.square_sum)
             scatter = np.sqrt(f.square_sum / (len(h.element) - 2))
             levels = np.nanmin(scatter) * np.array([1.0, 1.02, 1.05, 1.1, 1.2, 1.4, 1.8])
-            shown = ax.contourf(
-                RADII,
-                LENGTHS,
+            clipped, sums = (
                 np.clip(scatter.T, None, levels[-1] * 0.9999),
-                levels,
-                cmap="cividis_r",
-                alpha=0.9,
-            )
-            ax.contour(
-                RADII,
-                LENGTHS,
                 np.nan_to_num(f.square_sum.T, nan=1e3),
-                [h.region],
-                colors=[d.RED],
-                linewidths=2,
             )
+            shown = ax.contourf(RADII, LENGTHS, clipped, levels, cmap="cividis_r", alpha=0.9)
+            ax.contour(RADII, LENGTHS, sums, [h.region], colors=[d.RED], linewidths=2)
             ax.plot(RADII, f.length_at_radius, "--", color=d.BLACK, lw=1.6)
             ax.plot(RADII, 2 * RADII, ":", color=d.BLACK, lw=2)
             if f.two_sided == h.design_two_sided:

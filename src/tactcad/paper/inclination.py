@@ -21,7 +21,8 @@ from tactcad.paper.grasp_figures import elements_in_parallel
 from tactcad.paper.published import Published
 from tactcad.paper.reference_stiffness import Table2Study
 from tactcad.report import plots as d
-from tactcad.report.report import Picture, ReportSection, ReportTable, interval, listed, percent, sig
+from tactcad.report.figures import interval, listed, percent, sig
+from tactcad.report.report import Picture, ReportSection, ReportTable
 
 from .prose import drawn, section, tabulated
 
@@ -76,13 +77,15 @@ class _Samples:
         lever = np.broadcast_to(array.section.load_arm, array.number.shape)[at]
         move = np.stack([np.ones(len(at)), -np.sign(x) / lever, np.zeros(len(at))], 1)
         width = float(np.broadcast_to(array.section.width, array.number.shape)[0])
-        body = Body(1.0, array.rig.sample_poisson, thickness)
+        body = Body(1.0, array.sample.poisson, thickness)
         self.contact = ManyPresses(x, y, array.pad_length, width, move, body)
         self.unit = pad_stiffness(body, array.pad_length, width)
         self.K = truth.stiffness
         k = data.table2.measuring_stiffness.value
         self.rows = np.array([int(np.argmin(np.abs(self.K - v))) for v in k])
-        self.load = array.rig.moving_weight + array.rig.weight * array.rig.weights * np.array([0.0, 0.5, 1.0])
+        self.load = array.grasping.moving_weight + array.grasping.weight * array.grasping.weights * np.array(
+            [0.0, 0.5, 1.0]
+        )
         self.last: tuple[np.ndarray, np.ndarray] | None = None  # approach and depths to begin with
 
     def ln_ratio(self, K_r: float, x: np.ndarray, slope: np.ndarray, height: np.ndarray) -> np.ndarray:
@@ -115,7 +118,7 @@ class _Samples:
 
 def study(data: Published, array: ArrayModel, springs: Table2Study) -> Inclination:
     """Level and inclined samples, with K_obj as printed or free, pads of other heights, other thicknesses."""
-    h = array.rig.sample_thickness
+    h = array.sample.thickness
     samples = _Samples(data, array, h)
     start = springs.supported.value[0]
     level = _fit(samples, data, start)
@@ -179,14 +182,8 @@ def _fit(
         step = np.linalg.solve(N + damping * np.diag(np.diag(N) + 1e-12), -J.T @ left.ravel())
         tried, i = at, 0
         for kind, k, count in shapes:
-            tried = _moved(
-                tried,
-                kind,
-                k,
-                np.clip(step[i : i + count], -0.5, 0.5)
-                if kind in "Kx"
-                else np.clip(step[i : i + count], -0.01, 0.01),
-            )
+            most = 0.5 if kind in "Kx" else 0.01
+            tried = _moved(tried, kind, k, np.clip(step[i : i + count], -most, most))
             i += count
         now = off(tried)
         if (now**2).sum() < (left**2).sum():
@@ -284,15 +281,8 @@ def _plot(v: Inclination) -> Picture:
     angle, half = np.degrees(np.arctan(v.inclined.slope)), np.degrees(v.inclined.slope_half)
     with d.panels(size=(11.2, 4.3)) as (figure, ax):
         for k, what in enumerate(("along the arms", "along the rows")):
-            ax.errorbar(
-                v.object_printed * (0.99 + 0.02 * k),
-                angle[:, k],
-                yerr=half[:, k],
-                fmt=d.MARKERS[k],
-                color=d.SERIES[k],
-                capsize=3,
-                label=what,
-            )
+            x = v.object_printed * (0.99 + 0.02 * k)
+            d.with_bars(ax, k, x, angle[:, k], half[:, k], capsize=3, label=what)
         ax.axhline(0.0, color=d.BLACK, lw=1)
         ax.set(xlabel="K_obj of the sample, N/mm", ylabel="inclination of its face, degrees")
         ax.legend(loc="lower right")

@@ -12,7 +12,8 @@ from tactcad.lab.regression import t_quantile
 from tactcad.mechanics import lumped
 from tactcad.paper.reference_stiffness import Table2Study, solve
 from tactcad.report import plots as d
-from tactcad.report.report import Marked, Picture, ReportSection, ReportTable, interval, percent, sig
+from tactcad.report.figures import interval, percent, sig
+from tactcad.report.report import Marked, Picture, ReportSection, ReportTable
 
 from .prose import drawn, section, table
 
@@ -50,9 +51,7 @@ class Inversion:
     printed: Inverted
     supported: Inverted
     left_out: np.ndarray  # K_obj, N/mm, with the K_r that all rows and columns but the reading's own support
-    at_ends: (
-        np.ndarray
-    )  # K_obj, N/mm, with either end of the supported K_r's interval, [end, element, sample]
+    at_ends: np.ndarray  # K_obj, N/mm, with either end of the supported K_r's interval [end, element, sample]
     rank_correlation: float  # of |condition| and |error| with the supported stiffness (Spearman)
 
 
@@ -162,8 +161,7 @@ def _without_its_own(v: Inversion) -> str:
     same = f"{ends[0]} with either end" if ends[0] == ends[1] else f"{ends[0]} and {ends[1]} with the ends"
     return (
         "That K_r is fitted to these very readings: with the one that all others support, without the "
-        "reading's "
-        f"own element and sample, {left_out} are within the factor; {same} of its 95 % interval."
+        f"reading's own element and sample, {left_out} are within the factor; {same} of its 95 % interval."
     )
 
 
@@ -191,11 +189,10 @@ def _by_condition(v: Inversion, well: np.ndarray) -> str:
     return (
         f"The condition number says beforehand which readings count: below {WELL:g} {supported[well].sum()} "
         f"of {well.sum()} are within the factor ({left_out[well].sum()} with the K_r that the others "
-        f"support, "
-        f"{mean[well].sum()} without any reading), above it {supported[~well].sum()} of {(~well).sum()}. The "
-        f"typical error is {inside} below and {outside} above; rank correlation of condition number and "
-        f"error "
-        f"{v.rank_correlation:.2f}. Least is {sig(least)}, so that {percent(v.ratio_error)} in R are at best "
+        f"support, {mean[well].sum()} without any reading), above it {supported[~well].sum()} of "
+        f"{(~well).sum()}. The typical error is {inside} below and {outside} above; rank correlation of "
+        f"condition number and error {v.rank_correlation:.2f}. Least is {sig(least)}, so that "
+        f"{percent(v.ratio_error)} in R are at best "
         f"{percent(v.ratio_error * least)} in K_obj."
     )
 
@@ -237,14 +234,8 @@ def _table(v: Inversion, w: Inverted) -> ReportTable:
         cells = []
         for j, x in enumerate(v.object_stiffness):
             low, high, value = w.low[i, j], w.high[i, j], w.estimate[i, j]
-            if not w.bounded[i, j]:
-                text = f"{sig(value, 2)} (open)"
-            else:
-                text = (
-                    f"{sig(value, 2)} ({interval(max(low, 0.0), high, 2)})"
-                    if high > 0
-                    else f"{sig(value, 2)} (none ≥ 0)"
-                )
+            held = interval(max(low, 0.0), high, 2) if high > 0 else "none ≥ 0"
+            text = f"{sig(value, 2)} ({held if w.bounded[i, j] else 'open'})"
             cells.append(text if _right(value, x) else Marked(text))
         rows.append((f"{k:g}", *cells))
         rows.append(("condition", *(f"{c:.1f}" for c in w.condition[i])))
@@ -271,17 +262,8 @@ def _plot(v: Inversion) -> Picture:
                 shift = np.exp(0.018 * (i - 2.5))
                 low = np.clip(w.low[i][ok], 0.3, None)
                 bars = np.maximum(np.array([w.estimate[i][ok] - low, w.high[i][ok] - w.estimate[i][ok]]), 0)
-                ax.errorbar(
-                    x[ok] * shift,
-                    w.estimate[i][ok],
-                    yerr=bars,
-                    fmt=d.MARKERS[i],
-                    color=d.SERIES[i],
-                    ms=6,
-                    lw=0.9,
-                    capsize=2,
-                    alpha=0.95,
-                )
+                style = {"ms": 6, "lw": 0.9, "capsize": 2, "alpha": 0.95}
+                d.with_bars(ax, i, x[ok] * shift, w.estimate[i][ok], bars, **style)
                 d.series(ax, i, x[~ok] * shift, np.full((~ok).sum(), 0.36), hollow=True, ms=6)
             d.log_axes(ax, x=(2, 3, 4, 5, 7, 10), y=(0.5, 1, 2, 5, 10, 20, 50, 100))
             ax.set(xlim=(2.0, 12), ylim=(0.3, 170), title=title, xlabel="K_obj of the sample, N/mm")
@@ -294,14 +276,7 @@ def _plot(v: Inversion) -> Picture:
             d.series(right, i, condition[ok], off)
             d.series(right, i, np.minimum(condition[~ok], 600), np.full((~ok).sum(), 8.5), hollow=True)
         grid = np.geomspace(2, np.log(9) / v.ratio_error, 50)
-        right.plot(
-            grid,
-            np.exp(grid * v.ratio_error),
-            color=d.BLACK,
-            lw=1.2,
-            ls="--",
-            label="condition × scatter of R",
-        )
+        right.plot(grid, np.exp(grid * v.ratio_error), "k--", lw=1.2, label="condition × scatter of R")
         d.log_axes(right, x=(2, 5, 10, 50, 200, 600), y=(1, 1.5, 2, 3, 5, 8))
         right.set(
             ylim=(0.97, 10),
@@ -316,11 +291,5 @@ def _plot(v: Inversion) -> Picture:
             Line2D([], [], marker=d.MARKERS[i], color=d.SERIES[i], ls="", ms=7, label=f"K_m = {k:g}")
             for i, k in enumerate(v.measuring)
         ]
-        figure.legend(
-            handles=handles,
-            loc="outside lower center",
-            ncols=len(handles),
-            columnspacing=1.2,
-            handletextpad=0.3,
-        )
+        d.legend_below(figure, handles)
         return drawn(figure, "inversion")

@@ -109,7 +109,16 @@ def load(table1: str | Path | None = None, table2: str | Path | None = None) -> 
         listed twice, gaps in the grid of Table 2.
     """
     data = Path(str(files("tactcad.paper"))) / "data"
-    figures = _figures(data / "printed.csv")
+    path = data / "printed.csv"
+    lines = [line.split(",", 3) for line in path.read_text("utf-8").splitlines() if not line.startswith("#")][
+        1:
+    ]
+    figures = (
+        {name: float(text) for name, text, _, _ in lines},
+        {name: half_step(text) for name, text, _, _ in lines},
+        {name: unit for name, _, unit, _ in lines},
+        {name: place for name, _, _, place in lines},
+    )
     return Published(
         _table1(read(table1 or data / "table1.csv", TABLE_1_FIELDS)),
         _table2(read(table2 or data / "table2.csv", TABLE_2_FIELDS)),
@@ -154,16 +163,4 @@ def _table2(rows: Rows) -> Table2:
         grid(TABLE_2_FIELDS[1])[0],
         grid(TABLE_2_FIELDS[2]),
         grid(TABLE_2_FIELDS[3]),
-    )
-
-
-def _figures(path: Path) -> tuple[dict, dict, dict, dict]:
-    lines = [line.split(",", 3) for line in path.read_text("utf-8").splitlines() if not line.startswith("#")][
-        1:
-    ]
-    return (
-        {name: float(text) for name, text, _, _ in lines},
-        {name: half_step(text) for name, text, _, _ in lines},
-        {name: unit for name, _, unit, _ in lines},
-        {name: place for name, _, _, place in lines},
     )

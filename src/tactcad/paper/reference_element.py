@@ -19,17 +19,8 @@ from tactcad.paper.published import Published
 from tactcad.paper.reference_stiffness import Table2Study
 from tactcad.paper.residuals import matched, solve
 from tactcad.report import plots as d
-from tactcad.report.report import (
-    Cell,
-    Marked,
-    Picture,
-    ReportSection,
-    ReportTable,
-    interval,
-    listed,
-    percent,
-    sig,
-)
+from tactcad.report.figures import interval, listed, percent, sig
+from tactcad.report.report import Cell, Marked, Picture, ReportSection, ReportTable
 
 from .prose import drawn, section, table, tabulated
 
@@ -82,9 +73,7 @@ class ReferenceElement:
     deflection: tuple[float, float]
     implied_k_v: tuple[float, float]  # smallest over smallest, largest over largest
     deflection_from_signal: tuple[float, float]  # with the printed K_v
-    softest_k_v: tuple[
-        float, float
-    ]  # V/mm: largest printed signal over largest printed deflection, and Table 1's
+    softest_k_v: tuple[float, float]  # largest printed signal over largest printed deflection, and Table 1's
     readings: tuple[AccountReading, ...]  # by account of Table 2
     gain: float  # V per strain, from the other elements
     scatter: float  # of ln K_v about it
@@ -175,7 +164,7 @@ def _reading(
         name,
         float(K_r),
         float(load),
-        float((load - array.rig.moving_weight) / array.rig.weight),
+        float((load - array.grasping.moving_weight) / array.grasping.weight),
         shown,
         volts,
         overlap(shown, deflection),
@@ -196,46 +185,17 @@ def _explanations(
     q_thick = float(gauge_signal.foil_strain_per_deflection(s.with_(hinge_thickness=[t]), array.gauge)[0])
     scale = K / nominal
     pad, wire = array.pad_length / 2, array.tolerance.hinge_thickness
+    on_pad, as_cut = f"within the pad, {pad:g} mm either way", f"cutting tolerance {wire:g} mm"
+    one_rig = "one rig calibrated all elements"
     candidates = [
-        (
-            "load point",
-            L - L0,
-            "mm",
-            abs(L - L0) <= pad,
-            f"within the pad, {pad:g} mm either way",
-            gain * q_load,
-        ),
-        (
-            "hinge thickness",
-            t - t0,
-            "mm",
-            abs(t - t0) <= wire,
-            f"cutting tolerance {wire:g} mm",
-            gain * q_thick,
-        ),
-        (
-            "deflection scale of its calibration",
-            1 / scale,
-            "1",
-            False,
-            "one rig calibrated all elements",
-            gain * q0 * scale,
-        ),
-        ("force scale of its calibration", scale, "1", False, "one rig calibrated all elements", gain * q0),
+        ("load point", L - L0, "mm", bool(abs(L - L0) <= pad), on_pad, gain * q_load),
+        ("hinge thickness", t - t0, "mm", bool(abs(t - t0) <= wire), as_cut, gain * q_thick),
+        ("deflection scale of its calibration", 1 / scale, "1", False, one_rig, gain * q0 * scale),
+        ("force scale of its calibration", scale, "1", False, one_rig, gain * q0),
     ]
+    ln = lambda x: float(np.log(x))  # noqa: E731
     return tuple(
-        Explanation(
-            name,
-            size,
-            unit,
-            bool(possible),
-            limit,
-            K,
-            v,
-            v / K,
-            float(np.log(k_v / v)),
-            float(np.log(k_v / K / (v / K))),
-        )
+        Explanation(name, size, unit, possible, limit, K, v, v / K, ln(k_v / v), ln(k_v / K / (v / K)))
         for name, size, unit, possible, limit, v in candidates
     )
 
@@ -444,26 +404,13 @@ def _plot(e: ReferenceElement) -> Picture:
         for place, x in zip(y, e.explanations):
             v = x.signal_per_deflection
             colour = d.BLUE if x.possible else d.GREY
-            ax.errorbar(
-                v,
-                place,
-                xerr=[[v * (1 - np.exp(-2 * e.scatter))], [v * (np.exp(2 * e.scatter) - 1)]],
-                fmt="o",
-                ms=8,
-                color=colour,
-                capsize=4,
-                lw=2,
-            )
+            bars = [[v * (1 - np.exp(-2 * e.scatter))], [v * (np.exp(2 * e.scatter) - 1)]]
+            ax.errorbar(v, place, xerr=bars, fmt="o", ms=8, color=colour, capsize=4, lw=2)
         ax.axvline(e.printed_k_v, color=d.RED, ls="--", lw=2)
         d.note(ax, f"printed: {e.printed_k_v:g}", (e.printed_k_v, len(y) - 0.45), (6, 0), color=d.RED)
         ax.axvspan(min(e.implied_k_v), max(e.implied_k_v), color=d.ORANGE, alpha=0.35, lw=0)
-        d.note(
-            ax,
-            "printed signals over\nprinted deflections",
-            (max(e.implied_k_v), len(y) - 0.62),
-            (6, 0),
-            fontsize=9.5,
-        )
+        over = "printed signals over\nprinted deflections"
+        d.note(ax, over, (max(e.implied_k_v), len(y) - 0.62), (6, 0), fontsize=9.5)
         ax.set_yticks(y, [x.name for x in e.explanations])
         ax.set(
             ylim=(-0.6, len(y) - 0.05),

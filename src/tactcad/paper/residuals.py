@@ -8,6 +8,7 @@ every toleranced dimension.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import permutations
 
 import numpy as np
 
@@ -18,19 +19,8 @@ from tactcad.paper.array_model import ArrayModel
 from tactcad.paper.published import Published
 from tactcad.parts.array.element import WIRE_TOLERANCE
 from tactcad.report import plots as d
-from tactcad.report.report import (
-    Cell,
-    Marked,
-    Picture,
-    ReportSection,
-    ReportTable,
-    exact,
-    interval,
-    listed,
-    percent,
-    sig,
-    signed_percent,
-)
+from tactcad.report.figures import exact, interval, listed, percent, sig, signed_percent
+from tactcad.report.report import Cell, Marked, Picture, ReportSection, ReportTable
 
 from .prose import drawn, section, table, tabulated
 
@@ -117,7 +107,7 @@ def residuals(
     K = data.table1.stiffness.value[here]
     predicted = {name: ladder.evaluate(s, name).stiffness for name in ladder.CLOSED_FORMS}
     predicted |= more or {}
-    t, L = s.hinge_thickness, np.broadcast_to(s.load_arm, s.shape)
+    t, pad_half, L = s.hinge_thickness, array.pad_length / 2, np.broadcast_to(s.load_arm, s.shape)
     return Residuals(
         data.table1.element[here],
         data.table1.arm.value[here],
@@ -129,9 +119,8 @@ def residuals(
         solve(s, "hinge_thickness", K, 0.3, 3.0, rung),
         L,
         solve(s, "load_arm", K, 0.2, 3.0, rung),
-        array.pad_length / 2,
-        _band(s, array, rng, rung, 0.0),
-        _band(s, array, rng, rung, array.pad_length / 2),
+        pad_half,
+        *(np.nanquantile(spread(s, array, rng, rung, contact), BAND, axis=0) for contact in (0.0, pad_half)),
     )
 
 
@@ -196,19 +185,10 @@ def spread(
     return in_clamp(left, ladder.evaluate(left, rung).stiffness, np.abs(each(tol.clamp_compliance)))
 
 
-def _band(
-    s: HingeSection, array: ArrayModel, rng: np.random.Generator, rung: str, contact: float
-) -> np.ndarray:
-    return np.nanquantile(spread(s, array, rng, rung, contact), BAND, axis=0)
-
-
 def _one_each(s: HingeSection, draws: int) -> HingeSection:
     """The same sections, repeated in `draws` rows."""
-    changes = {}
-    for name in s.__dataclass_fields__:
-        value = getattr(s, name)
-        changes[name] = np.broadcast_to(value, (draws, *s.shape)) if value.size > 1 else value
-    return s.with_(**changes)
+    many = {n: v for n in s.__dataclass_fields__ if (v := getattr(s, n)).size > 1}
+    return s.with_(**{n: np.broadcast_to(v, (draws, *s.shape)) for n, v in many.items()})
 
 
 SMALL_FACTOR = 0.05  # a common factor closer to 1 than this is not reported
@@ -298,17 +278,13 @@ def _cause(r: Residuals, i: int, array: ArrayModel) -> str:
 
 def _equal_arms(r: Residuals) -> list[str]:
     """The largest ratio between elements of equal arm."""
-    best, pair = 1.0, None
-    for i in range(len(r.element)):
-        for j in range(len(r.element)):
-            ratio = r.measured[i] / r.measured[j]
-            if r.arm[i] == r.arm[j] and ratio > best:
-                best, pair = ratio, (r.element[i], r.element[j])
-    if pair is None:
+    pairs = [(i, j) for i, j in permutations(range(len(r.element)), 2) if r.arm[i] == r.arm[j]]
+    i, j = max(pairs, key=lambda pair: r.measured[pair[0]] / r.measured[pair[1]], default=(0, 0))
+    if r.measured[i] <= r.measured[j]:
         return []
     return [
-        f"Nominally equal elements differ by up to {sig(best)} (nos. {pair[0]} and {pair[1]}): no model "
-        "that knows only the arm length can fit both."
+        f"Nominally equal elements differ by up to {sig(r.measured[i] / r.measured[j])} (nos. {r.element[i]} "
+        f"and {r.element[j]}): no model that knows only the arm length can fit both."
     ]
 
 
@@ -372,32 +348,13 @@ def _bands(r: Residuals) -> Picture:
     x = np.arange(len(order))
     with d.panels(size=(11.2, 4.7)) as (figure, ax):
         pad, cut = r.band_pad[:, order], r.band_cut[:, order]
-        ax.bar(
-            x,
-            pad[1] - pad[0],
-            0.5,
-            pad[0],
-            color=d.SKY,
-            alpha=0.35,
-            label="95 %: contact anywhere on the pad",
-        )
-        ax.bar(
-            x,
-            cut[1] - cut[0],
-            0.5,
-            cut[0],
-            color=d.BLUE,
-            alpha=0.55,
-            label="95 %: cutting and clamping tolerances",
-        )
-        ax.hlines(
-            r.predicted[r.rung][order],
-            x - 0.25,
-            x + 0.25,
-            color=d.BLACK,
-            lw=1.6,
-            label=f"predicted, rung {r.rung}",
-        )
+        for (low, high), colour, alpha, what in (
+            (pad, d.SKY, 0.35, "contact anywhere on the pad"),
+            (cut, d.BLUE, 0.55, "cutting and clamping tolerances"),
+        ):
+            ax.bar(x, high - low, 0.5, low, color=colour, alpha=alpha, label=f"95 %: {what}")
+        predicted, style = r.predicted[r.rung][order], {"color": d.BLACK, "lw": 1.6}
+        ax.hlines(predicted, x - 0.25, x + 0.25, label=f"predicted, rung {r.rung}", **style)
         ax.plot(x, r.measured[order], "o", color=d.RED, ms=9, mec="white", label="Table 1", zorder=5)
         for i, k in zip(x, order):
             d.note(ax, f"{r.measured[k]:g}", (i + 0.25, r.measured[k]), (4, -3), fontsize=9.5, color=d.RED)

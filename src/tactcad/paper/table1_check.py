@@ -14,17 +14,8 @@ import numpy as np
 from tactcad.lab.regression import fit_lines, t_quantile
 from tactcad.paper.published import Column, Published
 from tactcad.report import plots as d
-from tactcad.report.report import (
-    Marked,
-    Picture,
-    ReportSection,
-    ReportTable,
-    exact,
-    interval,
-    listed,
-    sig,
-    signed_percent,
-)
+from tactcad.report.figures import exact, interval, listed, sig, signed_percent
+from tactcad.report.report import Marked, Picture, ReportSection, ReportTable
 
 from .prose import drawn, section, table
 
@@ -137,28 +128,14 @@ def findings(c: Table1Check, data: Published) -> tuple[str, ...]:
     )
     s = c.series
     agrees = s.line_low <= cell <= s.line_high
+    intercept = "a line that does not pass through zero would do that (the intercepts are not printed)"
+    products = (
+        ("K × deflection", "the printed force", c.force, intercept),
+        ("|K_v| × deflection", "the printed signal", c.signal, "again an intercept would do that"),
+        ("K_v/K from its two columns", "the printed K_v/K", c.ratio, "one of the three is misprinted"),
+    )
     sentences = [
-        _product_finding(
-            "K × deflection",
-            "the printed force",
-            c.force,
-            c.element,
-            "a line that does not pass through zero would do that (the intercepts are not printed)",
-        ),
-        _product_finding(
-            "|K_v| × deflection",
-            "the printed signal",
-            c.signal,
-            c.element,
-            "again an intercept would do that",
-        ),
-        _product_finding(
-            "K_v/K from its two columns",
-            "the printed K_v/K",
-            c.ratio,
-            c.element,
-            "one of the three is misprinted",
-        ),
+        *(_product_finding(*product, c.element) for product in products),
         f"With {cell:g} N/mm in series, the printed deflections and forces add up to travels of "
         f"{interval(s.travel.min(), s.travel.max(), 4)} µm, not {travel:g}. Deflection against force over "
         f"all elements is a line of {sig(s.line_stiffness)} N/mm in series (95 % "
@@ -199,7 +176,7 @@ def _over(c: Table1Check, data: Published) -> int | None:
     return int(c.element[i]) if force[i] > data.figure["load_cell_range"] else None
 
 
-def _product_finding(name: str, against: str, p: ColumnProduct, element: np.ndarray, reason: str) -> str:
+def _product_finding(name: str, against: str, p: ColumnProduct, reason: str, element: np.ndarray) -> str:
     beyond = p.beyond_rounding
     if not beyond.any():
         return f"{name} agrees with {against} within rounding for all {len(element)} elements."
@@ -263,34 +240,20 @@ def _plot(c: Table1Check, data: Published) -> Picture:
     with d.panels(1, 2, size=(11.2, 4.6)) as (figure, (left, right)):
         force = np.array([0, t.force.value.max() * 1.05])
         cell, travel = figure_["load_cell_stiffness"], figure_["calibration_travel"]
-        left.plot(
-            force,
-            travel - force / cell * 1e3,
-            "--",
-            color=d.BLUE,
-            lw=1.8,
-            label=f"{travel:g} µm, {cell:g} N/mm in series, as printed",
-        )
-        left.plot(
-            force,
-            s.line_travel - force / s.line_stiffness * 1e3,
-            "-",
-            color=d.BLACK,
-            lw=1.8,
-            label=f"fitted: {s.line_travel:.0f} µm, {s.line_stiffness:.3g} N/mm",
-        )
+        as_printed = f"{travel:g} µm, {cell:g} N/mm in series, as printed"
+        fitted = f"fitted: {s.line_travel:.0f} µm, {s.line_stiffness:.3g} N/mm"
+        for start, stiffness, style, colour, label in (
+            (travel, cell, "--", d.BLUE, as_printed),
+            (s.line_travel, s.line_stiffness, "-", d.BLACK, fitted),
+        ):
+            left.plot(force, start - force / stiffness * 1e3, style, color=colour, lw=1.8, label=label)
         left.plot(t.force.value, t.deflection.value, "o", color=d.RED, ms=8, mec="white")
         by_force = np.argsort(t.force.value)
         shift = {int(c.element[i]): ((7, 5), (-9, -17))[place % 2] for place, i in enumerate(by_force)}
         for n, x, y in zip(c.element, t.force.value, t.deflection.value):
             d.note(left, f"{n}", (x, y), shift[int(n)], fontsize=10)
-        left.set(
-            xlim=(0, force[1] * 1.03),
-            ylim=0,
-            xlabel="largest force, N",
-            ylabel="deflection at it, µm",
-            title="what stood in series (by element number)",
-        )
+        left.set(xlim=(0, force[1] * 1.03), ylim=0, xlabel="largest force, N", ylabel="deflection at it, µm")
+        left.set_title("what stood in series (by element number)")
         left.legend(loc="lower left")
         y = np.arange(len(c.element))[::-1]
         for offset, p, name, colour, marker in (
@@ -298,26 +261,11 @@ def _plot(c: Table1Check, data: Published) -> Picture:
             (0, c.signal, "|K_v| × d against signal", d.RED, "s"),
             (-0.24, c.ratio, "K_v/K against its column", d.GREEN, "^"),
         ):
-            right.errorbar(
-                p.difference * 100,
-                y + offset,
-                xerr=p.rounding * 100,
-                fmt=marker,
-                color=colour,
-                ms=6,
-                lw=1.4,
-                capsize=3,
-                label=name,
-            )
+            bars = {"xerr": p.rounding * 100, "ms": 6, "lw": 1.4, "capsize": 3, "label": name}
+            right.errorbar(p.difference * 100, y + offset, fmt=marker, color=colour, **bars)
         right.axvline(0, color=d.BLACK, lw=1)
         right.set_yticks(y, [f"no. {n}" for n in c.element])
         right.set(ylim=(-0.6, len(y) - 0.4), xlabel="difference, % (bars: what rounding allows)")
-        right.legend(
-            loc="lower center",
-            bbox_to_anchor=(0.45, 1.0),
-            ncols=3,
-            fontsize=9,
-            columnspacing=1,
-            handletextpad=0.4,
-        )
+        close = {"ncols": 3, "fontsize": 9, "columnspacing": 1, "handletextpad": 0.4}
+        right.legend(loc="lower center", bbox_to_anchor=(0.45, 1.0), **close)
         return drawn(figure, "table1")

@@ -8,17 +8,8 @@ import numpy as np
 
 from tactcad.paper.published import Published
 from tactcad.report import plots as d
-from tactcad.report.report import (
-    Marked,
-    Picture,
-    ReportSection,
-    ReportTable,
-    interval,
-    listed,
-    percent,
-    sig,
-    signed_percent,
-)
+from tactcad.report.figures import interval, listed, percent, sig, signed_percent
+from tactcad.report.report import Marked, Picture, ReportSection, ReportTable
 
 from .prose import drawn, section, table
 from .reference_element import ReferenceElement
@@ -359,16 +350,7 @@ def _ratio_plot(s: Table2Study) -> Picture:
             span = np.array([0.7, 11.5])
             ax.plot(span, span, color=d.BLACK, lw=1.2)
             for i, k in enumerate(s.measuring):
-                ax.plot(
-                    model[i],
-                    s.ratio[i],
-                    d.MARKERS[i],
-                    color=d.SERIES[i],
-                    ms=7,
-                    mec="white",
-                    mew=0.6,
-                    label=f"K_m = {k:g}",
-                )
+                d.series(ax, i, model[i], s.ratio[i], label=f"K_m = {k:g}")
             d.log_axes(ax, x=(1, 2, 3, 4, 6, 8, 10), y=(1, 2, 3, 4, 6, 8, 10))
             ax.set(xlim=span, ylim=span, title=title, xlabel="R by equation (2)")
         axes[0].set_ylabel("R measured (Table 2)")
@@ -382,13 +364,8 @@ def _forest(s: Table2Study, who: tuple[Witness, ...]) -> Picture:
         y = np.arange(len(who))[::-1]
         ax.axvspan(s.supported.low[0], s.supported.high[0], color=d.SKY, alpha=0.3, lw=0)
         ax.axvline(s.reference_printed, color=d.RED, lw=2, ls="--")
-        ax.annotate(
-            f"printed: {s.reference_printed:g}",
-            (s.reference_printed, len(who) - 0.42),
-            (6, 0),
-            textcoords="offset points",
-            color=d.RED,
-        )
+        at = (s.reference_printed, len(who) - 0.42)
+        d.note(ax, f"printed: {s.reference_printed:g}", at, (6, 0), color=d.RED)
         for place, w in zip(y, who):
             low, high = max(w.low, least), min(w.high, most)
             ax.plot([low, high], [place, place], color=d.BLUE, lw=2.2)

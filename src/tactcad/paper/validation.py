@@ -21,7 +21,8 @@ from tactcad.paper import (
 )
 from tactcad.paper.array_model import ArrayModel
 from tactcad.paper.published import Published
-from tactcad.report.report import ValidationReport, sig
+from tactcad.report.figures import sig
+from tactcad.report.report import ValidationReport
 
 SEED = 20260101  # of every Monte Carlo draw: the same report from the same data
 LEAST_COMMON = 4  # elements of Table 1 that a design must have for meaningful fits

@@ -1,14 +1,14 @@
 """A record's figures, declared once: text, CSV and JSON are made from them.
 
 A declaration that lacks something, that names what the record does not have, or that leaves out one of the
-record's numbers is refused at import.
+record's numbers is refused at import. Numbers in sentences are written by `sig` and its kin.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields, is_dataclass, replace
-from math import isfinite
+from math import floor, isfinite, isinf, isnan, log10
 from typing import Any, TypeVar, get_args, get_type_hints
 
 T = TypeVar("T")
@@ -168,3 +168,51 @@ def csv_lines(figures: Sequence[Figure], records: Sequence[Any], digits: str = "
     if digits:
         figures = [f if f.digits == "d" else replace(f, digits=digits) for f in figures]
     return [[f.column for f in figures], *([f.text(row) for f in figures] for row in records)]
+
+
+def sig(value: float, digits: int = 3) -> str:
+    """A number as text without exponent between 1e-4 and 1e7.
+
+    Parameters
+    ----------
+    value
+        The number.
+    digits
+        Significant digits.
+    """
+    value = float(value)
+    if isnan(value):
+        return "–"
+    if isinf(value):
+        return "∞" if value > 0 else "−∞"
+    if value == 0:
+        return "0"
+    if not 1e-4 <= abs(value) < 1e7:
+        return f"{value:.{digits - 1}e}".replace("-", "−")
+    rounded = float(f"{value:.{digits - 1}e}")
+    decimals = max(digits - 1 - floor(log10(abs(rounded))), 0)
+    return f"{rounded:.{decimals}f}".replace("-", "−")
+
+
+def exact(value: float) -> str:
+    """A number as printed, without trailing zeros."""
+    return f"{value:g}".replace("-", "−")
+
+
+def percent(value: float, digits: int = 2) -> str:
+    """A ratio in per cent."""
+    return f"{sig(value * 100, digits)} %"
+
+
+def signed_percent(value: float, digits: int = 2) -> str:
+    return ("+" if value > 0 else "") + percent(value, digits)
+
+
+def interval(low: float, high: float, digits: int = 3) -> str:
+    return f"{sig(low, digits)} to {sig(high, digits)}"
+
+
+def listed(items: Iterable[object]) -> str:
+    """'a', 'a and b', 'a, b and c'."""
+    words = [str(i) for i in items]
+    return words[0] if len(words) == 1 else ", ".join(words[:-1]) + " and " + words[-1] if words else "none"

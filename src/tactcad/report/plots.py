@@ -114,3 +114,14 @@ def series(ax: Axes, i: int, x: ArrayLike, y: ArrayLike, hollow: bool = False, *
     """Points of the i-th series in its colour and shape."""
     face = {"mfc": "white", "mec": SERIES[i]} if hollow else {"color": SERIES[i], "mec": "white", "mew": 0.6}
     ax.plot(x, y, MARKERS[i], **({"ms": 7} | face | style))
+
+
+def with_bars(ax: Axes, i: int, x: ArrayLike, y: ArrayLike, half: ArrayLike, **style: Any) -> None:
+    """Points of the i-th series in its colour and shape, with bars up and down."""
+    ax.errorbar(x, y, yerr=half, fmt=MARKERS[i], color=SERIES[i], **style)
+
+
+def legend_below(figure: Canvas, handles: list[Any]) -> None:
+    """One legend for all panels, in a line below them."""
+    close = {"columnspacing": 1.2, "handletextpad": 0.3}
+    figure.legend(handles=handles, loc="outside lower center", ncols=len(handles), **close)

@@ -11,10 +11,12 @@ import re
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from importlib.resources import files
-from math import isfinite, isinf, isnan
+from math import isfinite
 from typing import TypeVar
 
 import numpy as np
+
+from .figures import sig
 
 # Metadata of a field that only pictures are drawn from: it is left out of the JSON.
 UNREPORTED = {"unreported": True}
@@ -102,54 +104,6 @@ class ValidationReport:
     summary: tuple[str, ...]
     sections: tuple[ReportSection, ...]
     colophon: str
-
-
-def sig(value: float, digits: int = 3) -> str:
-    """A number as text without exponent between 1e-4 and 1e7.
-
-    Parameters
-    ----------
-    value
-        The number.
-    digits
-        Significant digits.
-    """
-    value = float(value)
-    if isnan(value):
-        return "–"
-    if isinf(value):
-        return "∞" if value > 0 else "−∞"
-    if value == 0:
-        return "0"
-    if not 1e-4 <= abs(value) < 1e7:
-        return f"{value:.{digits - 1}e}".replace("-", "−")
-    rounded = float(f"{value:.{digits - 1}e}")
-    decimals = max(digits - 1 - int(np.floor(np.log10(abs(rounded)))), 0)
-    return f"{rounded:.{decimals}f}".replace("-", "−")
-
-
-def exact(value: float) -> str:
-    """A number as printed, without trailing zeros."""
-    return f"{value:g}".replace("-", "−")
-
-
-def percent(value: float, digits: int = 2) -> str:
-    """A ratio in per cent."""
-    return f"{sig(value * 100, digits)} %"
-
-
-def signed_percent(value: float, digits: int = 2) -> str:
-    return ("+" if value > 0 else "") + percent(value, digits)
-
-
-def interval(low: float, high: float, digits: int = 3) -> str:
-    return f"{sig(low, digits)} to {sig(high, digits)}"
-
-
-def listed(items: Iterable[object]) -> str:
-    """'a', 'a and b', 'a, b and c'."""
-    words = [str(i) for i in items]
-    return words[0] if len(words) == 1 else ", ".join(words[:-1]) + " and " + words[-1] if words else "none"
 
 
 def to_json(report: ValidationReport) -> str:

@@ -7,7 +7,7 @@ Parts are read off their descriptions: no kernel, no mesh.
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import asdict, dataclass
 from math import sqrt
 from typing import Any
@@ -24,7 +24,7 @@ from tactcad.mechanics.lumped import condition_in_ratio
 from tactcad.parts.language.description import Extrusion, Part, Vector, vector
 from tactcad.parts.language.finding import Finding
 from tactcad.parts.language.limits import Characteristic
-from tactcad.parts.language.surface import Piece, pieces
+from tactcad.parts.language.surface import pieces
 from tactcad.scenes import make_scene
 from tactcad.scenes.bom import bom_rows
 from tactcad.scenes.requirement import DimensionLimits
@@ -105,7 +105,12 @@ def scene_facts(design: CommonTables, scene: Scene) -> SceneFacts:
         scene.name,
         placed,
         tuple((step.title, step.text) for step in scene.steps),
-        tuple(_motion(m, groups) for m in scene.motions),
+        tuple(
+            MotionFact(
+                m.name, tuple((tuple(sorted(groups.get(g, ()))), a, b) for g, a, b in m.ways), _rest(m)
+            )
+            for m in scene.motions
+        ),
         tuple(_pose(design, scene, pose) for pose in rig_of(design, scene.name).under_sensor(design)),
         tuple(sorted(scene.cover)),
         tuple(asdict(row) for row in bom_rows(scene, design.design, {})),
@@ -128,11 +133,6 @@ def _under(scene: Scene, designator: str) -> tuple[str, ...]:
         return ()
     before = [s.name for s in scene.ready if designator in {p.designator for p in s.placements}]
     return (step.unit or step.title, *before)
-
-
-def _motion(motion: Motion, groups: Mapping[str, frozenset[str]]) -> MotionFact:
-    ways = tuple((tuple(sorted(groups.get(g, ()))), start, end) for g, start, end in motion.ways)
-    return MotionFact(motion.name, ways, _rest(motion))
 
 
 def _pose(design: CommonTables, scene: Scene, pose: Pose) -> PoseFact:
@@ -277,12 +277,10 @@ def _features(part: Part) -> Iterator[FeatureFact]:
     if not isinstance(part.body, Extrusion):
         return
     for name in sorted(part.feature_names - {""}):
-        yield from dict.fromkeys(_feature(name, piece) for piece in pieces(part, name))
-
-
-def _feature(name: str, piece: Piece) -> FeatureFact:
-    kind = "plane" if piece.diameter is None else "cylinder"
-    return FeatureFact(name, kind, piece.point, piece.direction, piece.diameter, piece.middle)
+        kinds = [(p, "plane" if p.diameter is None else "cylinder") for p in pieces(part, name)]
+        yield from dict.fromkeys(
+            FeatureFact(name, kind, p.point, p.direction, p.diameter, p.middle) for p, kind in kinds
+        )
 
 
 def _of_element(v: DimensionLimits, part: Part) -> tuple[tuple[str, str], ...]:
@@ -305,18 +303,8 @@ def _shares(
                     limits[name] = max(limits.get(name, 0.0), c.share)
         if limits:
             r, ranked = line.requirement, sorted(limits.items(), key=lambda item: (-item[1], item[0]))
-            found.append(
-                ShareFact(
-                    r.name,
-                    r.unit,
-                    line.nominal,
-                    line.worst_low,
-                    line.worst_high,
-                    line.kept,
-                    max(limits.values()),
-                    tuple(ranked),
-                )
-            )
+            span, most = (line.nominal, line.worst_low, line.worst_high), max(limits.values())
+            found.append(ShareFact(r.name, r.unit, *span, line.kept, most, tuple(ranked)))
     yield from sorted(found, key=lambda fact: (-fact.share, fact.requirement))
 
 
@@ -388,21 +376,19 @@ def _facts(design: CommonTables, builds: Builds) -> ElementFacts:
     except CheckFailure as error:
         why_not = str(error)
     built = {e.number: e for e in builds.elements}
+    per_newton = lambda strain, force: None if strain is None else strain / force  # noqa: E731
     elements = {}
     for n, place in enumerate(layout.elements):
         row, low = (rows[n], gentle[n]) if gentle else (None, None)
         elements[place.designator] = {
             "row": place.row,
             "estimate": asdict(row) if row else None,
-            "gauge_per_newton": _per_newton(low.gauge_strain, low) if low else None,
-            "fillet_per_newton": _per_newton(low.peak_strain, low) if low else None,
+            "gauge_per_newton": per_newton(low.gauge_strain, low.force) if low else None,
+            "fillet_per_newton": per_newton(low.peak_strain, low.force) if low else None,
             "built": built[place.number].known() if place.number in built else None,
         }
-    return ElementFacts(DEFAULT_RUNG, elements, tuple(_pairs(rows)), why_not, _fit(builds))
-
-
-def _per_newton(strain: float | None, row: ElementEstimate) -> float | None:
-    return None if strain is None else strain / row.force
+    fit = FitFacts(builds.count, builds.seed, builds.kept, builds.failures)
+    return ElementFacts(DEFAULT_RUNG, elements, tuple(_pairs(rows)), why_not, fit)
 
 
 def _pairs(rows: list[ElementEstimate]) -> list[PairFact]:
@@ -419,10 +405,6 @@ def _pair(m: ElementEstimate, r: ElementEstimate) -> PairFact:
     return PairFact(
         f"E{m.number}", f"E{r.number}", m.stiffness, r.stiffness, r.stiffness / m.stiffness, best, condition
     )
-
-
-def _fit(builds: Builds) -> FitFacts:
-    return FitFacts(builds.count, builds.seed, builds.kept, builds.failures)
 
 
 @dataclass(frozen=True)

@@ -48,7 +48,13 @@ def text(mechanism: Mechanism, base: Solid, arms: Sequence[Solid], step: float) 
     custom = add(root, "custom")
     add(custom, "text", name="schema", data=f"{SCHEMA} {VERSION}")
     add(custom, "text", name="revision", data=mechanism.design.design.revision)
-    _defaults(root, step)
+    default = add(root, "default")
+    hard = {"solref": (SETTLING * step, 1.0), "solimp": (IMPEDANCE, IMPEDANCE, 1.0)}
+    add(default, "joint", armature=0.0, **{f"{k}limit": v for k, v in hard.items()})
+    add(add(default, "default", class_="visual"), "geom", type="mesh", contype=0, conaffinity=0, group=2)
+    # elements meet what they touch, not each other; frictionless, as K is estimated
+    hit = add(default, "default", class_="collision")
+    add(hit, "geom", contype=1, conaffinity=0, group=3, condim=1, priority=1, **hard)
     asset = add(root, "asset")
     for file in dict.fromkeys(mesh_name(look) for body in (base, *arms) for look in body.looks):
         file = file.removeprefix("meshes/")
@@ -71,16 +77,6 @@ def text(mechanism: Mechanism, base: Solid, arms: Sequence[Solid], step: float) 
 def quaternion(turn: object) -> np.ndarray:
     """Scalar first."""
     return Rotation.from_matrix(np.array(turn)).as_quat(canonical=True, scalar_first=True)
-
-
-def _defaults(root: Element, step: float) -> None:
-    default = add(root, "default")
-    hard = {"solref": (SETTLING * step, 1.0), "solimp": (IMPEDANCE, IMPEDANCE, 1.0)}
-    add(default, "joint", armature=0.0, **{f"{k}limit": v for k, v in hard.items()})
-    add(add(default, "default", class_="visual"), "geom", type="mesh", contype=0, conaffinity=0, group=2)
-    # elements meet what they touch, not each other; frictionless, as K is estimated
-    hit = add(default, "default", class_="collision")
-    add(hit, "geom", contype=1, conaffinity=0, group=3, condim=1, priority=1, **hard)
 
 
 def _joint(body: Element, j: ElementJoint, moved: float) -> None:

@@ -133,9 +133,8 @@ def csv_bytes(taxels: Taxels) -> bytes:
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow([*(f.name for f in fields(Taxel)), "schema", "version"])
     for t in taxels.taxels:
-        cells = (
-            " ".join(map(str, v)) if isinstance(v, tuple) else v for v in vars(t).values()
-        )  # None: empty
+        # None: empty
+        cells = (" ".join(map(str, v)) if isinstance(v, tuple) else v for v in vars(t).values())
         writer.writerow([*cells, SCHEMA, VERSION])
     return text.getvalue().encode()
 

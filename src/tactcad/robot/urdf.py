@@ -8,7 +8,7 @@ from xml.etree.ElementTree import Element, SubElement, indent, tostring
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from .mechanism import ElementJoint, Mechanism, Moving, Solid, mesh_name
+from .mechanism import ElementJoint, Mechanism, Solid, mesh_name
 
 MM = 1e-3  # m
 SPEED = 10.0  # rad/s or m/s, which URDF asks for; chosen beyond what any arm reaches
@@ -45,7 +45,14 @@ def text(mechanism: Mechanism, base: Solid, arms: Sequence[Solid]) -> bytes:
             if child != m.name:
                 _between(add(root, "link", name=child), arm)
             parent, at, turn = child, np.zeros(3), np.eye(3)
-        _pad(_link(root, m.name, arm), m)
+        link = _link(root, m.name, arm)
+        length, width = m.taxel.length_mm, m.taxel.width_mm
+        deep = m.ball or min(length, width) / 2
+        _, geometry = _shape(link, "collision", (-m.joints_at - [0, 0, deep]) * MM, np.zeros(3))
+        if m.ball:
+            add(geometry, "sphere", radius=m.ball * MM)
+        else:
+            add(geometry, "box", size=np.array([length, width, 2 * deep]) * MM)
         add(root, "link", name=f"{m.name}_taxel")
         _joint(root, f"{m.name}_taxel_fixed", "fixed", m.name, f"{m.name}_taxel", -m.joints_at * MM)
     return document(root)
@@ -95,16 +102,6 @@ def _shape(link: Element, kind: str, at: np.ndarray, turn: Iterable[float]) -> t
     shape = add(link, kind)
     add(shape, "origin", xyz=at, rpy=turn)
     return shape, add(shape, "geometry")
-
-
-def _pad(link: Element, m: Moving) -> None:
-    length, width = m.taxel.length_mm, m.taxel.width_mm
-    deep = m.ball or min(length, width) / 2
-    _, geometry = _shape(link, "collision", (-m.joints_at - [0, 0, deep]) * MM, np.zeros(3))
-    if m.ball:
-        add(geometry, "sphere", radius=m.ball * MM)
-    else:
-        add(geometry, "box", size=np.array([length, width, 2 * deep]) * MM)
 
 
 def add(parent: Element, tag: str, **values: object) -> Element:

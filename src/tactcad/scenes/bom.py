@@ -17,7 +17,7 @@ from typing import Any
 from tactcad.design.text_values import as_number, as_whole
 from tactcad.design.tree import Identity
 from tactcad.parts.bought.electronic_parts import Supply
-from tactcad.parts.bought.example_makes import example
+from tactcad.parts.bought.standard_parts import example
 from tactcad.parts.language.description import Part, Purchase
 from tactcad.scenes.scene import Scene
 

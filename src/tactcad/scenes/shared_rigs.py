@@ -42,11 +42,7 @@ AXIS_LIFT = 200.0  # exploded views: the vertical axis over everything else
 THREAD, LENGTH, UNDER = PLATE_SCREW
 SQUARE = "precision square, 100 mm"
 SHIMS = "shim foil, 0.01 and 0.02 mm, scissors"
-BESIDE: Vector = (
-    -300.0,
-    0.0,
-    2.0,
-)  # place of the cart during its assembly, mm from its place on the base plate
+BESIDE: Vector = (-300.0, 0.0, 2.0)  # of the cart during its assembly, mm from its place on the base plate
 OVER: Vector = (0.0, 0.0, 2.0)
 WHEELS_LOOSE = ("shims and bearings on their axles: along x and z; along y, between plate and head",)
 WHEELS_RISE = ("axles: by their play in the bores, until they are tight", "bearings: turn about y")

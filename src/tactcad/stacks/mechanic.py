@@ -392,9 +392,7 @@ def _blocks(design: Array, limits: Array, cost: list[float], bounds: list[tuple]
     """Solutions x of: least cost x with design x <= limits, for every row of `limits`."""
     at_once = max(1, BLOCK // len(design))
     solved = []
-    scale = max(
-        float(np.abs(limits).max()), 1e-9
-    )  # solvers' own tolerances are 1e-7: micrometres become ones
+    scale = max(float(np.abs(limits).max()), 1e-9)  # solvers' tolerances are 1e-7: micrometres become ones
     for start in range(0, len(limits), at_once):
         some = limits[start : start + at_once] / scale
         m = len(some)

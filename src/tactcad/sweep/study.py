@@ -211,7 +211,9 @@ def read_study(path: str | Path) -> Study:
     study = Study(head, _varied(table["vary"], base), read_table(Measures, table["measure"], "measure"), base)
     for name, one in study.vary.items():
         _refuse_contradiction(study, name, one)
-        _refuse_overlap(study, name)
+        # Refuse a list together with a place in it: one would overwrite the other
+        if whole := next((other for other in study.vary if name.startswith(f"{other}[")), None):
+            raise InputError("vary", f"{whole} and {name} vary the same value", legal="one of the two")
     _refuse_count(study)
     _refuse_measures(study)
     return study
@@ -283,12 +285,6 @@ def _refuse_contradiction(study: Study, path: str, one: Varied) -> None:
     if sampling == LIST and one.values is None or sampling == GRID and one.normal:
         legal = "values" + (", or range with steps" if sampling == GRID else "")
         raise InputError(where, f"{given_[0]} cannot be taken as a {sampling}", legal=legal)
-
-
-def _refuse_overlap(study: Study, path: str) -> None:
-    """Refuse a list together with a place in it: one would overwrite the other."""
-    if whole := next((other for other in study.vary if path.startswith(f"{other}[")), None):
-        raise InputError("vary", f"{whole} and {path} vary the same value", legal="one of the two")
 
 
 def _refuse_count(study: Study) -> None:

@@ -282,9 +282,8 @@ class Candidates:
             return np.zeros((len(self.arm), 1))
         soft = 1.0 + self.elements.stiffness / rig.load_cell_stiffness
         bears = (self.rated_deflection - AIR) * soft / rig.step
-        most = min(
-            rig.travel / rig.step, rig.load_cell_range / rig.step
-        )  # the second never binds on soft cells
+        # the second never binds on soft cells
+        most = min(rig.travel / rig.step, rig.load_cell_range / rig.step)
         full = self.elements.stiffness / soft * rig.step  # N a step
         bears = np.minimum(bears, rig.load_cell_range / full)
         return np.floor(np.clip(bears.min(axis=1, keepdims=True), 0.0, most) + 1e-9)

@@ -135,7 +135,10 @@ def bounds(
     count = count if used is None else used
     by_noise, by_belief, weighed = weights(m, e, known, count, x, noise)
     S, pull = information(m, count, weighed)
-    shared = sum(_shared(m, count, pull, S, k, v) ** 2 for k, v in known.common.values())
+    # Shift of x by errors k of ln K and v of ln K_v that all elements have at once
+    shared = sum(
+        (-(count * pull * (m.f * k - m.c * v)).sum(axis=-1) / S) ** 2 for k, v in known.common.values()
+    )
     total = (count * pull**2 * (by_noise + by_belief)).sum(axis=-1)
     error = np.sqrt(total / S**2 + shared)
     signal = (count * pull**2 * by_noise).sum(axis=-1)
@@ -153,11 +156,6 @@ def bounds(
             at = np.maximum(point + sign * t * np.sqrt(total / S / S_at + shared), 0.01 * point)
         ends.append(1.0 / np.maximum(1.0 / at - sign * known.load_cell, 1e-12))
     return Bounds(ends[0], ends[1], error)
-
-
-def _shared(m: InGrasp, count: Array, pull: Array, S: Array, k: Array, v: Array) -> Array:
-    """Shift of x by errors k of ln K and v of ln K_v that all elements have at once."""
-    return -(count * pull * (m.f * k - m.c * v)).sum(axis=-1) / S
 
 
 def coupled_estimate(

@@ -154,11 +154,7 @@ def search(
         nonlocal least, looked
         rows = np.rint(numbers.T if numbers.ndim == 2 else numbers[np.newaxis])
         looked += len(rows)
-        c = stand.candidates(rows)
-        with np.errstate(all="ignore"):
-            bad, wanted = c.violation, goal(c)
-            out = np.where(bad > 0.0, FAR * (1.0 + np.minimum(bad, 1e3)), wanted)
-        out = np.where(np.isfinite(out), out, FAR * 1e4)
+        out = valued(stand, rows, goal)[1]
         for i in np.argsort(out):
             if out[i] < least[0]:
                 least = float(out[i]), rows[i]
@@ -230,6 +226,15 @@ def search(
     return Found(candidate, row, reached, accepted, looked, refused, in_time)
 
 
+def valued(at: Stand, rows: Array, goal: Goal) -> tuple[Candidates, Array]:
+    """The candidates, and what is made least: their goal, or FAR and above where they miss limits."""
+    c = at.candidates(rows)
+    with np.errstate(all="ignore"):
+        bad, wanted = c.violation, goal(c)
+        value = np.where(bad > 0.0, FAR * (1.0 + np.minimum(bad, 1e3)), wanted)
+    return c, np.where(np.isfinite(value), value, FAR * 1e4)
+
+
 @lru_cache
 def moves(count: int) -> Array:
     """Steps from a candidate of so many numbers to those around it, (candidates, numbers)."""
@@ -268,13 +273,6 @@ def _on_layer(
     best, passed = (inf, stand, starts[0]), list[tuple[float, Stand, Array]]()
     decided_by: tuple[int, ...] = ()
 
-    def valued(at: Stand, rows: Array) -> tuple[Candidates, Array]:
-        c = at.candidates(rows)
-        with np.errstate(all="ignore"):
-            bad, wanted = c.violation, goal(c)
-            value = np.where(bad > 0.0, FAR * (1.0 + np.minimum(bad, 1e3)), wanted)
-        return c, np.where(np.isfinite(value), value, FAR * 1e4)
-
     def worth() -> float:
         """What a candidate must be below; where limits are missed, by how much they are counts alone."""
         base = FAR if best[0] >= FAR else 0.0
@@ -285,8 +283,8 @@ def _on_layer(
         looked += len(rows)
         # no candidate is better than at the few poses that decide the best: most need no others
         if few.tried:
-            rows = rows[valued(few, rows)[1] < worth()]
-        c, value = valued(at, rows)
+            rows = rows[valued(few, rows, goal)[1] < worth()]
+        c, value = valued(at, rows, goal)
         for i in np.argsort(value):
             if not value[i] < worth():
                 return False

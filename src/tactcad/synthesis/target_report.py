@@ -156,12 +156,8 @@ def _inclined_part(r: dict[str, Any]) -> str:
         for ax, table, m in zip(axes, tables, r["inclined"]):
             a = m["angles"]
             shown = ax.pcolormesh(a, a, table, cmap="viridis", vmin=low, vmax=high, shading="nearest")
-            ax.set(
-                title=f"{m['object']:.3g} N/mm",
-                xlabel="along the arms, degrees",
-                ylabel="along the rows, degrees",
-                aspect="equal",
-            )
+            ax.set(xlabel="along the arms, degrees", ylabel="along the rows, degrees", aspect="equal")
+            ax.set_title(f"{m['object']:.3g} N/mm")
         figure.colorbar(shown, ax=list(axes), label="half-width of K_obj, %")
         picture = svg(figure, "inclined")
     return (
@@ -199,16 +195,12 @@ def _notes(got: Synthesis) -> list[str]:
     notes, was = list(got.unknown), got.target.own_clamp
     if was:
         now = got.target.base.clamp
-        notes.append(
-            f"clamped by {now.screw} screws and {now.dowel} mm dowels: with {was} nothing fits the room"
-        )
+        by = f"clamped by {now.screw} screws and {now.dowel} mm dowels"
+        notes.append(f"{by}: with {was} nothing fits the room")
     for left in got.scenes_left_out:
         unlike = left.scene == CALIBRATION.name and got.target.known.how == "calibrated"
-        notes.append(
-            f"its elements count as calibrated, but not on the rig of this design; {left}"
-            if unlike
-            else str(left)
-        )
+        why = "its elements count as calibrated, but not on the rig of this design; " if unlike else ""
+        notes.append(f"{why}{left}")
     if got.met and got.target.target.half_width is None and got.wanted > USEFUL:
         notes.append(
             f"an interval of {percent(got.wanted)} either way is no useful sensor: allow more force, more "
@@ -225,24 +217,21 @@ def _pairs(got: Synthesis) -> list[tuple[int, int]]:
 
 
 def _elements(got: Synthesis) -> list[dict[str, Any]]:
-    s = got.sensor
-    c = got.found.candidate
+    s, c = got.sensor, got.found.candidate
     kinds = [kind for row in dealt(c) for kind in row]
-    rows = []
-    for i, place in enumerate(Layout(got.found.design).elements):
-        rows.append(
-            {
-                "number": place.number,
-                "row": place.row,
-                "arm": place.arm,
-                "hinge_thickness": place.hinge.t,
-                "stiffness": float(s.drawn.stiffness[i]),
-                "stiffness_by_solid_elements": got.solid[i] if got.solid else None,
-                "signal_V_per_mm": float(s.drawn.signal[i]),
-                "largest_force": float(c.largest_force[0, kinds[i]]),
-            }
-        )
-    return rows
+    return [
+        {
+            "number": place.number,
+            "row": place.row,
+            "arm": place.arm,
+            "hinge_thickness": place.hinge.t,
+            "stiffness": float(s.drawn.stiffness[i]),
+            "stiffness_by_solid_elements": got.solid[i] if got.solid else None,
+            "signal_V_per_mm": float(s.drawn.signal[i]),
+            "largest_force": float(c.largest_force[0, kinds[i]]),
+        }
+        for i, place in enumerate(Layout(got.found.design).elements)
+    ]
 
 
 def report_json(got: Synthesis) -> bytes:
@@ -256,16 +245,9 @@ def report_page(got: Synthesis) -> bytes:
     title = f"{got.target.target.name}: a sensor from a target"
     parts = [f"<h1>{escape(title)}</h1>", _answer(got, r), bounds_part(r)]
     if got.found.accepted:
-        parts.append(_size_part(got, r))
-        parts += [
-            _interval_part(got, r),
-            _inclined_part(r),
-            _yield_part(r),
-            _limits_part(r),
-            _ratio_part(r),
-            _front_part(r),
-        ]
-        parts += [_elements_part(r)]
+        parts += [_size_part(got, r), _interval_part(got, r)]
+        shown = (_inclined_part, _yield_part, _limits_part, _ratio_part, _front_part, _elements_part)
+        parts += [part(r) for part in shown]
     if r["left_out"]:
         parts.append(f"<p>Left out for time: {escape(', '.join(r['left_out']))}.</p>")
     return page(title, parts)
@@ -345,9 +327,8 @@ def _size_part(got: Synthesis, r: dict[str, Any]) -> str:
                 (e.hinge_x - e.hinge.l / 2, e.hinge_x + e.hinge.l / 2, BLACK),
                 (e.hinge_x + e.hinge.l / 2, layout.rear_end, GREY),
             ):
-                ax.broken_barh(
-                    [(min(side * start, side * end), end - start)], (y - thick / 2, thick), color=colour
-                )
+                along = [(min(side * start, side * end), end - start)]
+                ax.broken_barh(along, (y - thick / 2, thick), color=colour)
             ax.annotate(f"E{e.number}", (side * layout.rear_end * 0.8, y), ha="center", va="center")
         ax.set(xlabel="along the arms, mm", ylabel="along the rows, mm", aspect="equal")
         picture = svg(figure, "size")
@@ -388,13 +369,8 @@ def interval_picture(r: dict[str, Any], of: str) -> str:
         ax.fill_between(x, 100 * (low / x - 1), 100 * (high / x - 1), color=SKY, alpha=0.45, lw=0)
         ax.plot(x, 100 * (high - low) / 2 / x, color=BLUE, lw=2, label=f"half-width, {of}")
         for i, pair in enumerate(r["pairs"]):
-            ax.plot(
-                x,
-                100 * np.array(pair["half_width"]),
-                color=ORANGE,
-                ls=("--", ":", "-.")[i % 3],
-                label=f"one pair, elements {pair['measuring']} and {pair['reference']}",
-            )
+            width, one = 100 * np.array(pair["half_width"]), f"{pair['measuring']} and {pair['reference']}"
+            ax.plot(x, width, ("--", ":", "-.")[i % 3], color=ORANGE, label=f"one pair, elements {one}")
         if r["wanted_half_width"] is not None:
             ax.axhline(100 * r["wanted_half_width"], color=GREY, lw=1, label="half-width to keep")
         ax.set(xscale="log", xlabel="object's stiffness, N/mm", ylabel="95 % interval, % of K_obj")
@@ -427,11 +403,10 @@ def _ticks(low: float, high: float) -> list[float]:
 def _yield_part(r: dict[str, Any]) -> str:
     rows = [(name, str(n)) for name, n in r["yield_lacks"].items()]
     text = (
-        f"<h2>Yield</h2><p>Of {r['yield_arrays']} arrays made ({r['yield_distribution']} parts, "
-        f"one sheet and one "
-        f"machine's offset each) {percent(r['yield'])} go together, stay within their hinges' "
-        f"strength, keep their stops open "
-        f"and give an interval within {percent(r['wanted_half_width'])} everywhere on the range.</p>"
+        f"<h2>Yield</h2><p>Of {r['yield_arrays']} arrays made ({r['yield_distribution']} parts, one sheet "
+        f"and one machine's offset each) {percent(r['yield'])} go together, stay within their hinges' "
+        "strength, keep their stops open and give an interval within "
+        f"{percent(r['wanted_half_width'])} everywhere on the range.</p>"
     )
     return text + (table(("lacking", "arrays"), rows) if rows else "")
 
@@ -439,24 +414,25 @@ def _yield_part(r: dict[str, Any]) -> str:
 def _limits_part(r: dict[str, Any]) -> str:
     if not r["binding"] and not r["shares"]:
         return ""
-    text = "<h2>What limits it</h2>"
-    text += binding_part(r)
+    text = f"<h2>What limits it</h2>{binding_part(r)}"
     if not r["shares"]:
         return text
     shown = [s for s in r["shares"] if s["total"] > 0][:LISTED]
     with panels(1, 1, (9.0, 0.5 * len(shown) + 1.2)) as (figure, ax):
         at = np.arange(len(shown))[::-1]
-        for off, key, colour, label in (
-            (0.2, "total", SKY, "with interactions"),
-            (-0.2, "first", BLUE, "alone"),
-        ):
+        sides = ((0.2, "total", SKY, "with interactions"), (-0.2, "first", BLUE, "alone"))
+        for off, key, colour, label in sides:
             share, error = ([100 * s[key + e] for s in shown] for e in ("", "_error"))
             ax.barh(at + off, share, 0.38, xerr=error, color=colour, ecolor=GREY, label=label)
         ax.set_yticks(at, [s["cause"] for s in shown])
         ax.set(xlabel="% of the variance of K_obj, at the middle of the range", xlim=(0, None))
         ax.legend(loc="lower right")
         text += svg(figure, "shares")
-    rows = [tuple([s["cause"], *(_whole_percent(s, key) for key in ("first", "total"))]) for s in shown]
+
+    def whole_percent(share: dict[str, Any], key: str) -> str:
+        return f"{100 * share[key]:.0f} \u00b1 {max(100 * share[key + '_error'], 1):.0f} %"
+
+    rows = [(s["cause"], whole_percent(s, "first"), whole_percent(s, "total")) for s in shown]
     text += table(("cause", "alone", "with interactions"), rows)
     none = [s["cause"] for s in r["shares"] if s["total"] <= 0]
     below = f" Below 0.05 %: {escape('; '.join(none))}." if none else ""
@@ -478,14 +454,9 @@ def binding_part(r: dict[str, Any]) -> str:
         for b in r["binding"][:LISTED]
     ]
     return (
-        f"<p>The one change that helps most: <code>{escape(best['field'])}</code>. Each field "
-        f"eased by one step, the rest "
-        "searched anew:</p>" + table(("field", "eased", "half-width", "change"), rows)
+        f"<p>The one change that helps most: <code>{escape(best['field'])}</code>. Each field eased by one "
+        "step, the rest searched anew:</p>" + table(("field", "eased", "half-width", "change"), rows)
     )
-
-
-def _whole_percent(share: dict[str, Any], key: str) -> str:
-    return f"{100 * share[key]:.0f} \u00b1 {max(100 * share[key + '_error'], 1):.0f} %"
 
 
 def _ratio_part(r: dict[str, Any]) -> str:
@@ -505,13 +476,10 @@ def _ratio_part(r: dict[str, Any]) -> str:
     than = f", against {percent(paper)} at the paper's 10" if paper else ""
     return (
         f"<h2>Stiffness ratio</h2>{picture}<p>Best here: {r['ratio']:.3g}, half-width "
-        f"{percent(r['half_width'])}{than}. The "
-        "paper looks at a pair's ratio alone: the larger K_r/K_m, the better conditioned, with "
-        "diminishing returns from 10 "
-        "on. Here a stiffer reference is also read with less signal and calibrated less well "
-        "behind the load cell, a softer "
-        "element is limited by its stop and its strength, and both sides are weighed over the "
-        "whole range.</p>"
+        f"{percent(r['half_width'])}{than}. The paper looks at a pair's ratio alone: the larger K_r/K_m, the "
+        "better conditioned, with diminishing returns from 10 on. Here a stiffer reference is also read with "
+        "less signal and calibrated less well behind the load cell, a softer element is limited by its stop "
+        "and its strength, and both sides are weighed over the whole range.</p>"
     )
 
 
@@ -583,9 +551,9 @@ def answer(r: dict[str, Any]) -> str:
     return (
         f"{best}{len(e)} elements feel {low:.3g} to {high:.3g} N/mm{pressed} within "
         f"{percent(r['wanted_half_width'])} (half the 95 % interval; as drawn {percent(r['half_width'])}). "
-        f"{percent(r['yield'])} of arrays made within "
-        f"their tolerances keep that ({percent(r['yield_interval'][0])} to "
-        f"{percent(r['yield_interval'][1])}). Size {' x '.join(f'{v:g}' for v in r['size_mm'])} mm. {than}."
+        f"{percent(r['yield'])} of arrays made within their tolerances keep that "
+        f"({' to '.join(map(percent, r['yield_interval']))}). "
+        f"Size {' x '.join(f'{v:g}' for v in r['size_mm'])} mm. {than}."
     )
 
 
@@ -620,9 +588,8 @@ def refuse_taken(out: str | Path) -> None:
         legal = "the folder that it leads to, or a new folder"
         raise InputError("--out", "is a link", value=str(out), legal=legal)
     if os.path.lexists(path) and not (path.is_dir() and not os.listdir(path)):
-        raise InputError(
-            "--out", "is there already and not an empty folder", value=str(out), legal="a new folder"
-        )
+        what = "is there already and not an empty folder"
+        raise InputError("--out", what, value=str(out), legal="a new folder")
 
 
 def refuse_unwritable(out: str | Path) -> None:

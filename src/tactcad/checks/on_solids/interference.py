@@ -1,28 +1,30 @@
 """Whether placed parts overlap, and whether those that meet are meant to.
 
 Pairs whose boxes are apart are skipped. Of the rest only distinct situations reach the kernel. Pairs of the
-same parts in the same relative position have the same verdict. If all of part A near part B stays the same
-while B moves along one of A's axes (a rod, a plate's edge, a bar), all these places also have one verdict, by
-the descriptions. A long array needs as few verdicts of the kernel as a short one.
+same parts in the same relative position have the same verdict. So have pairs where all of part A near part B
+is described alike: B along a rod, a bar or a plate's edge, in one opening of a sheet or the next. An array of
+many elements needs as few verdicts of the kernel as one of a few.
 """
 
 from __future__ import annotations
 
-from bisect import bisect_left
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
 
 import numpy as np
 from OCP.BRepAlgoAPI import BRepAlgoAPI_Common
 from OCP.TopoDS import TopoDS_Shape
 
-from tactcad.contour import Contour, Line
+from tactcad.contour import Arc, Line, Segment
+from tactcad.contour.inside import side
+from tactcad.contour.nearest import box_around
 from tactcad.parts.language.description import (
     Extrusion,
     Feature,
     Hole,
     Part,
     Revolution,
+    Vector,
     drill_point_height,
     vector,
 )
@@ -51,13 +53,11 @@ VOLUME_AGREES = 1e-6
 
 @dataclass(frozen=True)
 class Meeting:
-    """Relation of two placed parts: overlap in mm3, distance in mm, a point of it (mm, in the frame of the
-    part `anchor`: 0 the first, 1 the second)."""
+    """Relation of two placed parts: overlap in mm3, distance in mm, a point of it, mm."""
 
     overlap: float
     distance: float
-    place: tuple[float, float, float]
-    anchor: int
+    place: Vector
 
 
 def check_interference(
@@ -78,19 +78,23 @@ def check_interference(
     local = {part.part_no: bounding_box(shapes[part.part_no]) for part in scene.parts}
     boxes = np.array([placed_box(p, local[p.part.part_no]) for p in scene.placements])
     faces: dict[str, Faces] = {}
-    changing = {part.part_no: zones(part) for part in scene.parts}
+    around = {part.part_no: Surroundings(part) for part in scene.parts}
     known = {} if known is None else known
     findings = []
     met: set[frozenset[str]] = set()
     for i, j in near_pairs(boxes):
         first, second = scene.placements[i], scene.placements[j]
-        key, anchor = _situation(first, second, local, changing)
-        if key not in known:
-            known[key] = meeting((first, second), (boxes[i], boxes[j]), shapes, faces, anchor)
+        situations = [*_situations((first, second), local, around)]
+        found = next(
+            (replace(m, place=_in_scene(p, m.place)) for key, p in situations if (m := known.get(key))), None
+        )
+        if found is None:
+            found = meeting((first, second), (boxes[i], boxes[j]), shapes, faces)
+            known |= {key: replace(found, place=_seen_from(p, found.place)) for key, p in situations}
         pair = frozenset((first.designator, second.designator))
-        if known[key].overlap > OVERLAP_MM3 or known[key].distance < TOUCH_MM:
+        if found.overlap > OVERLAP_MM3 or found.distance < TOUCH_MM:
             met.add(pair)
-        findings += _verdict(first, second, known[key], meant.get(pair))
+        findings += _verdict(first, second, found, meant.get(pair))
     for contact in scene.contacts:
         if frozenset((contact.first, contact.second)) not in met:
             message = f"declared to be in {contact.kind} contact with {contact.second}, but they are apart"
@@ -120,25 +124,28 @@ def relative(first: Placement, second: Placement) -> tuple[float, ...]:
     return tuple(np.round(np.concatenate([(a.T @ b).ravel(), offset]), 9) + 0.0)
 
 
-def _situation(
-    first: Placement, second: Placement, local: Mapping[str, list], changing: Mapping[str, tuple | None]
-) -> tuple[tuple, int]:
-    """A key that two pairs share only if they have the same verdict, and the part (0, 1) whose frame it uses.
+def _in_scene(p: Placement, point: Vector) -> Vector:
+    return vector((np.array(p.rotation) @ np.array(point) + np.array(p.origin)).tolist())
 
-    If one part is uniform along an axis around the other one, the place along that axis is left out.
-    """
-    numbers = (first.part.part_no, second.part.part_no)
-    for anchor, (slider, other) in enumerate(((second, first), (first, second))):
-        seen = relative(slider, other)
-        slides = changing[slider.part.part_no]
-        if slides is None:
-            continue
-        low, high = boxed(local[other.part.part_no], np.reshape(seen[:9], (3, 3)), np.array(seen[9:]))
-        stretches = [stretch(slides[k], low[k], high[k]) for k in range(3)]
-        if any(s is not None for s in stretches):
-            offset = tuple(("along", s) if s is not None else seen[9 + k] for k, s in enumerate(stretches))
-            return (*numbers, anchor, seen[:9], offset), anchor
-    return (*numbers, relative(first, second)), 0
+
+def _seen_from(p: Placement, point: Vector) -> Vector:
+    return vector((np.array(p.rotation).T @ (np.array(point) - np.array(p.origin))).tolist())
+
+
+def _situations(
+    pair: tuple[Placement, Placement], local: Mapping[str, list], around: Mapping[str, Surroundings]
+) -> Iterator[tuple[tuple, Placement]]:
+    """Keys that two pairs share only if they have the same verdict, each with the part in whose frame its
+    point is: by what of one part lies near the other one, or else by their relative position."""
+    numbers, told = tuple(p.part.part_no for p in pair), False
+    for n, (other, bounds) in enumerate(zip(pair, (around[number] for number in reversed(numbers)))):
+        seen = relative(pair[1 - n], other)
+        box = boxed(local[other.part.part_no], np.reshape(seen[:9], (3, 3)), np.array(seen[9:]))
+        if (near := bounds.near(box, np.array(seen[9:]))) is not None:
+            told = True
+            yield (*numbers, n, seen[:9], near), other
+    if not told:
+        yield (*numbers, relative(*pair)), pair[0]
 
 
 def meeting(
@@ -146,9 +153,8 @@ def meeting(
     boxes: tuple[np.ndarray, np.ndarray],
     shapes: Mapping[str, TopoDS_Shape],
     faces: dict[str, Faces],
-    anchor: int = 0,
 ) -> Meeting:
-    """The kernel's verdict on a pair of placed parts.
+    """The kernel's verdict on a pair of placed parts, its point in the scene.
 
     Touching surfaces are faces that reach the other part's box: only these are measured. One part can contain
     the other without touching it only if its box contains the other's.
@@ -163,15 +169,13 @@ def meeting(
         By part number, each in its own frame, mm.
     faces
         By part number; extended by those that are missing.
-    anchor
-        Index of the part in whose frame the point is given.
     """
     first, second = (
         faces_within(_faces(p, shapes, faces), p, box, TOUCH_MM) for p, box in zip(pair, reversed(boxes))
     )
     distance, place = met_at_vertex(first, second, TOUCH_MM) or nearest(first, second)
     if distance > TOUCH_MM and not (_holds(*boxes) or _holds(*reversed(boxes))):
-        return Meeting(0.0, distance, (0.0, 0.0, 0.0), anchor)
+        return Meeting(0.0, distance, (0.0, 0.0, 0.0))
     shared = np.minimum(boxes[0][1], boxes[1][1]) - np.maximum(boxes[0][0], boxes[1][0])
     overlap = float(np.prod(np.maximum(shared, 0.0)))  # at most: of their boxes, which layers only touch
     if overlap > OVERLAP_MM3:
@@ -181,9 +185,7 @@ def meeting(
         overlap = volume(common)
         if overlap > OVERLAP_MM3:
             place = tuple(measure(common)["centre"])
-    seen_from = pair[anchor]
-    there = np.array(seen_from.rotation).T @ (np.array(place) - np.array(seen_from.origin))
-    return Meeting(overlap, distance, vector(there.tolist()), anchor)
+    return Meeting(overlap, distance, place)
 
 
 def _faces(p: Placement, shapes: Mapping[str, TopoDS_Shape], known: dict[str, Faces]) -> Faces:
@@ -202,10 +204,7 @@ def _verdict(first: Placement, second: Placement, m: Meeting, meant: Contact | N
 
     def _finding(check: str, value: float, message: str, limit: float = 0.0) -> list[Finding]:
         pair = f"{first.designator} ({first.part.part_no}) and {second.designator} ({second.part.part_no})"
-        seen_from = (first, second)[m.anchor]
-        place = np.array(seen_from.rotation) @ np.array(m.place) + np.array(seen_from.origin)
-        at = tuple(map(float, place))
-        return [Finding(check, "fail", first.designator, at, value, limit, f"{pair} {message}")]
+        return [Finding(check, "fail", first.designator, m.place, value, limit, f"{pair} {message}")]
 
     if kind == "thread":
         most = thread_overlap(first, second)
@@ -228,45 +227,71 @@ def placed_box(p: Placement, box: list[list[float]]) -> np.ndarray:
 # What lies within this distance (mm) of the other part counts as near it: far more than what counts as
 # touching.
 NEAR_MM = 0.1
-
-Zones = tuple[tuple[float, float], ...]
-
-
-def zones(part: Part) -> tuple[Zones, Zones, Zones] | None:
-    """Along x, y and z of the part's own frame: the intervals (mm) in which its shape changes; merged and
-    sorted.
-
-    None if the shape is not known from a description.
-    """
-    body = part.body
-    if isinstance(body, Extrusion):
-        contours = (body.outer, *body.openings)
-        along = [_along(contours, 0), _along(contours, 1), [(0.0, 0.0), (body.thickness, body.thickness)]]
-    elif isinstance(body, Revolution):
-        radius = body.profile.box[2]
-        along = [[(-radius, radius)], [(-radius, radius)], _along((body.profile,), 1)]
-    else:
-        return None
-    for feature in part.features:
-        low, high = feature_box(feature)
-        for k in range(3):
-            along[k].append((float(low[k]), float(high[k])))
-    x, y, z = (_merged(intervals) for intervals in along)
-    return x, y, z
+SOMEWHERE = np.array([0.437, 0.561, 0.5])  # of a box's sides; chosen: drawn edges hardly pass there
 
 
-def _along(contours: Iterable[Contour], axis: int) -> list[tuple[float, float]]:
-    """A line along the axis changes at its ends only; every other segment over its whole extent."""
-    intervals = []
-    for s in (s for c in contours for s in c):
-        if isinstance(s, Line) and s.start[1 - axis] == s.end[1 - axis]:
-            intervals += [(s.start[axis], s.start[axis]), (s.end[axis], s.end[axis])]
-        elif isinstance(s, Line):
-            low, high = sorted((s.start[axis], s.end[axis]))
-            intervals.append((low, high))
-        else:  # the whole circle: more than the arc, and simple
-            intervals.append((s.centre[axis] - s.radius, s.centre[axis] + s.radius))
-    return intervals
+class Surroundings:
+    """What bounds a described part: segments of its contours or of its turned profile, and its features, each
+    with a box around it, in the part's own frame, mm."""
+
+    def __init__(self, part: Part) -> None:
+        self.body = body = part.body
+        segments: list[Segment] = []
+        boxes: list = []
+        if isinstance(body, Extrusion):
+            segments = [s for contour in (body.outer, *body.openings) for s in contour]
+            boxes = [((x, y, 0.0), (u, v, body.thickness)) for x, y, u, v in map(box_around, segments)]
+        elif isinstance(body, Revolution):
+            r, segments = body.profile.box[2], [*body.profile]
+            boxes = [((-r, -r, z), (r, r, w)) for _, z, _, w in map(box_around, segments)]
+        self.pieces: list[Segment | Feature] = [*segments, *part.features]
+        self.boxes = np.array([*boxes, *map(feature_box, part.features)])
+
+    def near(self, box: np.ndarray, at: np.ndarray) -> tuple | None:
+        """All that bounds the part in a box (2, 3) and NEAR_MM around it, as seen from a point, mm; a line
+        along an axis as far as there. None if the part is not described, or SOMEWHERE in the box is an edge.
+        """
+        low, high = np.array(box) + [[-NEAR_MM], [NEAR_MM]]
+        body = self.body
+        if isinstance(body, Extrusion):
+            point = tuple((low + SOMEWHERE * (high - low))[:2].tolist())
+            where = [side(c, point) for c in (body.outer, *body.openings) if _spans(c.box, point)]
+            if 0 in where:
+                return None
+            # that point is outside (0), in material (1) or in an opening (2)
+            rest = (where.count(1), *(np.clip((0.0, body.thickness), low[2], high[2]) - at[2]))
+            plane = np.array([low[:2], high[:2], at[:2]])
+        elif isinstance(body, Revolution):
+            rest = tuple(at[:2])
+            plane = np.array([(-np.inf, low[2]), (np.inf, high[2]), (0.0, at[2])])
+        else:
+            return None
+        close = np.flatnonzero(np.all((self.boxes[:, 0] <= high) & (self.boxes[:, 1] >= low), axis=1))
+        found: list = [_told(rest)]
+        for piece in (self.pieces[i] for i in close):
+            if isinstance(piece, (Line, Arc)):
+                found.append(_segment(piece, *plane))
+            else:
+                found.append(replace(piece, at=_told(np.array(piece.at) - at)))
+        return tuple(found)
+
+
+def _spans(box: tuple[float, float, float, float], point: tuple[float, ...]) -> bool:
+    return box[0] <= point[0] <= box[2] and box[1] <= point[1] <= box[3]
+
+
+def _segment(s: Segment, low: np.ndarray, high: np.ndarray, at: np.ndarray) -> tuple:
+    """A segment as seen from a point, a line along an axis within limits only."""
+    ends = np.array([s.start, s.end])
+    if isinstance(s, Arc):
+        return (*_told((*(ends - at).ravel(), *(s.centre - at))), s.ccw)
+    across = ends[0] == ends[1]
+    return _told((np.where(across[::-1], np.clip(ends, low, high), ends) - at).ravel())
+
+
+def _told(values: np.ndarray | tuple) -> tuple:
+    """Rounded to a picometre."""
+    return tuple((np.round(values, 9) + 0.0).tolist())
 
 
 def feature_box(feature: Feature) -> tuple[np.ndarray, np.ndarray]:
@@ -290,24 +315,6 @@ def feature_box(feature: Feature) -> tuple[np.ndarray, np.ndarray]:
         ]
     )
     return corners.min(axis=0), corners.max(axis=0)
-
-
-def _merged(intervals: Sequence[tuple[float, float]]) -> Zones:
-    merged: list[tuple[float, float]] = []
-    for low, high in sorted(intervals):
-        if merged and low <= merged[-1][1]:
-            merged[-1] = (merged[-1][0], max(merged[-1][1], high))
-        else:
-            merged.append((low, high))
-    return tuple(merged)
-
-
-def stretch(along: Zones, low: float, high: float) -> int | None:
-    """Stretch between zones that holds low to high with a margin of NEAR_MM (mm); None if a zone is near."""
-    n = bisect_left(along, (low - NEAR_MM, -np.inf))
-    before = along[n - 1][1] < low - NEAR_MM if n else True
-    after = along[n][0] > high + NEAR_MM if n < len(along) else True
-    return n if before and after else None
 
 
 def _pairs(scene: Scene, job: Job) -> list[Finding]:

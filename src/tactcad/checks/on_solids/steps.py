@@ -2,8 +2,8 @@
 present, every step has its needs, and contacts fix the freedoms that it states.
 
 A pair is tried on meshes at PLACES or more of each leg, no further apart than a third of both parts'
-lengths along it: an overlap of more than FILM is in the way. The overlap of a screw or pin with its hole at
-its final place is allowed on the way.
+lengths along it: an overlap of more than FILM is in the way; pairs alike around the way share one trial. The
+overlap of a screw or pin with its hole at its final place is allowed on the way.
 """
 
 from __future__ import annotations
@@ -26,10 +26,12 @@ from tactcad.scenes.moves import FINGERTIP, PRESS, TWEEZED, Moment, entering, mo
 from tactcad.scenes.scene import FREEDOMS, HAND, STILL, Held, Placement, Scene, Step
 from tactcad.solids.build import build
 from tactcad.solids.changed import closed
+from tactcad.solids.measure import boxed
 from tactcad.solids.triangles import triangles
 from tactcad.stacks.mechanic import TAKEN_AS_SET
 
 from ..check import Check
+from .interference import Surroundings
 from .tools import REACH as KEY
 from .tools import tool_of
 
@@ -140,9 +142,9 @@ class Trial:
     def _taken(self) -> Iterator[Finding]:
         """Freedoms that virtual arrays take as fixed, but no step states."""
         taken = TAKEN_AS_SET.get(self.scene.name, {})
-        said = [
+        said = {
             (n, f) for s in self.scene.steps for h in s.held for b in h.bodies for n in b for f in h.freedoms
-        ]
+        }
         for name in self.placed:
             for freedom in taken.get(name.rstrip("0123456789"), ()):
                 if (name, freedom) not in said:
@@ -249,11 +251,26 @@ class Trial:
         p, q = self.placed[name], self.placed[other]
         apart = np.array(p.origin) - np.array(q.origin)
         kind = self.kind.get(frozenset((name, other)), "touch")
-        numbers = ("steps", p.part.part_no, q.part.part_no, p.rotation, q.rotation, kind)
-        key = (*numbers, *np.round([*(apart + start), *(apart + end)], 6))
+        way = tuple((np.round([*start, *end], 6) + 0.0).tolist())
+        numbers = ("steps", p.part.part_no, q.part.part_no, p.rotation, q.rotation, kind, way)
+        offs = np.array([start, end, STILL])  # in place some overlap is allowed
+        low, high = offs.min(axis=0), offs.max(axis=0)
+        views = (q, self._box(p) + [low, high], p.origin), (p, self._box(q) - [high, low], q.origin)
+        seen = [(n, near) for n, view in enumerate(views) if (near := self._near(*view)) is not None]
+        keys = [(*numbers, *s) for s in seen or [tuple((np.round(apart, 6) + 0.0).tolist())]]
+        known = next((key for key in keys if key in self.known), None)
+        found = self.known[known] if known else self._tried(p, q, apart, start, end, kind)
+        self.known |= dict.fromkeys(keys, found)
+        return found
+
+    def _near(self, p: Placement, box: np.ndarray, at: Sequence[float]) -> tuple | None:
+        """What bounds a part in place in a box and around it, as seen from a point (`Surroundings.near`)."""
+        key = ("bounds", p.part.part_no)
         if key not in self.known:
-            self.known[key] = self._tried(p, q, apart, start, end, kind)
-        return self.known[key]
+            self.known[key] = Surroundings(p.part)
+        turn = np.array(p.rotation).T
+        off = -turn @ np.array(p.origin)
+        return self.known[key].near(boxed(box, turn, off), turn @ np.array(at) + off)
 
     def _tried(
         self, p: Placement, q: Placement, apart: np.ndarray, start: np.ndarray, end: np.ndarray, kind: str
@@ -424,11 +441,22 @@ class Trial:
 
     def _free(self, room: np.ndarray, moment: Moment, boxes: Mapping[str, np.ndarray]) -> bool:
         """Whether nothing of what has these boxes reaches into a box, by its corners."""
-        near = [n for n, b in boxes.items() if np.all(room[0] < b[1]) and np.all(room[1] > b[0])]
-        if not near:
+        ends = np.array([*boxes.values()])
+        if not len(ends):
             return True
-        hand = manifold3d.Manifold.cube(list(room[1] - room[0])).translate(list(room[0]))
-        return not any(self._meets(hand, n, moment) for n in near)
+        near = np.all((room[0] < ends[:, 1]) & (room[1] > ends[:, 0]), axis=1)
+        return not any(self._reaches(n, room, moment) for n, close in zip(boxes, near) if close)
+
+    def _reaches(self, name: str, room: np.ndarray, moment: Moment) -> bool:
+        """Whether a part reaches into a box."""
+        p, own = self.placed[name], room - moment.standing[name]
+        near = self._near(p, own, own[0])
+        place = near if near is not None else tuple(np.round(own[0] - p.origin, 6).tolist())
+        key = ("room", p.part.part_no, p.rotation, *np.round(room[1] - room[0], 6).tolist(), place)
+        if key not in self.known:
+            hand = manifold3d.Manifold.cube(list(room[1] - room[0])).translate(list(room[0]))
+            self.known[key] = self._meets(hand, name, moment)
+        return self.known[key]
 
     def _meets(self, hand: manifold3d.Manifold, name: str, moment: Moment) -> bool:
         p, at = self.placed[name], moment.standing[name]

@@ -30,9 +30,9 @@ from math import ceil
 from tactcad.circuit.board_layout import Routing
 from tactcad.circuit.copper import BOTTOM, CLEARANCE, VIA, BoardCopper, Point, Via
 from tactcad.circuit.footprints import FLUSH, footprint
-from tactcad.circuit.letters import width as printed_width
 from tactcad.circuit.netlist import GROUND, Component, Netlist, Pin
 from tactcad.circuit.printed import HIGH
+from tactcad.circuit.printed import width as printed_width
 from tactcad.contour import rectangle
 from tactcad.parts.array.supplies import supplies as bill_lines
 from tactcad.parts.bought.electronic_parts import BOARD, Supply

@@ -137,7 +137,8 @@ def _arm(s: HingeSection, k: Constants) -> Array:
 def _body(s: HingeSection, k: Constants) -> Array:
     p, Lb, stout = s.load_arm + s.hinge_length / 2.0, s.body_length, s.body_length / s.body_height
     low, u = _height_felt(s, k)
-    clamped = _far(stout, k["k"], s.two_sided)
+    # w, from 0 if the clamp is close behind the root to 1 if it is far; no exponential overflows
+    clamped = 0.5 + 0.5 * np.tanh((stout - k["k"]) / (2.0 * _by_form(FADING, s.two_sided)))
     grip = s.poisson * stout * (1.0 + Lb / p)
     J = (
         u * u * (1.5 * low + u)
@@ -160,11 +161,6 @@ def _height_felt(s: HingeSection, k: Constants) -> tuple[Array, Array]:
     """
     low, fading = np.asarray(k["p3"]) / 1.5, _by_form(FADING, s.two_sided)
     return low, fading * np.logaddexp(0.0, (s.body_length / s.body_height - low) / fading)
-
-
-def _far(stout: Array, middle: Array | float, two_sided: NDArray[np.bool_]) -> Array:
-    """w, from 0 if the clamp is close behind the root to 1 if it is far; no exponential overflows."""
-    return 0.5 + 0.5 * np.tanh((stout - middle) / (2.0 * _by_form(FADING, two_sided)))
 
 
 def _by_form(table: Mapping[bool, float], two_sided: NDArray[np.bool_]) -> Array:

@@ -15,13 +15,13 @@ from tactcad.mechanics import gauge_signal
 from tactcad.mechanics.gauge_signal import Heating, Power, leaf_resistance
 
 from ..bought.electronic_parts import completion_drift, completion_resistance, completion_tolerance
+from .converter_figures import MAINS
 from .hinge_section import design_gauge, design_readout
 from .layout import Layout
 from .leads import longest_lead_resistance
 
 COPPER = 0.0039  # 1/K, annealed copper at 20 C, IEC 60028
 APART = 0.5  # K between the two leads of a bridge; chosen: one lies on the warmer side of its bundle
-MAINS = 50.0  # Hz, if none is said
 MAINS_OFF = 0.01  # relative, of the mains' frequency: EN 50160, 1 % for 99.5 % of a year
 
 

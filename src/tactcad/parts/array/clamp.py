@@ -220,6 +220,14 @@ def _dowels_stand(layout: Layout, c: Clamping) -> str:
 
 
 PRESS_FIT = "N7"  # of the pins in the tapped plate, ISO 286
+
+
+def pin_hole(name: str, at: Vector, axis: Vector, size: str, depth: float) -> Hole:
+    """A through hole that a pin is pressed into."""
+    fit = f"{PRESS_FIT}, the pin pressed in"
+    return Hole(name, at, axis, dowel_diameter(size), depth, True, tolerance=fit)
+
+
 HEAD_TOLERANCE = 0.03  # mm, of the head plate's dowel holes; chosen: reamed or bored
 # mm that a pin is bent at its end by hand while a plate goes on; chosen: 1 N on 3 mm of steel, 29 mm out.
 BENT = 0.01

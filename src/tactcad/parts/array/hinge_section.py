@@ -97,7 +97,8 @@ def design_alloy(design: Design) -> Alloy:
 
 def design_gauge(design: Design) -> Gauge:
     """The design's strain gauge, the same on all elements."""
-    return _filled(Gauge, design.gauge)
+    # A record filled with the table's values of the same names
+    return Gauge(**{name: getattr(design.gauge, name) for name in _names(Gauge)})
 
 
 def design_readout(design: Design) -> ReadOut:
@@ -134,11 +135,6 @@ def derived_noise(design: Design) -> float:
     arm, gauge = completion_resistance(design), design.gauge.resistance
     source = gauge * arm / (gauge + arm) + arm / 2 + 2 * MULTIPLEXERS[r.multiplexer].on_ohm
     return sample_noise(r.gain, amplifier.noise_density(r.gain), amplifier.bandwidth(r.gain), source)
-
-
-def _filled(kind: Callable[..., T], table: object) -> T:
-    """A record filled with the table's values of the same names."""
-    return kind(**{name: getattr(table, name) for name in _names(kind)})
 
 
 @cache

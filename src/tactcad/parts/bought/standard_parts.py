@@ -5,6 +5,7 @@ standard's lengths; ball bearings of ISO 15; O-rings of ISO 3601-1 in static fac
 from __future__ import annotations
 
 from dataclasses import dataclass
+from fnmatch import fnmatchcase
 from functools import cache
 from math import pi, sqrt
 
@@ -167,3 +168,17 @@ STAGES = tuple(
     Stage(**{name: number(row[name]) for name in ("size", "plate", "hole", "travel")})
     for row in data_rows(__file__, "stages")
 )
+
+
+MAKES = data_rows(__file__, "example_makes")
+STANDARDS = ("ISO ", "DIN ")
+
+
+def example(part: Part) -> str:
+    """The bill's words on a make of the part and on its drawing; "" if a standard or a maker's number names
+    the part, or nobody sells it by itself."""
+    order = part.purchase
+    if part.process != "bought" or order is None or order.mpn or order.designation.startswith(STANDARDS):
+        return ""
+    row = next((row for row in MAKES if fnmatchcase(part.part_no, row["part_no"])), None)
+    return f"example: {row['example']}; drawing {row['drawing']}" if row else "no example found"

@@ -28,10 +28,10 @@ from tactcad.contour import Contour, Corner, rectangle, rounded_polygon
 from tactcad.design.fields import present
 from tactcad.design.tree import Bonding, Design
 
-from ..array.clamp import PRESS_FIT, pressed
+from ..array.clamp import pin_hole, pressed
 from ..array.element import shortest
 from ..array.layout import LEAST_GAP, HingeShape, Layout
-from ..bought.standard_parts import LEAST_PLAY, dowel_diameter, dowel_lengths, dowel_limits
+from ..bought.standard_parts import LEAST_PLAY, dowel_lengths, dowel_limits
 from ..language.description import Extrusion, Hole, Material, Part, Purchase
 from ..language.limits import FACES, DatumFeature, Geometric, general, within
 from ..language.stock import (
@@ -372,17 +372,9 @@ def bonding_nest(rig: BondingLayout) -> Part:
         material=STAINLESS_PLATE,
         body=Extrusion(outer, rig.width),
         features=tuple(
-            Hole(
-                "dowel_hole",
-                (x, BASE, rig.width / 2 + side * rig.pin_y),
-                (0, -1, 0),
-                dowel_diameter(rig.design.clamp.dowel),
-                BASE,
-                True,
-                tolerance=f"{PRESS_FIT}, the pin pressed in",
-            )
+            pin_hole("dowel_hole", (x, BASE, y), (0, -1, 0), rig.design.clamp.dowel, BASE)
             for x in rig.pin_x
-            for side in (-1, 1)
+            for y in (rig.width / 2 - rig.pin_y, rig.width / 2 + rig.pin_y)
         ),
         colour=RIG_COLOUR,
         finish="Ra 0.8 on tongue and rest",

@@ -10,7 +10,7 @@ from math import ceil, floor
 from tactcad.contour import chain, rectangle
 from tactcad.design.tree import Design, Grasping
 
-from ..array.clamp import PRESS_FIT
+from ..array.clamp import pin_hole
 from ..array.layout import Layout
 from ..bought.standard_parts import dowel_diameter
 from ..language.description import Extrusion, Feature, Hole, Part, Purchase
@@ -274,15 +274,7 @@ def riser(rig: GuideLayout) -> Part:
         for x, y in corners(STAGE_HOLE, RISER_PITCH)
     ]
     # through, so that air leaves and the reamer runs out; N7 holds every m6 pin
-    pin = Hole(
-        "end_stop",
-        (0.0, -stop_below(rig), 0.0),
-        (0, 0, 1),
-        dowel_diameter(STOP_PIN),
-        depth,
-        True,
-        tolerance=f"{PRESS_FIT}, the pin pressed in",
-    )
+    pin = pin_hole("end_stop", (0.0, -stop_below(rig), 0.0), (0, 0, 1), STOP_PIN, depth)
     features += [
         Hole(
             "latch",

@@ -13,10 +13,10 @@ from math import hypot
 from tactcad.contour import Corner, rectangle, rounded_polygon
 from tactcad.design.tree import Design
 
-from ..array.clamp import PRESS_FIT, pressed
+from ..array.clamp import pin_hole, pressed
 from ..array.layout import LEVER, Layout
 from ..bought.standard_parts import dowel_diameter, dowel_lengths, dowel_limits
-from ..language.description import Extrusion, Hole, Part
+from ..language.description import Extrusion, Part
 from ..language.limits import Characteristic, DatumFeature, Geometric, within
 from ..language.stock import BREAK_EDGES, MAGNETIC_STAINLESS, RIG_COLOUR
 
@@ -145,14 +145,12 @@ def setting_fixture(rig: SettingLayout) -> Part:
     )
     size = d.clamp.dowel
     pins = tuple(
-        Hole(
+        pin_hole(
             "dowel_hole",
             (side * rig.pin_y, top, round(rig.half - side * rig.pin_x, 9)),
             (0, -1, 0),
-            dowel_diameter(size),
+            size,
             top,
-            True,
-            tolerance=f"{PRESS_FIT}, the pin pressed in",
         )
         for side in (1, -1)
     )

@@ -72,9 +72,8 @@ def refuse_broken(design: CommonTables) -> None:
 
 def refusal(broken: Finding, others: str = "") -> InputError:
     """A broken rule as the refusal of the field that it names; `others` follows the rule's name."""
-    value = (
-        round(broken.value, 9) if isinstance(broken.value, float) else broken.value
-    )  # not 3.5999999999999996
+    # not 3.5999999999999996
+    value = round(broken.value, 9) if isinstance(broken.value, float) else broken.value
     what = f"rule {broken.check}{others}: {broken.message}"
     return InputError(broken.part, what, value=value, legal=str(broken.limit))
 
