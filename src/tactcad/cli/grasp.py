@@ -157,8 +157,7 @@ def _without_number(element: object) -> dict[str, object]:
 def as_text(done: PressedArray) -> str:
     """Tables of elements and pairs, as people read them."""
     from tactcad.lab.pressed import ELEMENT, PAIR
-    from tactcad.report.figures import text_table
-    from tactcad.report.report import listed
+    from tactcad.report.figures import listed, text_table
 
     body, h = done.body, done.body.thickness
     layer = "half-space" if h == inf else f"layer of {h:g} mm, {body.base}"
