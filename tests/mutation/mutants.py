@@ -117,9 +117,15 @@ for _name, _function in list(globals().items()):
 """
 
 
+def checking() -> list[Path]:
+    """Modules of checks: of all designs, and of the families."""
+    tactcad = SOURCE / "tactcad"
+    return sorted([*(tactcad / "checks").rglob("*.py"), *tactcad.glob("families/*/checks.py")])
+
+
 def findings() -> Iterator[Mutant]:
     for path in [
-        *sorted((SOURCE / "tactcad" / "checks").rglob("*.py")),
+        *checking(),
         *sorted((SOURCE / "tactcad" / "scenes" / "rigs").glob("*.py")),  # rigs' own checks
         SOURCE / "tactcad" / "export" / "golden_file.py",
     ]:
@@ -349,7 +355,7 @@ def calls() -> Iterator[Mutant]:
 
 def idle_checks() -> Iterator[Mutant]:
     """Checks that are declared and do nothing."""
-    for path in sorted((SOURCE / "tactcad" / "checks").rglob("*.py")):
+    for path in checking():
         module = path.relative_to(SOURCE / "tactcad").as_posix()
         for call in _declared(ast.parse(path.read_text(encoding="utf-8"))):
             name = call.args[0].value
