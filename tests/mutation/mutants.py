@@ -49,7 +49,7 @@ SPELT_OUT = {
 # Functions that make findings under a name that they are given.
 PASS_ON = {"Finding", "fail", "flag", "at_least", "at_most", "_finding", "_pressed", "_thin"}
 GATE = re.compile(
-    r"^_?check_|(?<!without_)faults?$|^_compare_box$|^_measured$|^_short_or_double$|^_differences$|^accept$|^read_document$|^assembly_in$"
+    r"^_?check_|(?<!without_)faults?$|^_compare_box$|^_measured$|^_short_or_double$|^_differences$|^accept$|^read_document$|^assembly_in$|^scene_step$"
 )
 # Functions of export/ that raise CheckFailure and are no gates.
 NO_GATES = {
@@ -325,7 +325,7 @@ CALLERS = {
     "export/products.py": r"^_compare_box$",
     "export/shapes.py": r"^picture\.check_",
     "export/dxf.py": r"^check_dxf$",
-    "export/step_file.py": r"^_?check_(part|scene)$",
+    "export/step_file.py": r"^_?check_part$",
     "export/step_pmi.py": r"^_?check_(part|limits)$",
     "drawing/parts/part_sheet.py": r"_faults$",
     "drawing/assemblies/assembly_sheets.py": r"_faults$",
