@@ -183,7 +183,7 @@ def picture(done: PressedArray, design: str) -> str:
     import numpy as np
     from matplotlib.collections import PolyCollection
 
-    from tactcad.report.plots import panels, svg
+    from tactcad.report.plots import note, panels, svg
 
     assert done.patches is not None  # springs are refused
     x, y, a, b, force = done.patches
@@ -198,14 +198,7 @@ def picture(done: PressedArray, design: str) -> str:
         shown = PolyCollection(outlines, array=pressure, cmap="viridis", clim=(0.0, top), linewidth=0)
         axes.add_collection(shown)
         for i, e in enumerate(done.elements):
-            axes.annotate(
-                f"no. {e.number}",
-                (x[i].mean(), y[i].max() + 0.05),
-                (0, 3),
-                textcoords="offset points",
-                ha="center",
-                fontsize=9,
-            )
+            note(axes, f"no. {e.number}", (x[i].mean(), y[i].max() + 0.05), (0, 3), ha="center", fontsize=9)
         axes.set(xlabel="x, along the arms, mm", ylabel="y, along the rows, mm", aspect="equal")
         inclined = f"inclined {done.angle[0]:g} and {done.angle[1]:g} degrees"
         figure.suptitle(f"{design}: {done.load:g} N, {inclined}", fontsize=12)

@@ -95,19 +95,10 @@ def _table() -> dict[str, Alloy]:
 
 
 def _alloy(row: dict[str, str]) -> Alloy:
-    prefix = "spread_"
+    prefix, more = "spread_", ("tensile_strength", "conductivity", "modulus_per_kelvin", "fatigue_cycles")
     return Alloy(
         name=row["name"],
-        **{
-            name: float(row[name])
-            for name in (
-                *PROPERTIES,
-                "tensile_strength",
-                "conductivity",
-                "modulus_per_kelvin",
-                "fatigue_cycles",
-            )
-        },
+        **{name: float(row[name]) for name in (*PROPERTIES, *more)},
         magnetic=row["magnetic"],
         source=row["source"],
         standard=row["standard"],

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import textwrap
+from collections.abc import Iterator
 from typing import Any
 
 from .family import Family, all_families, optional_tables
@@ -23,11 +24,8 @@ _TEXT_ORIGIN = (
 
 def _rows(kind: type) -> list[tuple[str, Spec, str]]:
     """Name, spec and default (as text) of every field of a table; override tables are left out."""
-    rows = []
-    for f in dataclasses.fields(kind):
-        if "spec" in f.metadata:
-            rows.append((f.name, f.metadata["spec"], _default(f)))
-    return rows
+    specs = [f for f in dataclasses.fields(kind) if "spec" in f.metadata]
+    return [(f.name, f.metadata["spec"], _default(f)) for f in specs]
 
 
 def _default(f: dataclasses.Field) -> str:
@@ -60,21 +58,25 @@ def text_schema(table: str | None = None) -> str:
         "Lengths in mm, forces in N, stresses in MPa, density in kg/m3 unless a field says otherwise.",
         "",
     ]
-    for family in all_families().values():
-        optional = optional_tables(family.spec)
+    for family, tables in _by_family():
         if lines[2:]:
             lines += [f"Tables of {family.name}, besides those of every family:", ""]
-        for name, kind in _own(family, first=not lines[2:]).items():
-            lines += table_text(name, kind, optional=name in optional)
-            if kind in INNER:
-                lines += table_text(*INNER[kind][:2], optional=True)
+        lines += [line for table in tables for line in table_text(*table)]
     return "\n".join([*lines, *textwrap.wrap(_TEXT_ORIGIN, 100)])
 
 
-def _own(family: Family, first: bool) -> dict[str, type]:
-    """Tables of the first family; of another those that only it has."""
-    common = () if first else tuple(f.name for f in dataclasses.fields(CommonTables))
-    return {name: kind for name, kind in family.tables.items() if name not in common}
+def _by_family() -> Iterator[tuple[Family, list[tuple[str, type, bool]]]]:
+    """Tables of the first family; of another those that only it has: name, class, whether it may be left
+    out."""
+    shared: set[str] = set()
+    for family in all_families().values():
+        optional, tables = optional_tables(family.spec), []
+        for name, kind in family.tables.items():
+            if name not in shared:
+                tables.append((name, kind, name in optional))
+                tables += [(*INNER[kind][:2], True)] if kind in INNER else []
+        yield family, tables
+        shared = {f.name for f in dataclasses.fields(CommonTables)}
 
 
 def table_text(name: str, kind: type, optional: bool) -> list[str]:
@@ -88,12 +90,7 @@ def table_text(name: str, kind: type, optional: bool) -> list[str]:
 
 def markdown_schema() -> str:
     """The same as `text_schema` with a section and a table of fields for every table of the file."""
-    tables: list[tuple[str, type, bool]] = []
-    for family in all_families().values():
-        optional = optional_tables(family.spec)
-        for name, kind in _own(family, not tables).items():
-            tables.append((name, kind, name in optional))
-            tables += [(*INNER[kind][:2], True)] if kind in INNER else []
+    tables = [table for _, tables in _by_family() for table in tables]
     lines = []
     for name, kind, may_be_left_out in tables:
         lines += [f"## [{name}]", "", "May be left out.", ""] if may_be_left_out else [f"## [{name}]", ""]

@@ -14,19 +14,8 @@ from .contents import MOST_BYTES, NAME, read_sealed, sealed, sha256_of
 from .formats import part_formats
 
 SCHEMA = "tactcad-manifest-1"
-KINDS = {f.kind for f in part_formats()} | {
-    "step-assembly",
-    "picture",
-    "bom",
-    "drawing",
-    "inspection",
-    "report",
-    "netlist",
-    "wiring",
-    "robot",
-    "board",
-    "gerber",
-}
+KINDS = {f.kind for f in part_formats()}
+KINDS |= {*"step-assembly picture bom drawing inspection report netlist wiring robot board gerber".split()}
 
 
 @dataclass(frozen=True)

@@ -30,20 +30,7 @@ if TYPE_CHECKING:
     from .products import Batch, Output, Plan
 
 # Rooms and libraries that an exported file may depend on: a change in any of them rebuilds.
-ROOMS = (
-    "",
-    "design",
-    "contour",
-    "mechanics",
-    "parts",
-    "scenes",
-    "stacks",
-    "circuit",
-    "solids",
-    "drawing",
-    "export",
-    "families",
-)
+ROOMS = ("", *"design contour mechanics parts scenes stacks circuit solids drawing export families".split())
 # The kernel's binding comes with VTK or, in the extra `cad` of PyPI, without; in a checkout the second is an
 # empty replacement of the first.
 KERNEL = first_installed("cadquery-ocp", "cadquery-ocp-novtk")

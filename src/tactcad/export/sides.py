@@ -6,7 +6,7 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator, Mapping, Sequence
 from copy import deepcopy
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any, Literal
 
@@ -23,21 +23,11 @@ from .dxf import read_dxf
 from .geometry import Record, all_scenes, bill_line, contour_record, geometry
 from .golden_file import MOST_BYTES, read_golden
 from .inputs import flattened, inputs_from_json, nested
-from .manifest import Manifest, read_export
+from .manifest import Manifest, PartRecord, read_export
 
-# A part's data in an export's files; holes, placements and stiffness are in none of them.
-IN_EXPORTS = (
-    "name",
-    "process",
-    "qty",
-    "volume_mm3",
-    "area_mm2",
-    "mass_g",
-    "centre_mm",
-    "box_mm",
-    "cut_length_mm",
-    "contours",
-)
+# A part's data in an export's files: its record in the manifest but for number and section, and its
+# contours; holes, placements and stiffness are in none of them.
+IN_EXPORTS = (*[f.name for f in fields(PartRecord)][1:-1], "contours")
 FROM_SHAPE = ("area_mm2", "centre_mm", "box_mm")
 
 

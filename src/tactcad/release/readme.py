@@ -35,17 +35,15 @@ DRAFT = f"{MARK}: for discussion only. Do not make anything from these files."
 SAMPLE = "SAMPLE, NOT FOR ORDER: nobody has asked for these parts, and nobody answers for them."
 FOLDERS = {
     **{f.folder: f.released for f in sorted(part_formats(), key=lambda f: -f.ordered) if f.released},
-    "nest/": "what is cut from one sheet, side by side, with start holes and tabs: DXF and picture for "
-    "each material and "
-    "thickness",
+    "nest/": "what is cut from one sheet, side by side, with start holes and tabs: DXF and picture for each "
+    "material and thickness",
     "circuit/": "the circuit that reads the array as a table and as a SPICE deck, the list of leads to cut, "
     "the harness; in boards/ the boards: KiCad, Gerber, drills, bill, places",
     "pdf/": "a drawing sheet for every part made, and an assembly sheet with parts list for every scene",
     "guide/": "how each scene is put together, step by step: open guide/SCENE.html in a browser",
     "bom": "bills of materials: bom.csv of the array, bom-SCENE.csv of the other scenes",
     inspection.NAME: "what to measure on every numbered element: fill in `measured` (and `uncertainty_k2`, "
-    "expanded, "
-    "k = 2, if you state it) and send it back. Decimal points, mm.",
+    "expanded, k = 2, if you state it) and send it back. Decimal points, mm.",
     "inspection-parts.csv": "what to measure on other parts, what matters most to the assembled sensor first",
     "stack.csv": "how the limits of the parts add up; for information",
     strength.NAME: "what every element is rated for; for information",
@@ -56,6 +54,7 @@ FOLDERS = {
 def readme_bytes(contents: ReleaseContents, paths: Sequence[str]) -> bytes:
     """The text for a release that holds `paths`, UTF-8 with line ends that every editor shows."""
     made = contents.made
+    flagged = numbered(grouped(contents.flags)) if contents.flags else ["Nothing.", ""]
     lines = [*first_lines(contents, contents.design.design.title)]
     for head, body in (
         ("WHAT IT IS", _what(contents)),
@@ -64,7 +63,7 @@ def readme_bytes(contents: ReleaseContents, paths: Sequence[str]) -> bytes:
         ("HOW TO MAKE IT", how(contents, made)),
         ("WHICH FILE IS WHAT", _files(paths, FOLDERS) + paragraph(AGREE)),
         ("WITH YOUR QUOTATION PLEASE TELL US", numbered([*wire_questions(contents), *QUOTE])),
-        ("WHAT OUR CHECKS OF CUTTING AND MACHINING FLAGGED", _flags(contents)),
+        ("WHAT OUR CHECKS OF CUTTING AND MACHINING FLAGGED", flagged),
         ("CONTACT", contact(contents)),
     ):
         lines += [*heading(head), *body]
@@ -78,7 +77,9 @@ def first_lines(contents: ReleaseContents, title: str) -> list[str]:
     if contents.sample:
         lines += paragraph(SAMPLE)
     if contents.draft:
-        lines += _draft(contents)
+        lines += paragraph(DRAFT)
+        if contents.failures:
+            lines += ["It could not be released because:", *numbered(contents.failures)]
     people = ", ".join(dict.fromkeys(p for p in (identity.author, identity.organisation) if p))
     return lines + paragraph(
         f"Issued {identity.date}{f' by {people}' if people else ''}. Made with tactcad {__version__}. "
@@ -94,13 +95,6 @@ def contact(contents: ReleaseContents) -> list[str]:
     return paragraph(
         f"{people}. Please ask before you change anything." if people else "None: this is a sample."
     )
-
-
-def _draft(contents: ReleaseContents) -> list[str]:
-    lines = paragraph(DRAFT)
-    if contents.failures:
-        lines += ["It could not be released because:", *numbered(contents.failures)]
-    return lines
 
 
 def _what(contents: ReleaseContents) -> list[str]:
@@ -120,11 +114,10 @@ def facing_rows(layout: Layout) -> str:
     per_hundredth = thickness_elasticity(layout, thinnest) * 0.01 / thinnest.hinge.t
     return (
         f"A tactile sensor array of {count} sensing element{'s' if count > 1 else ''}, wire-cut from "
-        f"{design.sheet.thickness:g} mm "
-        f"{design.material.alloy} sheet. Each has a hinge {thinnest.hinge.t:g} mm thin, whose thickness "
-        f"decides its stiffness: "
-        "one hundredth of a millimetre more or less is "
-        f"{100 * per_hundredth:.0f} % more or less stiffness. Everything else is ordinary plate work."
+        f"{design.sheet.thickness:g} mm {design.material.alloy} sheet. Each has a hinge "
+        f"{thinnest.hinge.t:g} mm thin, whose thickness decides its stiffness: one hundredth of a millimetre "
+        f"more or less is {100 * per_hundredth:.0f} % more or less stiffness. Everything else is "
+        "ordinary plate work."
     )
 
 
@@ -214,15 +207,14 @@ QUOTE = ("Price and delivery for the quantities above, and for twice the element
 # Filled in by who orders: the design's date is its drawings'.
 DATES = "Order no. ____________  of ____________ (date)   delivery wanted by ____________"
 PAPERS = (
-    "With the delivery: a certificate of the material, EN 10204 3.1, with its heat number, for every "
-    "line whose "
-    f"`certificate` in {ORDER} says so."
+    "With the delivery: a certificate of the material, EN 10204 3.1, with its heat number, for every line "
+    f"whose `certificate` in {ORDER} says so."
 )
 PACKING = (
-    "Packing: elements bend at hinges that are tenths of a millimetre thin. Each lies by its clamped end "
-    "in its own "
-    "compartment of a box or in foam, its arm free of everything, the box marked with its number; none lies "
-    "loose in a bag, and none is tumbled or picked up by its arm. All other parts dry, wrapped one by one."
+    "Packing: elements bend at hinges that are tenths of a millimetre thin. Each lies by its clamped end in "
+    "its own compartment of a box or in foam, its arm free of everything, the box marked with its number; "
+    "none lies loose in a bag, and none is tumbled or picked up by its arm. All other parts dry, wrapped one "
+    "by one."
 )
 
 
@@ -242,18 +234,11 @@ def wire_questions(contents: ReleaseContents) -> list[str]:
     ]
 
 
-def _flags(contents: ReleaseContents) -> list[str]:
-    if not contents.flags:
-        return ["Nothing.", ""]
-    return numbered(grouped(contents.flags))
-
-
 PACKAGE_FOLDERS = {
     ORDER: "what is ordered, a line each, with the files that it is made from and their SHA-256",
     "dxf/": "cut files, exact nominal contours, millimetres, one part a file; tool compensation is yours",
-    "nest/": "a sheet's parts side by side: DXF (layers CUT, START: start holes, TAB: cut last, SHEET) "
-    "and picture, as a "
-    "proposal; nest as your machine likes",
+    "nest/": "a sheet's parts side by side: DXF (layers CUT, START: start holes, TAB: cut last, SHEET) and "
+    "picture, as a proposal; nest as your machine likes",
     "pdf/": "drawing sheets",
     "circuit/": "the boards: gerber/ for the bare board; KiCad's board and netlist, bill and places of each "
     "as it is fitted",

@@ -18,16 +18,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure as Canvas
 
 # Okabe and Ito's palette, distinct for colour-blind readers; shapes differ as well.
-BLACK, ORANGE, SKY, GREEN, BLUE, RED, PURPLE = (
-    "#000000",
-    "#E69F00",
-    "#56B4E9",
-    "#009E73",
-    "#0072B2",
-    "#D55E00",
-    "#CC79A7",
-)
-SERIES = (BLACK, ORANGE, SKY, GREEN, BLUE, RED, PURPLE)
+SERIES = ("#000000", "#E69F00", "#56B4E9", "#009E73", "#0072B2", "#D55E00", "#CC79A7")
+BLACK, ORANGE, SKY, GREEN, BLUE, RED, PURPLE = SERIES
 MARKERS = ("o", "s", "^", "D", "v", "P", "X")
 GREY = "#6a737d"
 

@@ -23,18 +23,7 @@ from typing import Any
 from tactcad.design.messages import CheckFailure, InputError, install
 
 # The page's own script, in the order in which it is put together.
-SCRIPTS = (
-    "data",
-    "view",
-    "tree",
-    "panel",
-    "measure",
-    "strain",
-    "strain_body",
-    "controls",
-    "changes",
-    "start",
-)
+SCRIPTS = "data view tree panel measure strain strain_body controls changes start".split()
 LIVE = "live"  # after those, if the page is served and follows a file
 # Nothing is fetched: not even the page's own address. Scripts are the page's one, known by its digest, and
 # the viewer, which that unpacks into a blob; the viewer sets styles itself and draws its symbols from data.

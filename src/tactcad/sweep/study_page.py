@@ -90,9 +90,8 @@ def _columns(
                 raise InputError(str(folder / PARQUET), "altered since the sweep wrote it", legal=legal)
         file = pq.ParquetFile(folder / PARQUET)
     except (OSError, pa.ArrowInvalid) as error:
-        raise InputError(
-            str(folder / PARQUET), f"cannot be read: {error}", legal="a finished study"
-        ) from None
+        what = f"cannot be read: {error}"
+        raise InputError(str(folder / PARQUET), what, legal="a finished study") from None
     share = min(1.0, MOST_ROWS / max(1, file.metadata.num_rows))
     groups = (file.read_row_group(i) for i in range(file.num_row_groups))
     table = pa.concat_tables(group.take(_some(group.num_rows, share)) for group in groups)
@@ -241,9 +240,8 @@ def _pairs_section(
             _name_words(axes[-1, i].xaxis, words.get(y), 30)
             if i:  # the first row's scale is of how often
                 _name_words(axes[i, 0].yaxis, words.get(y), 0)
-        picture = drawn(
-            figure, "pairs", f"{len(rows)} designs; on the diagonal, how often each value occurs."
-        )
+        text = f"{len(rows)} designs; on the diagonal, how often each value occurs."
+        picture = drawn(figure, "pairs", text)
     finding = "Fields were taken as the upper left shows; results that go together lie on one line."
     return ReportSection("pairs", "Pairs", "Which go together?", (finding,), (), (picture,))
 

@@ -188,13 +188,10 @@ def _with_rows(d: Design, elements: int) -> Layout:
 
 def stands(target: Target) -> list[Stand]:
     """Every choice of the parameters that are not searched."""
-    out = []
     stock = target.stock
     choices = stock.sheets, stock.alloys, stock.hinge_tolerances, stock.gauges, stock.powers
-    for choice in product(*choices):
-        base = _base(target, *choice)
-        out += [Stand(target, base, kinds) for kinds in range(2, target.elements.kinds + 1)]
-    return out
+    bases = [_base(target, *choice) for choice in product(*choices)]
+    return [Stand(target, base, kinds) for base in bases for kinds in range(2, target.elements.kinds + 1)]
 
 
 def _base(target: Target, sheet: float, alloy: str, tolerance: float, gauge: float, power: str) -> Design:
@@ -350,16 +347,13 @@ class Candidates:
         """Misses that do not depend on force."""
         s, room = self.stand, self.stand.target.room
         length: Any = self.layout.carrier_length
+        lacking = LEAST_STEPS / np.maximum(self.steps[:, 0], 0.1) - 1.0
         return {
             "room.elements": np.maximum(self.total / room.elements[1], room.elements[0] / self.total) - 1.0,
             "room.width": s.widths[np.minimum(self.in_a_row, s.in_a_row)] / room.width - 1.0,
             "room.length": length / room.length - 1.0,
             "room.height": np.full(len(self.arm), s.height / room.height - 1.0),
-            "calibration": np.where(
-                s.target.known.how == "calibrated",
-                LEAST_STEPS / np.maximum(self.steps[:, 0], 0.1) - 1.0,
-                -1.0,
-            ),
+            "calibration": np.where(s.target.known.how == "calibrated", lacking, -1.0),
         }
 
     @property
@@ -408,10 +402,8 @@ class Candidates:
     @cached_property
     def area(self) -> Array:
         """Area of the array from above, mm2."""
-        return (
-            self.layout.carrier_length
-            * self.stand.widths[np.minimum(self.in_a_row, len(self.stand.widths) - 1)]
-        )
+        widths = self.stand.widths
+        return self.layout.carrier_length * widths[np.minimum(self.in_a_row, len(widths) - 1)]
 
     @cached_property
     def cut(self) -> Array:
@@ -468,16 +460,11 @@ def realised(c: Candidates) -> Design:
     calibration = d.calibration
     if calibration is not None and c.steps[0, 0] >= 1:
         calibration = replace(calibration, travel=round(float(c.steps[0, 0]) * calibration.step, 6))
+    slot: Any = {"hinge_length": round(float(c.slot[0]), 6), "fillet_radius": round(float(c.radius[0]), 6)}
     made = replace(
         d,
         array=replace(d.array, row_arms=tuple(tuple(arms[k] for k in row) for row in kinds)),
-        element=replace(
-            d.element,
-            hinge_thickness=thick[0],
-            hinge_length=round(float(c.slot[0]), 6),
-            fillet_radius=round(float(c.radius[0]), 6),
-            override=override,
-        ),
+        element=replace(d.element, hinge_thickness=thick[0], override=override, **slot),
         rating=replace(d.rating, force=rating),
         calibration=calibration,
     )

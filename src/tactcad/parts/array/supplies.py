@@ -43,16 +43,7 @@ def supplies(group: str, counts: Mapping[str, float], **figures: object) -> Iter
     for row in (row for row in ROWS if row["group"] == group):
         said = {name: text.format(**figures) for name, text in row.items()}
         qty = counts[said["qty"]] if said["qty"] in counts else int(said["qty"])
-        same = (
-            "part_no",
-            "description",
-            "unit",
-            "designation",
-            "alternates",
-            "manufacturer",
-            "mpn",
-            "process",
-        )
+        same = "part_no description unit designation alternates manufacturer mpn process".split()
         yield Supply(
             **{name: said[name] for name in same},
             qty=qty,

@@ -21,23 +21,15 @@ from tactcad.design.tree import CommonTables
 from ..language.finding import Finding
 from .rule import Rule
 
-# The order of files whose order matters; any other file of this folder follows by name.
-FIRST = (
-    "element_rules",
-    "gauge_rules",
-    "stop_rules",
-    "clamp_rules",
-    "pressed_rules",
-    "readout_rules",
-    "cart_rules",
-    "calibration_rules",
-)
+# Subjects of files whose order matters, in that order; any other file of this folder follows by name.
+FIRST = "element gauge stop clamp pressed readout cart calibration".split()
 
 
 def design_rules() -> dict[str, Rule]:
     """Every rule that a design must keep, by name, in the order in which they are tried."""
     found = sorted(name for _, name, _ in pkgutil.iter_modules(__path__) if name.endswith("_rules"))
-    modules = [import_module(f"{__name__}.{subject}") for subject in dict.fromkeys((*FIRST, *found))]
+    names = dict.fromkeys([*(f"{subject}_rules" for subject in FIRST), *found])
+    modules = [import_module(f"{__name__}.{name}") for name in names]
     every = [r for module in modules for r in vars(module).values() if isinstance(r, Rule)]
     return {r.name: r for r in every if not r.fit}
 
