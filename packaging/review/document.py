@@ -19,7 +19,7 @@ AGREES = 1e-6  # share of a volume
 
 def colours(path: Path) -> dict | None:
     """Colour of every part as the window program shows it; None if it ended without telling."""
-    return window.asked(program(), INSIDE, path, profile())
+    return window.asked(program(), INSIDE, [path], profile())
 
 
 def document_faults(

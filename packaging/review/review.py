@@ -14,6 +14,7 @@ import subprocess
 import sys
 import tempfile
 from collections import Counter
+from concurrent.futures import ThreadPoolExecutor
 from math import isclose
 from pathlib import Path
 
@@ -75,6 +76,8 @@ def review(freecad: list[str], folder: Path) -> list[str]:
     program = window.command()
     wrong = [] if program else ["FreeCAD's window program is not there: nobody saw tree and colours"]
     wrong += scene_faults(manifest)
+    assemblies = [folder / f["path"] for f in files if f["kind"] == "step-assembly"]
+    trees = window.shown(program, assemblies) if program else {}
     for f in files:
         found = report["files"][str(folder / f["path"])]
         if f["kind"] in ("step-part", "step-pmi"):
@@ -83,7 +86,7 @@ def review(freecad: list[str], folder: Path) -> list[str]:
             bill = bill_of(folder, f["path"])
             wrong += assembly_faults(f["path"], found, bill, parts)
             if program:
-                wrong += window.tree_faults(f["path"], window.shown(program, folder / f["path"]), bill)
+                wrong += window.tree_faults(f["path"], trees.get(folder / f["path"]), bill)
         elif f["kind"] == "dxf":  # not a board's outline: no part has it
             wrong += cut_faults(f["path"], found, parts[f["part_no"]])
     if program:
@@ -98,8 +101,8 @@ def review(freecad: list[str], folder: Path) -> list[str]:
 
 def own_document_faults(freecad: list[str], folder: Path, name: str, parts: dict[str, dict]) -> list[str]:
     """FreeCAD's document of the design, made anew, against the export."""
-    bills = document.bills_of(folder)
-    with tempfile.TemporaryDirectory() as scratch:
+    bills, seen_by = document.bills_of(folder), window.command()
+    with tempfile.TemporaryDirectory() as scratch, ThreadPoolExecutor() as beside:
         path = Path(scratch) / f"{name}.FCStd"
         chosen = [word for scene in bills for word in ("--scene", scene)]
         made = subprocess.run(
@@ -110,6 +113,10 @@ def own_document_faults(freecad: list[str], folder: Path, name: str, parts: dict
         )
         if made.returncode:
             return [f"tactcad review --freecad: {made.stderr.strip().splitlines()[-1]}"]
+        kept = folder.with_name(f"{folder.name}-freecad.png")
+        picture = None  # made beside the others: it waits for a screen to settle
+        if seen_by and screen.command():
+            picture = beside.submit(screen.screen_faults, seen_by, path, kept)
         report = open_files(freecad, [str(path)])
         if report is None:
             return [f"{path.name}: FreeCAD ended without a report"]
@@ -117,10 +124,10 @@ def own_document_faults(freecad: list[str], folder: Path, name: str, parts: dict
         want = {p.part_no: p.colour for scene in scenes for p in scene.parts}
         found = report["files"][str(path)]
         wrong = document.document_faults(found, document.colours(path), bills, parts, want)
-        if not (seen_by := window.command()) or not screen.command():
+        if picture is None:
             print(f"{folder}: no picture of FreeCAD's window: apt-get install freecad xvfb xauth")
             return wrong
-        return wrong + screen.screen_faults(seen_by, path, folder.with_name(f"{folder.name}-freecad.png"))
+        return wrong + picture.result()
 
 
 def scene_faults(manifest: dict) -> list[str]:

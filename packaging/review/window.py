@@ -8,6 +8,7 @@ import json
 import re
 import subprocess
 import tempfile
+from collections.abc import Sequence
 from pathlib import Path
 
 from tactcad.design.messages import CheckFailure
@@ -46,22 +47,24 @@ def command() -> str | None:
         return None
 
 
-def shown(program: str, path: Path) -> dict | None:
-    """The tree of an assembly; None if FreeCAD ended without telling."""
-    return asked(program, INSIDE, path, settings())
+def shown(program: str, paths: Sequence[Path]) -> dict[Path, dict]:
+    """The trees of assemblies, opened by one start of FreeCAD; none if it ended without telling."""
+    found = asked(program, INSIDE, paths, settings()) or {}
+    return {path: found[str(path.resolve())] for path in paths if found}
 
 
-def asked(program: str, script: Path, path: Path, user: str) -> dict | None:
-    """Output of a script in FreeCAD's window program for a file, under a user's settings; None if it ended
+def asked(program: str, script: Path, paths: Sequence[Path], user: str) -> dict | None:
+    """Output of a script in FreeCAD's window program for files, under a user's settings; None if it ended
     without telling."""
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         (folder / "user.cfg").write_text(user)
-        files = {"REVIEW_FILE": str(path.resolve()), "REVIEW_OUT": str(folder / "out.json")}
+        files = "\n".join(str(path.resolve()) for path in paths)
+        told = {"REVIEW_FILE": files, "REVIEW_OUT": str(folder / "out.json")}
         try:
             subprocess.run(
                 [program, "-u", str(folder / "user.cfg"), str(script)],
-                env=environment(folder) | files,
+                env=environment(folder) | told,
                 capture_output=True,
                 check=False,
                 timeout=SECONDS,

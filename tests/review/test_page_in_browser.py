@@ -38,14 +38,14 @@ NOT_TEXT = ("colour", "kind", "schema", "severity", "kept", "failures", "sheets"
 def record(macro, tmp_path_factory):
     """The record and the arrays of two scenes; the checks are the array's, which take less."""
     chromium()
-    import tactcad.checks.run as checks
     from tactcad.export.cache import Cache
     from tactcad.export.shapes import Shapes
+    from tactcad.review import facts
     from tactcad.review.review_record import review_record
 
-    whole = checks.run_checks
+    whole = facts.checked
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(checks, "run_checks", lambda design, names, say: whole(design, names[:1], say=say))
+        patch.setattr(facts, "checked", lambda d, names, cache, say: whole(d, names[:1], cache, say=say))
         shapes = Shapes(Cache(Path(os.environ["TACTCAD_CACHE"])), "tests")
         return review_record(macro, SCENES, shapes, lambda *_: None, {})
 

@@ -133,9 +133,11 @@ def _checked(source: str, args: argparse.Namespace, shop: Path, meshing: Meshing
         refusal = Finding("design", "fail", source, (), 0, 0, str(error))
         return Report(source, "", [Case("design", source, 0.0, (refusal,))])
 
-    from tactcad.checks.run import run_checks
+    from tactcad.export.cache import Cache, default_root
+    from tactcad.export.kept_checks import checked
 
-    report = run_checks(design, names, shop, progress(sys.stderr).step, args.strict, meshing)
+    cache, step = Cache(default_root()), progress(sys.stderr).step
+    report = checked(design, names, cache, shop, step, args.strict, meshing, anew=True)
     path = golden_path(find(source), design)
     if path or design.design.unchanged:
         report.run("golden", check_golden, design, path)

@@ -53,11 +53,13 @@ def _renew(source: str) -> None:
     old, new = compared(path, design)
     changes = changes_of(old, new) if old else None
 
-    from tactcad.checks.run import run_checks
+    from tactcad.export.cache import Cache, default_root
+    from tactcad.export.kept_checks import checked
 
     for change in changes or ():
         print(f"{design.name}: {change}")
-    report = run_checks(design, scene_names(design), say=progress(sys.stderr).step)
+    step = progress(sys.stderr).step
+    report = checked(design, scene_names(design), Cache(default_root()), say=step)
     for failure in report.failures:
         print(failure, file=sys.stderr)
     told = accept(design, path, report.failures)

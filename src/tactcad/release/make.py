@@ -12,9 +12,11 @@ from tactcad.checks.shop import load_shop
 from tactcad.design.files import refuse_overwriting, scratch_folder
 from tactcad.design.messages import CheckFailure
 from tactcad.design.tree import CommonTables
+from tactcad.export.cache import Cache, default_root
 from tactcad.export.contents import sha256_of
 from tactcad.export.formats import ExportOptions, part_formats
 from tactcad.export.golden_file import check_golden, golden_path
+from tactcad.export.kept_checks import checked
 from tactcad.export.manifest import FileRecord, read_manifest
 from tactcad.export.pipeline import Progress, export
 from tactcad.export.publication import REFUSE
@@ -115,9 +117,8 @@ def release(
     failures += [str(f) for f in check_assembly(design, seed=secrets.randbelow(2**32))]
     _refuse(design, failures, terms.draft, progress)
 
-    from tactcad.checks.run import run_checks  # loads the kernel
-
-    report = run_checks(design, scene_names(design), shop_file, progress.step)
+    cache = Cache(default_root(), progress.line)
+    report = checked(design, scene_names(design), cache, shop_file, progress.step)
     failures += [str(f) for f in report.failures]
     _refuse(design, failures, terms.draft, progress)
 

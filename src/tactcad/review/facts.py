@@ -6,7 +6,6 @@ Parts are read off their descriptions: no kernel, no mesh.
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import asdict, dataclass
 from math import sqrt
@@ -16,7 +15,7 @@ from tactcad.design.family import family_of
 from tactcad.design.messages import CheckFailure
 from tactcad.design.tree import CommonTables
 from tactcad.drawing.guide import exploded
-from tactcad.export.inputs import digest, source_digest
+from tactcad.export.kept_checks import checked
 from tactcad.export.shapes import Shapes
 from tactcad.lab.array_estimate import ElementEstimate
 from tactcad.mechanics.ladder import DEFAULT_RUNG
@@ -430,18 +429,8 @@ def finding_facts(
     design: CommonTables, scenes: Sequence[Scene], shapes: Shapes, say: Callable[[int, int, str], None]
 ) -> list[FindingFact]:
     """Every finding of every check on these scenes, failures first; kept in the cache of the shapes."""
-    names = [scene.name for scene in scenes]
-    key = digest(("review findings", shapes.made_by, source_digest("checks"), design, names))
-
-    def make() -> bytes:
-        from tactcad.checks.run import run_checks  # loads the kernel
-
-        report = run_checks(design, names, say=say)
-        cases = [(case.check, case.subject, vars(f)) for case in report.cases for f in case.findings]
-        return json.dumps(cases, default=float).encode()
-
-    cases = json.loads(shapes.cache.get_or_make(key, make))
-    found = [_fact(check, subject, Finding(**finding), scenes) for check, subject, finding in cases]
+    report = checked(design, [scene.name for scene in scenes], shapes.cache, say=say)
+    found = [_fact(case.check, case.subject, f, scenes) for case in report.cases for f in case.findings]
     return sorted(found, key=lambda f: f.severity != "fail")
 
 
