@@ -15,7 +15,7 @@ from tactcad.circuit.kicad_board import board_bytes
 from tactcad.export.board_files import nets_in_board
 from tactcad.families.planar import cell_board
 from tactcad.families.planar.cell_layout import PlanarLayout
-from tactcad.families.planar.checks import check_board
+from tactcad.families.planar.checks import CHECKS
 from tactcad.families.planar.parts import frame
 from tactcad.parts.rules import load
 from tactcad.scenes import make_scene
@@ -177,6 +177,11 @@ def test_the_bill_counts_what_is_fitted(board):
         assert not row.mpn and not row.spares and "ordered by" in row.standard_designation
 
 
+def of_board(d) -> list:
+    """What the family's checks find about its board."""
+    return [f for check in CHECKS for f in check.run(d, None) if f.check == "planar-board"]
+
+
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
@@ -198,11 +203,11 @@ def test_the_bill_counts_what_is_fitted(board):
 )
 def test_where_none_is_laid_out_a_flag_says_why(changes, words):
     d = design(**changes)
-    (finding,) = check_board(d)
+    (finding,) = of_board(d)
     assert finding.severity == "flag" and words in finding.message
     layout = PlanarLayout(d)
     assert cell_board.made(layout) == () and not cell_board.supplies(layout) and not cell_board.tongue(layout)
-    assert not list(check_board(design()))
+    assert not of_board(design())
 
 
 def test_words_on_the_board_stand_apart(board, monkeypatch):

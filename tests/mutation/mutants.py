@@ -49,7 +49,7 @@ SPELT_OUT = {
 # Functions that make findings under a name that they are given.
 PASS_ON = {"Finding", "fail", "flag", "at_least", "at_most", "_finding", "_pressed", "_thin"}
 GATE = re.compile(
-    r"^_?check_|(?<!without_)faults?$|^_compare_box$|^_measured$|^_short_or_double$|^_differences$|^accept$|^read_document$|^assembly_in$"
+    r"^_?check_|(?<!without_)faults?$|^_compare_box$|^_measured$|^_short_or_double$|^_differences$|^accept$|^read_document$|^assembly_in$|^scene_step$"
 )
 # Functions of export/ that raise CheckFailure and are no gates.
 NO_GATES = {
@@ -117,9 +117,15 @@ for _name, _function in list(globals().items()):
 """
 
 
+def checking() -> list[Path]:
+    """Modules of checks: of all designs, and of the families."""
+    tactcad = SOURCE / "tactcad"
+    return sorted([*(tactcad / "checks").rglob("*.py"), *tactcad.glob("families/*/checks.py")])
+
+
 def findings() -> Iterator[Mutant]:
     for path in [
-        *sorted((SOURCE / "tactcad" / "checks").rglob("*.py")),
+        *checking(),
         *sorted((SOURCE / "tactcad" / "scenes" / "rigs").glob("*.py")),  # rigs' own checks
         SOURCE / "tactcad" / "export" / "golden_file.py",
     ]:
@@ -319,7 +325,7 @@ CALLERS = {
     "export/products.py": r"^_compare_box$",
     "export/shapes.py": r"^picture\.check_",
     "export/dxf.py": r"^check_dxf$",
-    "export/step_file.py": r"^_?check_(part|scene)$",
+    "export/step_file.py": r"^_?check_part$",
     "export/step_pmi.py": r"^_?check_(part|limits)$",
     "drawing/parts/part_sheet.py": r"_faults$",
     "drawing/assemblies/assembly_sheets.py": r"_faults$",
@@ -349,7 +355,7 @@ def calls() -> Iterator[Mutant]:
 
 def idle_checks() -> Iterator[Mutant]:
     """Checks that are declared and do nothing."""
-    for path in sorted((SOURCE / "tactcad" / "checks").rglob("*.py")):
+    for path in checking():
         module = path.relative_to(SOURCE / "tactcad").as_posix()
         for call in _declared(ast.parse(path.read_text(encoding="utf-8"))):
             name = call.args[0].value

@@ -26,7 +26,7 @@ def test_every_check_is_in_the_table():
         wanted |= {*family.rules(), *(r.name for rig in all_rigs(family.spec).values() for r in rig.rules)}
     assert in_table == wanted
     modules = {m.module for m in every if m.kind == "finding"}
-    for path in (mutants.SOURCE / "tactcad" / "checks").rglob("*.py"):
+    for path in mutants.checking():
         module = path.relative_to(mutants.SOURCE / "tactcad").as_posix()
         calls = [n for n in ast.walk(ast.parse(path.read_text("utf-8"))) if isinstance(n, ast.Call)]
         makes = mutants.PASS_ON.intersection(ast.unparse(call.func).rpartition(".")[2] for call in calls)

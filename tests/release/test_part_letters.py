@@ -281,8 +281,11 @@ def test_a_new_design_keeps_no_letters(tmp_path, capsys):
 @pytest.mark.cad
 @pytest.mark.slow
 def test_a_release_lists_each_part_with_its_letter(tmp_path):
-    file = tmp_path / "tiny.toml"
-    file.write_text(C + TABLE)
+    file = tmp_path / "hardware" / "tiny.toml"
+    file.parent.mkdir()
+    for text in (B, C + TABLE):
+        file.write_text(text)
+        assert main(["golden", str(file)]) == 0
     assert main(["release", str(file), "--sample", "--out", str(tmp_path / "out")]) == 0
     listed = {}
     for path in (tmp_path / "out").glob("*.zip"):

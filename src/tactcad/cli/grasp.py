@@ -157,7 +157,7 @@ def _without_number(element: object) -> dict[str, object]:
 def as_text(done: PressedArray) -> str:
     """Tables of elements and pairs, as people read them."""
     from tactcad.lab.pressed import ELEMENT, PAIR
-    from tactcad.report.figures import text_table
+    from tactcad.report.figures import listed, text_table
 
     body, h = done.body, done.body.thickness
     layer = "half-space" if h == inf else f"layer of {h:g} mm, {body.base}"
@@ -171,8 +171,10 @@ def as_text(done: PressedArray) -> str:
         *text_table(shown, done.elements),
         "",
     ]
-    lines += [f"no. {e.number} does not touch" for e in done.elements if not e.touches]
-    lines += [f"no. {e.number} is on its stop" for e in done.elements if e.stopped]
+    away = [e.number for e in done.elements if not e.touches]
+    stopped = [e.number for e in done.elements if e.stopped]
+    lines += [f"without contact: no. {listed(away)}"] if away else []
+    lines += [f"on their stops: no. {listed(stopped)}"] if stopped else []
     return "\n".join([*lines, *text_table(list(PAIR.values()), done.pairs)])
 
 

@@ -90,7 +90,7 @@ class HingeFit:
         return self.f_ratio < self.f_limit
 
 
-def fit(data: Published, array: ArrayModel, rung: str = "solid") -> HingeFit:
+def fit(data: Published, array: ArrayModel) -> HingeFit:
     """Both forms over the grid of lengths and radii."""
     here, s = matched(data, array)
     K = data.table1.stiffness.value[here]
@@ -98,7 +98,7 @@ def fit(data: Published, array: ArrayModel, rung: str = "solid") -> HingeFit:
     t = float(np.median(s.hinge_thickness))
     strains = _strains(data, t, array)
     own = bool(np.any(s.two_sided))
-    logs = {two: _grid(s.with_(two_sided=two), rung) for two in (False, True)}
+    logs = {two: _grid(s.with_(two_sided=two)) for two in (False, True)}
     names = {False: "one-sided", True: "two-sided"}
     forms = [_form(names[two], two, log_k, K, s, design_r, strains) for two, log_k in logs.items()]
     n = len(K)
@@ -124,7 +124,7 @@ def fit(data: Published, array: ArrayModel, rung: str = "solid") -> HingeFit:
     )
 
 
-def _grid(s: HingeSection, rung: str) -> np.ndarray:
+def _grid(s: HingeSection) -> np.ndarray:
     """ln K over [radius, length, element]; NaN outside the rung's range."""
     r, l = np.meshgrid(RADII, LENGTHS, indexing="ij")  # noqa: E741
     wide = {name: np.broadcast_to(getattr(s, name), s.shape) for name in s.__dataclass_fields__}
@@ -134,7 +134,7 @@ def _grid(s: HingeSection, rung: str) -> np.ndarray:
         hinge_length=np.broadcast_to(l[..., None], (*r.shape, *s.shape)),
         body_length=clamp - l[..., None] / 2,
     )
-    return np.log(ladder.evaluate(grid, rung).stiffness)
+    return np.log(ladder.evaluate(grid).stiffness)
 
 
 def _form(
@@ -244,7 +244,7 @@ def findings(h: HingeFit) -> tuple[str, ...]:
     within = own.design_low <= h.leave_out[moved] <= own.design_high
     sentences.append(
         f"No single element decides the length: without no. {moved} it moves most, by "
-        f"{signed_percent(change)}, {'inside' if within else 'to outside'} the interval."
+        f"{signed_percent(change)}, inside the interval."
         if within
         else f"One element decides the length: without no. {moved} it moves by {signed_percent(change)}, "
         f"out of the interval."

@@ -87,7 +87,7 @@ class ReferenceElement:
         return min(self.explanations, key=lambda e: abs(e.miss_per_deflection) + abs(e.miss_per_force))
 
 
-def study(data: Published, array: ArrayModel, table2: Table2Study, rung: str = "solid") -> ReferenceElement:
+def study(data: Published, array: ArrayModel, table2: Table2Study) -> ReferenceElement:
     """Everything about Table 2's reference element, whichever it is."""
     supported = table2.supported.value[0]
     factor = table2.fit("R times a factor").value[0]
@@ -100,7 +100,7 @@ def study(data: Published, array: ArrayModel, table2: Table2Study, rung: str = "
     others = np.arange(len(here)) != own
     log_gain = np.log(k_v / q)[others]
     gain, scatter = float(np.exp(log_gain.mean())), float(log_gain.std(ddof=1))
-    nominal = float(ladder.stiffness(section, rung)[0])
+    nominal = float(ladder.stiffness(section)[0])
     signal = (figure["reference_signal_least"], figure["reference_signal_most"])
     deflection = (figure["reference_deflection_least"], figure["reference_deflection_most"])
     printed = (K[own], k_v[own])
@@ -125,9 +125,9 @@ def study(data: Published, array: ArrayModel, table2: Table2Study, rung: str = "
         ),
         gain,
         scatter,
-        _explanations(section, array, printed, gain, nominal, rung),
-        _from_k_v("hinge_thickness", section, array, k_v[own] / gain, scatter, rung),
-        _from_k_v("load_arm", section, array, k_v[own] / gain, scatter, rung),
+        _explanations(section, array, printed, gain, nominal),
+        _from_k_v("hinge_thickness", section, array, k_v[own] / gain, scatter),
+        _from_k_v("load_arm", section, array, k_v[own] / gain, scatter),
     )
 
 
@@ -173,13 +173,13 @@ def _reading(
 
 
 def _explanations(
-    s: HingeSection, array: ArrayModel, printed: tuple[float, float], gain: float, nominal: float, rung: str
+    s: HingeSection, array: ArrayModel, printed: tuple[float, float], gain: float, nominal: float
 ) -> tuple[Explanation, ...]:
     K, k_v = printed
     q0 = float(gauge_signal.foil_strain_per_deflection(s, array.gauge)[0])
     L0, t0 = float(s.load_arm[0]), float(s.hinge_thickness[0])
-    L = float(solve(s, "load_arm", np.array([K]), 0.2, 3.0, rung)[0])
-    t = float(solve(s, "hinge_thickness", np.array([K]), 0.3, 3.0, rung)[0])
+    L = float(solve(s, "load_arm", np.array([K]), 0.2, 3.0)[0])
+    t = float(solve(s, "hinge_thickness", np.array([K]), 0.3, 3.0)[0])
     # Strain and deflection are both taken at the load point, which a calibration's roller also is.
     q_load = float(gauge_signal.foil_strain_per_deflection(s.with_(load_arm=[L]), array.gauge)[0])
     q_thick = float(gauge_signal.foil_strain_per_deflection(s.with_(hinge_thickness=[t]), array.gauge)[0])
@@ -201,7 +201,7 @@ def _explanations(
 
 
 def _from_k_v(
-    name: str, s: HingeSection, array: ArrayModel, q: float, scatter: float, rung: str
+    name: str, s: HingeSection, array: ArrayModel, q: float, scatter: float
 ) -> tuple[float, float, float]:
     """K (N/mm) when one dimension is what makes strain per deflection q, and for q a 95 % scatter lower and
     higher.
@@ -210,7 +210,7 @@ def _from_k_v(
     """
     factor = np.geomspace(0.35, 2.5, 800)
     grid = s.rows(np.zeros(len(factor), int)).with_(**{name: float(getattr(s, name)[0]) * factor})
-    result = ladder.evaluate(grid, rung)
+    result = ladder.evaluate(grid)
     usable = grid.rows(np.flatnonzero(result.valid))
     q_grid = gauge_signal.foil_strain_per_deflection(usable, array.gauge)
     order = np.argsort(q_grid)

@@ -14,6 +14,7 @@ import numpy as np
 
 from tactcad.mechanics import ladder
 from tactcad.mechanics.as_built import in_clamp, without_layer
+from tactcad.mechanics.ladder import DEFAULT_RUNG
 from tactcad.mechanics.section import HingeSection
 from tactcad.paper.array_model import ArrayModel
 from tactcad.paper.published import Published
@@ -94,15 +95,10 @@ def matched(data: Published, array: ArrayModel) -> tuple[np.ndarray, HingeSectio
 
 
 def residuals(
-    data: Published,
-    array: ArrayModel,
-    rng: np.random.Generator,
-    rung: str = "solid",
-    more: dict[str, np.ndarray] | None = None,
+    data: Published, array: ArrayModel, rng: np.random.Generator, more: dict[str, np.ndarray] | None = None
 ) -> Residuals:
-    """Table 1 compared with the unchanged design; `more` adds stiffnesses of slower rungs, for the matched
-    elements.
-    """
+    """Table 1 compared with the unchanged design; `more`: stiffnesses of slower rungs, for the matched
+    elements."""
     here, s = matched(data, array)
     K = data.table1.stiffness.value[here]
     predicted = {name: ladder.evaluate(s, name).stiffness for name in ladder.CLOSED_FORMS}
@@ -113,18 +109,18 @@ def residuals(
         data.table1.arm.value[here],
         K,
         predicted,
-        rung,
-        np.log(K / predicted[rung]),
+        DEFAULT_RUNG,
+        np.log(K / predicted[DEFAULT_RUNG]),
         np.broadcast_to(t, s.shape),
-        solve(s, "hinge_thickness", K, 0.3, 3.0, rung),
+        solve(s, "hinge_thickness", K, 0.3, 3.0),
         L,
-        solve(s, "load_arm", K, 0.2, 3.0, rung),
+        solve(s, "load_arm", K, 0.2, 3.0),
         pad_half,
-        *(np.nanquantile(spread(s, array, rng, rung, contact), BAND, axis=0) for contact in (0.0, pad_half)),
+        *(np.nanquantile(spread(s, array, rng, contact), BAND, axis=0) for contact in (0.0, pad_half)),
     )
 
 
-def solve(s: HingeSection, name: str, K: np.ndarray, least: float, most: float, rung: str) -> np.ndarray:
+def solve(s: HingeSection, name: str, K: np.ndarray, least: float, most: float) -> np.ndarray:
     """Value of one dimension that gives each stiffness, searched from `least` to `most` times its own.
 
     NaN if there is none. A scan brackets the value nearest to the dimension's own; secant steps on ln K
@@ -138,7 +134,7 @@ def solve(s: HingeSection, name: str, K: np.ndarray, least: float, most: float, 
 
         def misfit(log_factor: np.ndarray, i: int = i, one: HingeSection = one) -> np.ndarray:
             trial = one.with_(**{name: own[i] * np.exp(np.atleast_1d(log_factor))})
-            return np.log(ladder.evaluate(trial, rung).stiffness / K[i])
+            return np.log(ladder.evaluate(trial).stiffness / K[i])
 
         scan = misfit(np.log(factor))
         cross = np.flatnonzero(np.sign(scan[:-1]) * np.sign(scan[1:]) <= 0)
@@ -153,14 +149,7 @@ def solve(s: HingeSection, name: str, K: np.ndarray, least: float, most: float, 
     return solution.reshape(s.shape)
 
 
-def spread(
-    s: HingeSection,
-    array: ArrayModel,
-    rng: np.random.Generator,
-    rung: str,
-    contact: float = 0.0,
-    draws: int = DRAWS,
-) -> np.ndarray:
+def spread(s: HingeSection, array: ArrayModel, rng: np.random.Generator, contact: float) -> np.ndarray:
     """Stiffness [draw, element] with every dimension of [tolerance] drawn: half-widths are two standard
     deviations.
 
@@ -169,10 +158,10 @@ def spread(
     of an array, the others one for each. Layer and clamp only soften.
     """
     tol = array.tolerance
-    shape, shared = (draws, *s.shape), (draws, 1)
+    shape, shared = (DRAWS, *s.shape), (DRAWS, 1)
     each = lambda half, shape=shape: half / 2 * rng.standard_normal(shape)  # noqa: E731
     length = s.hinge_length + each(tol.hinge_length)
-    cut = _one_each(s, draws).with_(
+    cut = _one_each(s).with_(
         hinge_thickness=s.hinge_thickness + each(tol.hinge_thickness),
         hinge_length=length,
         fillet_radius=np.clip(s.fillet_radius + each(tol.fillet_radius), 0.0, length / 2),
@@ -182,13 +171,13 @@ def spread(
         youngs_modulus=s.youngs_modulus * (1 + each(tol.youngs_modulus, shared)),
     )
     left = without_layer(cut, np.abs(each(tol.recast_layer, shared)))
-    return in_clamp(left, ladder.evaluate(left, rung).stiffness, np.abs(each(tol.clamp_compliance)))
+    return in_clamp(left, ladder.evaluate(left).stiffness, np.abs(each(tol.clamp_compliance)))
 
 
-def _one_each(s: HingeSection, draws: int) -> HingeSection:
-    """The same sections, repeated in `draws` rows."""
+def _one_each(s: HingeSection) -> HingeSection:
+    """The same sections, repeated in DRAWS rows."""
     many = {n: v for n in s.__dataclass_fields__ if (v := getattr(s, n)).size > 1}
-    return s.with_(**{n: np.broadcast_to(v, (draws, *s.shape)) for n, v in many.items()})
+    return s.with_(**{n: np.broadcast_to(v, (DRAWS, *s.shape)) for n, v in many.items()})
 
 
 SMALL_FACTOR = 0.05  # a common factor closer to 1 than this is not reported

@@ -40,7 +40,7 @@ def validate(data: Published, array: ArrayModel) -> ValidationReport:
             f"among them",
         )
     rng = np.random.default_rng(SEED)
-    K = residuals.residuals(data, array, rng, more=fem_ladder.stiffnesses(residuals.matched(data, array)[1]))
+    K = residuals.residuals(data, array, rng, fem_ladder.stiffnesses(residuals.matched(data, array)[1]))
     fit = hinge.fit(data, array)
     signal = gain.fit(data, array)
     own = table1_check.check(data)

@@ -204,8 +204,8 @@ def percent(value: float, digits: int = 2) -> str:
     return f"{sig(value * 100, digits)} %"
 
 
-def signed_percent(value: float, digits: int = 2) -> str:
-    return ("+" if value > 0 else "") + percent(value, digits)
+def signed_percent(value: float) -> str:
+    return ("+" if value > 0 else "") + percent(value)
 
 
 def interval(low: float, high: float, digits: int = 3) -> str:

@@ -22,7 +22,7 @@ from tactcad.design.messages import InputError
 from tactcad.export.inspection import inspection_bytes
 from tactcad.families.planar import cell_array, parts
 from tactcad.families.planar.cell_layout import PlanarLayout
-from tactcad.families.planar.checks import check_strength
+from tactcad.families.planar.checks import CHECKS, check_strength
 from tactcad.families.planar.rules import design_rules
 from tactcad.families.planar.sensor import (
     chip_matrix,
@@ -132,6 +132,28 @@ def test_estimate_tells_ratio_resolution_and_stops(layout):
     assert tired.value == pytest.approx(tired.limit * soft.fatigue_factor) and tired.value < soft.rated_force
     table = list(csv.DictReader(io.StringIO(strength(layout).decode())))
     assert [r["element"] for r in table] == [e.designator for e in layout.elements]
+
+
+def test_flags_name_each_kind_that_bears_too_little_or_stiffens(layout):
+    """By the force asked for and each kind's cubic curve; at a fortieth of it none."""
+    d, first = layout.design, {e.kind.name: e.designator for e in reversed(layout.elements)}
+    told = []
+    for share in (0.025, 1.0, 3.0):
+        asked = replace(d, rating=replace(d.rating, force=share * d.rating.force))
+        wanted = set()
+        for row in rows(PlanarLayout(asked), "", None):
+            bow = layout.kinds[row.kind].cell.stiffening
+            roots = np.roots([bow, 0.0, 1.0, -row.rated_force / row.stiffness])  # F = K z (1 + bow z^2)
+            sink = float(roots[np.isreal(roots)].real[0])
+            if bow * sink**2 > d.rating.linearity:
+                wanted.add(("planar-linear", first[row.kind]))
+            if row.rated_force < asked.rating.force * (1.0 - 1e-6):
+                wanted.add(("planar-rated-force", first[row.kind]))
+        found = {(f.check, f.part) for check in CHECKS for f in check.run(asked, None)}
+        found = {each for each in found if each[0] in ("planar-linear", "planar-rated-force")}
+        assert found == wanted
+        told.append(found)
+    assert not told[0] and {check for check, _ in told[2]} == {"planar-rated-force", "planar-linear"}
 
 
 def test_a_matrix_changes_as_the_field_of_the_simulator_does(layout):

@@ -126,6 +126,20 @@ def test_a_cell_that_does_not_repeat_is_refused(number):
         cell_plan(wrong, ())
 
 
+@pytest.mark.parametrize("off", [1e-6, 3e-6, 7e-6])
+def test_sizes_of_odd_nanometres_repeat(off):
+    """Their halves are half nanometres, which floats of different places round either way."""
+    d = layout("planar").design
+    d = replace(
+        d,
+        planar=replace(d.planar, rows=3, columns=4, pitch=8.0 + off, web=0.6 + 2.0 * off),
+        measuring=replace(d.measuring, beam_width=0.4 + off),
+    )
+    lay = PlanarLayout(d)
+    for part in (parts.foil(lay), parts.lower_spacer(lay), parts.upper_spacer(lay)):
+        assert cell_plan(part, ())
+
+
 def test_holes_that_pins_and_spigots_enter_follow_the_process():
     """Worst case by hand: the thickest pin or spigot in the least hole, places at their worst."""
     for name in ("jaw", "planar"):

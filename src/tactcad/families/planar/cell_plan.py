@@ -49,7 +49,7 @@ Point = tuple[float, float]
 
 @dataclass(frozen=True)
 class SheetCell:
-    """A cell of the sheet: its middle, mm; its openings by number; its contours about its middle, to 1 nm."""
+    """A cell of the sheet: its middle, mm; its openings by number; its contours about its middle."""
 
     at: Point
     openings: tuple[int, ...]
@@ -65,7 +65,7 @@ def cells_of(part: Part) -> list[SheetCell]:
         middle = _middle(contour)
         own[min(middles, key=lambda at: dist(at, middle))].append(n)
     cells = (SheetCell(at, tuple(ns), frozenset(_about(found[n], at) for n in ns)) for at, ns in own.items())
-    return sorted(cells, key=lambda cell: (round(cell.at[1], 6), round(cell.at[0], 6)))
+    return sorted(cells, key=lambda cell: (round(cell.at[1], 9), round(cell.at[0], 9)))
 
 
 def _middle(contour: Contour) -> Point:
@@ -76,21 +76,21 @@ def _middle(contour: Contour) -> Point:
 def _about(contour: Contour, at: Point) -> tuple:
     """Every point of a contour, about a point."""
     points = [(*s.start, *(s.centre if isinstance(s, Arc) else ())) for s in contour]
-    return tuple(tuple(round(v - at[i % 2], 6) + 0.0 for i, v in enumerate(p)) for p in points)
+    return tuple(tuple(round(v - at[i % 2], 9) + 0.0 for i, v in enumerate(p)) for p in points)
 
 
 def kinds_of(part: Part) -> list[list[SheetCell]]:
     """Cells grouped by kind, that of the first cell first. Raises CheckFailure unless they form a regular
     grid in which two kinds alternate."""
     cells = cells_of(part)
-    xs, ys = (sorted({round(c.at[k], 6) for c in cells}) for k in (0, 1))
+    xs, ys = (sorted({round(c.at[k], 9) for c in cells}) for k in (0, 1))
     steps = [b - a for values in (xs, ys) for a, b in pairwise(values)]
     kinds: dict[frozenset, list[SheetCell]] = {}
     for cell in cells:
         kinds.setdefault(cell.shape, []).append(cell)
     order = list(kinds)
     wanted = [(x, y, (i + j) % len(order)) for (j, y), (i, x) in product(enumerate(ys), enumerate(xs))]
-    there = [(round(c.at[0], 6), round(c.at[1], 6), order.index(c.shape)) for c in cells]
+    there = [(round(c.at[0], 9), round(c.at[1], 9), order.index(c.shape)) for c in cells]
     if len(order) > len(LABELS) or wanted != there or (steps and max(steps) - min(steps) > ALIKE):
         raise CheckFailure(f"drawings: {part.part_no}: its cells are no regular grid of two kinds in turn")
     return list(kinds.values())
@@ -127,7 +127,7 @@ def cell_plan(part: Part, notes: Sequence[str], spare: bool = False) -> SheetPla
         _repeated(sketch, shown, owner)
     marked = with_marks(shown, views)
     closed(sketch, marked)
-    counts = [len({round(c.at[k], 6) for c in cells}) - 1 for k in (0, 1)]
+    counts = [len({round(c.at[k], 9) for c in cells}) - 1 for k in (0, 1)]
     pitch = [round(abs(last[k].at[k] - cells[0].at[k]) / n, 6) for k, n in enumerate(counts) if n]
     told = (*notes, _pattern_note(kinds, pitch))
     return SheetPlan(shown, sketch.values, tuple(sketch.conventions), marked, told)
