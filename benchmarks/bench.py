@@ -31,6 +31,7 @@ from typing import Any
 import bench_elements
 import bench_files  # noqa: F401  registers its benchmarks, as do the others
 import bench_geometry  # noqa: F401
+import bench_object  # noqa: F401
 import tables
 from bench_plots import figures
 from measuring import BENCHMARKS, RunPlan, environment, machine, peers, versions

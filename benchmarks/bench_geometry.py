@@ -281,8 +281,8 @@ def _timed(into: list[float], action: Callable[[], T]) -> T:
 class _Forgetful(dict):
     """Remembers no situation: every pair is judged anew."""
 
-    def __contains__(self, key: object) -> bool:
-        return False
+    def get(self, key: object, default: object = None) -> None:
+        return None
 
 
 def _situations(plan: RunPlan) -> list[dict]:

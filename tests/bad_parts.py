@@ -138,6 +138,17 @@ def missoldered() -> list[Finding]:
     return list(check_bridges(moved("W31", "2", "E2_RED")))
 
 
+def planar(design: str = "planar-array", old: str = "", new: str = "") -> list[Finding]:
+    from variants import HARDWARE
+
+    from tactcad.design.load import parse
+    from tactcad.families.planar.checks import CHECKS
+
+    text = (HARDWARE / f"{design}.toml").read_text("utf-8")
+    changed = parse(text.replace(old, new), design)
+    return [f for check in CHECKS for f in check.run(changed, None)]
+
+
 def assembly() -> list[Finding]:
     from tactcad.checks.described.goes_together import check_assembly
 
@@ -317,6 +328,7 @@ def golden() -> list[Finding]:
 
 BREP, CLEARANCE = "tests/checks/test_brep_and_mesh.py", "tests/checks/test_clearance.py"
 CIRCUIT = "tests/checks/test_circuit_checks.py"
+PLANAR = "tests/families/planar/test_planar_designs.py"
 MACHINING = {
     "mill-corner": "a pocket with sharp corners",
     "mill-groove": "a groove of 0.9 mm",
@@ -443,6 +455,17 @@ BAD: dict[str, Bad] = {
     "calibration": Bad(
         "calibration travel", "0.2 mm of travel", calibration, "tests/rigs/test_rig_scenes.py"
     ),
+    "planar-board": Bad(
+        "planar board",
+        "chips 3.9 mm apart",
+        lambda: planar("jaw-array", "pitch = 4.0", "pitch = 3.9"),
+        "tests/circuit/test_cell_board.py",
+    ),
+    "planar-rated-force": Bad(
+        "planar strength", "1 N asked for", lambda: planar(old="force = 0.8", new="force = 1.0"), PLANAR
+    ),
+    "planar-fatigue": Bad("planar strength", "planar-array itself", planar, PLANAR),
+    "planar-linear": Bad("planar strength", "the same", planar, PLANAR),
     "build": Bad("build", "a part that the kernel calls invalid", unbuildable, BREP),
     "one-solid": Bad("brep", "two boxes", lambda: brep(two_boxes), BREP),
     "brep-valid": Bad("brep", "a prism over a bow tie", lambda: brep(bow_tie), BREP),

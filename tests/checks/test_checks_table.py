@@ -14,6 +14,7 @@ from tactcad.design.tree import Design
 from tactcad.scenes.rig import all_rigs
 
 ROOT = Path(__file__).parents[2]
+FAMILIES = ("tactcad.checks.facing_rows", "tactcad.families.planar.checks")
 sys.path.append(str(ROOT / "tests" / "mutation"))
 
 
@@ -41,6 +42,7 @@ OF_THE_SHIPPED = {
     "clearance",
     "assembly",
     "rigidity",
+    "planar strength",
     "calibration travel",
     "moving weight",
     "scenes left out",
@@ -67,11 +69,7 @@ def test_the_table_says_what_the_checks_say():
 
 
 def test_every_timed_check_has_its_rows():
-    timed = {
-        c.name
-        for folder in ("described", "tactcad.checks.facing_rows", "on_solids")
-        for c in declared(folder)
-    }
+    timed = {c.name for folder in ("described", *FAMILIES, "on_solids") for c in declared(folder)}
     timed |= {"build", "origins", "scenes left out"} | {
         name for rig in all_rigs(Design).values() for name, _ in rig.checks
     }

@@ -102,7 +102,7 @@ def test_what_is_measured_adds_as_squares_and_that_is_what_draws_scatter_by(arra
     """Everything that acts both ways, drawn for the bands."""
     tolerance = replace(a_tenth(TOLERANCE), recast_layer=0.0, clamp_compliance=0.0)
     K = residuals.spread(
-        array.section, replace(array, tolerance=tolerance), np.random.default_rng(5), "solid"
+        array.section, replace(array, tolerance=tolerance), np.random.default_rng(5), contact=0.0
     )
     assert 2.054 * np.log(K).std(0) == pytest.approx(  # 96 % of a normal distribution
         together([np.zeros(1)], half_widths(array.section, tolerance).values()), rel=0.02
@@ -140,7 +140,7 @@ def test_layer_and_clamp_only_soften_the_bands(array):
     for field in ("recast_layer", "clamp_compliance"):
         tolerance = replace(TOLERANCE, **{**only, field: getattr(TOLERANCE, field)})
         drawn = residuals.spread(
-            array.section, replace(array, tolerance=tolerance), np.random.default_rng(5), "solid"
+            array.section, replace(array, tolerance=tolerance), np.random.default_rng(5), contact=0.0
         )
         assert (drawn <= K * (1 + 1e-12)).all()
         # two standard deviations of a half-normal hold 95.4 %
