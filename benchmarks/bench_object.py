@@ -29,14 +29,14 @@ TISSUE = Body(0.5, 0.49, 6.0)  # MPa, mm
 OBJECT = f"E={TISSUE.modulus:g},nu={TISSUE.poisson:g},thickness={TISSUE.thickness:g}"
 EACH = 0.3  # N a pad: within the depth that a linear body holds for
 SIZES = {  # elements by rung: smoke, short, full
-    "springs": ((2,), (10, 100), (10, 100, 1000)),
-    "layer": ((2,), (10, 100), (2, 10, 100, 300, 1000)),
-    "large": ((), (10,), (2, 10, 100)),
-    "fem-object": ((), (), (2, 10)),
+    "springs": ((2,), (10, 100), (10, 1000)),
+    "layer": ((2,), (10, 100), (2, 10, 100, 1000)),
+    "large": ((), (10,), (10,)),
 }
 ANGLES = (0.0, 2.0, 5.0)  # degrees, of the face
 LOADS = np.linspace(0.0, 10 * EACH, 11)  # N
 NOISE = 1e-4  # of the largest signal
+READ_AGAIN = 10  # grasps of one inclination
 CALIBRATED = 0.005  # standard error of K and K_v, relative: three runs that differ by 1 %
 GOAL_FIT = 0.01  # s a grasp
 
@@ -57,8 +57,8 @@ def grasps(plan: RunPlan) -> dict:
     fitted = "angle: inclined, degrees; grasps; processor: processor time a grasp [ms]"
     note = (
         f"macro-array's rows repeated, {EACH:g} N a pad, layer of {TISSUE.thickness:g} mm, "
-        f"E {TISSUE.modulus:g} MPa. The command is a process of its own; a further load finds its layout "
-        "set up."
+        f"E {TISSUE.modulus:g} MPa. The command is a process of its own; a further load follows "
+        "in one process."
     )
     of = (
         f"One stream a row: macro-array, {len(LOADS)} loads, noise {NOISE:g}, thickness within 5 %, "
@@ -73,7 +73,7 @@ def grasps(plan: RunPlan) -> dict:
             f"{largest['peak_bytes'] / 1e6:.0f} MB.",
             goal(
                 f"a grasp is fitted in {1e3 * fits[0]['processor']:.2g} ms on a level face, at most "
-                f"{1e3 * slowest['processor']:.2g} on an inclined one (goal {1e3 * GOAL_FIT:g})",
+                f"{1e3 * slowest['processor']:.2g} on an inclined one (goal {1e3 * GOAL_FIT:g}).",
                 slowest["processor"] < GOAL_FIT,
             ),
         ],
@@ -85,13 +85,14 @@ def _pressed(plan: RunPlan, rung: str, elements: int) -> dict:
     file, design, load = plan.folder / f"array-{elements}.toml", array_of(elements), EACH * elements
     file.write_text(array_text(elements), "utf-8")
     command = tactcad("grasp", file, "--object", OBJECT, "--load", f"{load:g}", "--rung", rung)
-    runs = [measured(command) for _ in range(plan.of(1, 1, 3))]
-    again = interleaved({rung: partial(press_array, design, TISSUE, load, rung=rung)}, plan.of(1, 1, 3))[rung]
+    repeats = plan.of(1, 1, 3) if elements <= 10 else 1
+    runs = [measured(command) for _ in range(repeats)]
+    again = interleaved({rung: partial(press_array, design, TISSUE, load, rung=rung)}, repeats)[rung]
     return {"rung": rung, "elements": elements, **cost(runs), "again": again.seconds}
 
 
 def _fitted(plan: RunPlan, angle: float) -> dict:
-    """A stream of simulated grasps, each inclined in a direction of its own."""
+    """A stream of simulated grasps, inclined in many directions."""
     plan.say(f"fits, {angle:g} degrees")
     rng, design = np.random.default_rng(plan.seed), array_of(10)
     of = family_of(design).must("pads", "grasp")
@@ -100,12 +101,13 @@ def _fitted(plan: RunPlan, angle: float) -> dict:
     K, K_v, ones = 1 / pads.compliance[order, 0, 0], per_sink[order], np.ones(10)
     errors = (CALIBRATED * K, K_v, CALIBRATED * K_v, 0.5 * ones, 20.0 * ones)
     known = Sensitivity(number[order], K, *errors, 1e6 * ones, 0.0 * ones)
-    for _ in range(plan.of(2, 20, 250)):
+    for _ in range(plan.of(1, 2, 25)):
         turn = rng.uniform(0.0, 2.0 * np.pi)
         way = (angle * np.cos(turn), angle * np.sin(turn))
         sinks = [body.press(load=load, angle=way).sink[order] for load in LOADS[1:]]
         signal = (np.array([0.0 * sinks[0], *sinks]) * K_v).T
-        signals.append(signal + NOISE * signal.max() * rng.standard_normal(signal.shape))
+        noise = rng.standard_normal((READ_AGAIN, *signal.shape))
+        signals += [*(signal + NOISE * signal.max() * noise)]
     h, height = TISSUE.thickness, design.tolerance.pad_height
     at = layer(number, pads, height, TISSUE.poisson, h, 0.05 * h)
     stream = partial(fit, at, number[order], LOADS, np.array(signals), known)
