@@ -30,7 +30,6 @@ from tactcad.synthesis.synthesise import ARRAYS_ON_BODY, goal_of
 from tactcad.synthesis.target import ARM, Target, read_target
 
 TARGET = ROOT / "hardware" / "targets" / "tissue-array.toml"
-OBJECTS = (((1.0, 5.0), 6.0),)  # K_obj, N/mm; thickness, mm
 ANGLES = (0, 1, 2, 4, 6, 8)  # degrees
 STARTS = ((10, 3, 3.0, 3.4), (8, 3, 4.0, 2.0), (5, 3, 2.0, 1.0))  # elements, kinds, pad in mm, force in N
 GUESS, FIRST, SEARCH = 6.0, 7.0, 34.0  # s of one core: on springs; by each of PADS; after these
@@ -48,10 +47,7 @@ FORCES = (0.1, 10.0)  # N, on the whole array; the largest in an accident is OVE
 OVERLOAD = 6.0 / 3.4  # as of TARGET
 KEPT = 0.975  # of the arrays built keep the half-width that is told; of TARGET's share half of what may fail
 NOT_TOLD = ("elements.kinds", "elements.of_a_kind", "room.elements[1]")  # bounds that are starts or costs
-HEADS = (
-    "K_obj, N/mm | thickness, mm | angle, degrees | half-width by start, % | 97.5 % of arrays keep, % | "
-    "elements | pad, mm | force, N | lies on"
-)
+HEADS = "angle, degrees | half-width by start, % | 97.5 % of arrays keep, % | elements | pad, mm | force, N"
 
 
 def with_force(stand: Stand, force: float) -> Stand:
@@ -142,7 +138,7 @@ def said(found: Found) -> str:
     return f"{name} +{100 * misses[name]:.2g} %"
 
 
-def row_of(stiffness: tuple[float, float], thickness: float, angle: int, starts: list[Found]) -> tuple:
+def row_of(angle: int, starts: list[Found]) -> tuple:
     """Of the table."""
     best = min(starts, key=worth)
     stand = best.candidate.stand
@@ -152,8 +148,6 @@ def row_of(stiffness: tuple[float, float], thickness: float, angle: int, starts:
         target = stand.target.with_("object.angle", (0.0, float(angle)))
         kept = MadeSensor(target, best.design).kept_by(KEPT, ARRAYS_ON_BODY)
     return (
-        f"{stiffness[0]:g} to {stiffness[1]:g}",
-        f"{thickness:g}",
         angle,
         "; ".join(said(one) for one in starts),
         f"{100 * kept:.3g}",
@@ -165,21 +159,16 @@ def row_of(stiffness: tuple[float, float], thickness: float, angle: int, starts:
 
 
 def front() -> str:
-    rows = []
-    for stiffness, thickness in OBJECTS:
-        target = read_target(TARGET).with_("object.stiffness", stiffness).with_("object.thickness", thickness)
-        for field, value in FREE.items():
-            target = target.with_(field, value)
-        at = [started(target, *start) for start in STARTS]
-        found = list[list[Found]]()
-        for angle in ANGLES:
-            found.append([answer(*one, float(angle)) for one in at])
-            at = [(one.candidate.stand, one.row) for one in found[-1]]
-            print(stiffness, angle, [said(one) for one in found[-1]], flush=True)
-        for n, angle in enumerate(ANGLES):
-            best = [min(later, key=worth) for later in zip(*found[n:])]
-            rows.append(row_of(stiffness, thickness, angle, best))
-    return lines(HEADS, rows)
+    target = read_target(TARGET)
+    for field, value in FREE.items():
+        target = target.with_(field, value)
+    at, found = [started(target, *start) for start in STARTS], list[list[Found]]()
+    for angle in ANGLES:
+        found.append([answer(*one, float(angle)) for one in at])
+        at = [(one.candidate.stand, one.row) for one in found[-1]]
+        print(angle, [said(one) for one in found[-1]], flush=True)
+    best = [[min(later, key=worth) for later in zip(*found[n:])] for n in range(len(ANGLES))]
+    return lines(f"{HEADS} | lies on", [row_of(*one) for one in zip(ANGLES, best)])
 
 
 if __name__ == "__main__":

@@ -202,7 +202,6 @@ def circuit_files(plan: Plan) -> Iterator[Batch]:
     design, family = plan.design, family_of(plan.design)
     circuit = family.must("readout", "export").netlist(family.layout(design))
     key = digest(("circuit", plan.shapes.made_by, circuit, design.design))
-    # The converter of its bridges
     converter = getattr(getattr(design, "readout", None), "converter", "card")
     for name, kind, make in (
         ("circuit_{}.csv", "netlist", files.table_file),
