@@ -115,15 +115,13 @@ def combine_each(
     c = np.array([at.from_signal[m] + _moderated(at, m) if len(m) > 2 else at.covariance[m] for at in cases])
     scale = np.median(np.abs(f / s), axis=1)
     smallest = np.maximum(1e-14 * c[..., 0, 0], NO_VARIANCE)
+    c_ff, c_fs, c_ss = (np.ascontiguousarray(c[:, None, :, i, j]) for i, j in ((0, 0), (0, 1), (1, 1)))
 
     def misfit(a: np.ndarray) -> np.ndarray:
         """Of each case, (case, angle), at its own angles."""
         cos, sin = np.cos(a)[..., None], scale[:, None, None] * np.sin(a)[..., None]
         z = cos * f[:, None] + sin * s[:, None]
-        w = 1 / np.maximum(
-            cos**2 * c[:, None, :, 0, 0] + 2 * cos * sin * c[:, None, :, 0, 1] + sin**2 * c[:, None, :, 1, 1],
-            smallest[:, None],
-        )
+        w = 1 / np.maximum(cos**2 * c_ff + 2 * cos * sin * c_fs + sin**2 * c_ss, smallest[:, None])
         mean = (w * z).sum(-1) / w.sum(-1)
         return (w * (z - mean[..., None]) ** 2).sum(-1)
 
@@ -252,20 +250,26 @@ def _minimum(misfit: Misfit, cases: int) -> np.ndarray:
 def _edges(misfit: Misfit, best: np.ndarray, limit: np.ndarray) -> np.ndarray:
     """How far the connected set around each `best` with a misfit below its limit reaches to both sides,
     (case, 2); NaN where the limit is never passed."""
-    row, sides = np.arange(len(best)), []
-    offset = np.linspace(0.0, pi, 2 * ANGLES)
-    for direction in (-1.0, 1.0):
-        outside = misfit(best[:, None] + direction * offset) > limit[:, None]
-        first = np.argmax(outside, axis=1)
-        inner, outer = offset[np.maximum(first - 1, 0)], offset[first]
-        for _ in range(12):
-            fine = np.arange(33.0) * ((outer - inner) / 32)[:, None] + inner[:, None]
-            fine[:, -1] = outer
-            at = misfit(best[:, None] + direction * fine) > limit[:, None]
-            first = np.maximum(np.argmax(at, axis=1), 1)
-            inner, outer = fine[row, first - 1], fine[row, first]
-        sides.append(np.where(outside.any(axis=1), direction * inner, np.nan))
-    return np.stack(sides, axis=1)
+    ways = np.array([-1.0, 1.0])
+
+    def beyond(offset: np.ndarray) -> np.ndarray:
+        """Of offsets to both sides, (case, 2, offset)."""
+        angle = best[:, None, None] + ways[:, None] * offset
+        return misfit(angle.reshape(len(best), -1)).reshape(angle.shape) > limit[:, None, None]
+
+    def at(offset: np.ndarray, index: np.ndarray) -> np.ndarray:
+        return np.take_along_axis(offset, index[..., None], axis=2)[..., 0]
+
+    fine = np.broadcast_to(np.linspace(0.0, pi, 2 * ANGLES), (len(best), 2, 2 * ANGLES))
+    outside = beyond(fine)
+    first = np.argmax(outside, axis=2)
+    inner, outer = at(fine, np.maximum(first - 1, 0)), at(fine, first)
+    for _ in range(12):
+        fine = np.arange(33.0) * ((outer - inner) / 32)[..., None] + inner[..., None]
+        fine[..., -1] = outer
+        first = np.maximum(np.argmax(beyond(fine), axis=2), 1)
+        inner, outer = at(fine, first - 1), at(fine, first)
+    return np.where(outside.any(axis=2), ways * inner, np.nan)
 
 
 def _interval(best: float, edges: np.ndarray, scale: float) -> Interval:
