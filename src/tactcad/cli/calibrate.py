@@ -16,21 +16,6 @@ if TYPE_CHECKING:
     from tactcad.design.tree import Design
     from tactcad.lab.load_cell import LoadCell
 
-EXAMPLES = """\
-  tactcad calibrate hardware/examples/calibration.csv                     Table 1's columns with intervals
-  tactcad calibrate mine.csv --load-cell 57.04 --out cal.csv      and write them for `tactcad stiffness`
-  tactcad calibrate mine.csv --load-cell 57.04+-0.5 --run-scatter 0.005   measured cell, runs known to repeat
-  tactcad calibrate mine.csv --design my-sensor.toml              the load cell of the design's [calibration]
-  tactcad calibrate mine.csv --load-cell inf --json               a rigid force sensor; JSON
-  tactcad calibrate run7.lvm --map map.toml --out cal.csv         a lab's raw log
-
-FILE is CSV with the columns element, run, displacement, force, signal: the stage's displacement, in mm, N
-and V; or with the unit in the name: displacement_um, force_mN, signal_mV. Lines that start with # are
-comments; semicolons or tabs between columns, and decimal commas with them, are read too. With a column
-time_s a displacement may be read any number of times, and if it returns later the drift is estimated.
-Of a planar design (--design): element, run, fx, fy, fz (N, fz down on the pad), bx, by, bz (mT), and sink
-(mm) to measure K; every run along one axis, two at least along each."""
-
 
 def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("file", metavar="FILE", help="readings (CSV)")

@@ -6,11 +6,6 @@ import argparse
 
 from .parser import UNLISTED
 
-EXAMPLES = """\
-  eval "$(tactcad completion bash)"              in ~/.bashrc
-  eval "$(tactcad completion zsh)"               in ~/.zshrc, after compinit
-  tactcad completion fish | source               in ~/.config/fish/config.fish"""
-
 SCRIPTS = {
     "bash": """\
 _tactcad() {

@@ -18,25 +18,6 @@ if TYPE_CHECKING:
     from tactcad.export.sides import Side
     from tactcad.review.consequences import Meaning
 
-EXAMPLES = """\
-  tactcad diff exports/golden/macro-array.json macro-array     what changed since the committed geometry
-  tactcad diff before exports/macro-array --out changes.html  two exports, with their pictures side by side
-  tactcad diff macro-array my/design.toml --json               two designs, as JSON
-  tactcad diff HEAD~3 HEAD macro-array                         two git revisions of a design
-  tactcad diff HEAD . macro-array --review changes.html        what changed since the commit, in 3-D
-  tactcad diff HEAD . macro-array --out changes.FCStd          the same in FreeCAD
-  tactcad diff HEAD~3 HEAD macro-array --their-code            the same, each built by the code of its time
-  tactcad diff origin/main HEAD macro-array --out changes.md --fail-on checks --fail-on revision
-                                                               for a pull request
-
-A and B are each a design (a path or a name in hardware/), an export's folder, or a golden file (.json);
-with DESIGN they are git revisions (a commit, branch or tag, as HEAD~3), or '.' for the present files. The
-present code reads the designs of both revisions, and nothing of the repository runs. --their-code runs each
-revision's own code as you: use it on code that you trust. The report starts with the edits, most important
-first, each with its own effects by the present code: K, rated force, signal, stop gap, yield, mass, cut,
-parts, sheets, bill, and checks that turned. Data that only one side has is left out and named. The exit
-status is 0 with or without changes, but 1 if a --fail-on condition is met."""
-
 
 MOST_CHANGES = 40  # lines of differences without --full; chosen: about a screen
 KINDS = {".html": "html", ".md": "markdown", ".FCStd": "freecad"}  # by a file's ending its option

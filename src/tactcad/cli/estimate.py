@@ -21,19 +21,6 @@ if TYPE_CHECKING:
     from tactcad.mechanics.section import HingeSection
     from tactcad.parts.array.layout import Layout
 
-EXAMPLES = """\
-  tactcad estimate
-  tactcad estimate hardware/soft-tissue.toml --force 0.5 --json
-  tactcad estimate --model fem-plane
-  tactcad estimate --within 1%               # the quickest rung with a measured worst error within it
-  tactcad estimate --in 5                    # the most accurate one within 5 s
-  tactcad estimate soft-tissue --within 0.1% --in 60 --json
-  tactcad estimate --batch designs.csv --model plane --out stiffness.csv
-  tactcad estimate --batch designs.csv --within 0.5% --out stiffness.csv    # a rung for every row
-  tactcad estimate --inspection inspections/macro-array-D.csv
-                                      the elements as made, from the inspection sheet that the shop
-                                      filled in: a copy of an export's inspection.csv, kept outside the export
-"""
 
 # An element's figures that the table for the terminal leaves out.
 UNSHOWN = ("load_arm", "expected_error", "force", "gauge_strain_error", "peak_strain_error", "stress_error")

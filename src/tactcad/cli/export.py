@@ -16,27 +16,6 @@ from .parser import add_allowance, add_design, add_json, add_others, add_strict,
 if TYPE_CHECKING:
     from tactcad.export.pipeline import Progress
 
-EXAMPLES = """\
-  tactcad export                              the array of hardware/macro-array.toml, to exports/macro-array
-  tactcad export soft-tissue --out soft       another design, to a folder of your choice
-  tactcad export my/design.toml --scene array one scene only
-  tactcad export hardware/*.toml              several designs, one after another, each to exports/<its name>
-  tactcad export --scene calibration --pose element=4 --out element-4
-                                              a rig in a chosen configuration
-  tactcad export --guide                      with the assembly guides, to open in a browser
-  tactcad export --drawings                   with a dimensioned sheet of every part made, as PDF and SVG
-  tactcad export --robot                      with robot/: URDF, MJCF and a table of taxels (docs/robot.md)
-  tactcad export --measured inspections/macro-array-L.csv --drawings
-                                              issued again, with spacers for the measured sheet
-  tactcad export --within 0.1%                with an STL of every part made, its volume within 0.1 %
-  tactcad export --in 60                      the same, as fine as 60 s allow with an empty cache
-
-The folder is replaced in one step by a finished one; a second export with nothing changed writes nothing.
-Rigs follow the array. If a rig cannot be built of parts that are sold, the export ends with a warning that
-names the field, its value and its legal values; with --strict the exit status is 1.
-A folder with files that tactcad did not write is left as it is, unless --keep or --discard is given: fill
-in a copy of inspection.csv (in inspections/, say), not the export's own."""
-
 
 def configure(parser: argparse.ArgumentParser) -> None:
     add_design(parser, several=True)

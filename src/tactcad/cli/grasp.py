@@ -18,17 +18,6 @@ if TYPE_CHECKING:
     from tactcad.contact.elastic_body import Body
     from tactcad.lab.pressed import PressedArray
 
-EXAMPLES = """\
-  tactcad grasp --object E=0.5,nu=0.49,thickness=6
-  tactcad grasp soft-tissue --object E=0.05,nu=0.49,thickness=10 --load 0.2 --angle 0.5,1
-  tactcad grasp --object E=0.5,nu=0.49,thickness=inf --rung springs --json
-  tactcad grasp --object E=0.5,nu=0.49,thickness=6,base=frictionless --out pressure.svg
-
-E in MPa, thickness in mm (inf: a half-space); base: bonded (default) or frictionless. Angles in degrees,
-positive if the object's face falls away toward +x (along the arms) and +y (along the rows). Rung layer
-(default): rigid pads that tilt and lift on a continuous body. Rung springs: a separate spring under every
-pad, as the paper's equations have it. Rung fem-object: as layer, the body by solid elements (some minutes).
-Rung large: as layer, corrected for large strain. Errors and ranges: docs/accuracy.md."""
 
 PAPERS_LOAD = 3.235  # N; the paper's axis without weights
 RUNGS = ("springs", "layer", "fem-object", "large")

@@ -10,19 +10,6 @@ from pathlib import Path
 
 from .parser import UNLISTED, add_json
 
-EXAMPLES = """\
-  tactcad review                                  review.html of hardware/macro-array.toml, all its scenes
-  tactcad review soft-tissue --out soft.html      another design, to a file of your choice
-  tactcad review my/design.toml --scene array     one scene only, which is faster
-  tactcad review macro-array --drawings           with the drawing sheet of every part made
-  tactcad review exports/macro-array              of an export, with its sheets
-  tactcad review --out macro-array.FCStd      the same for FreeCAD, made by FreeCAD itself
-
-One file that opens in a browser, without server or network: scenes in three dimensions, with cuts, the
-exploded view by the guide's steps and the rigs' motions; a click on a part shows its number, material,
-mass, limits, findings, bill row, and of an element stiffness, strain, rated force and pairs. Every check
-runs."""
-
 
 def configure(parser: argparse.ArgumentParser) -> None:
     from tactcad.design.load import DEFAULT_DESIGN

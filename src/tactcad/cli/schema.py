@@ -7,13 +7,6 @@ import json
 
 from .parser import BY_NAME, UNLISTED
 
-EXAMPLES = """\
-  tactcad schema              every field of a design file, table by table
-  tactcad schema element      the fields of one table
-  tactcad schema target       every field of a target file, which `tactcad design` takes
-  tactcad schema study        every field of a study file, which `tactcad sweep` takes
-  tactcad schema --json       the same as JSON Schema, for editors that check TOML"""
-
 
 def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("table", nargs="?", metavar="TABLE", help="one table; or `target`, `study`")

@@ -19,11 +19,6 @@ from .parser import BY_NAME, UNLISTED, add_allowance, allowance, refuse_named
 if TYPE_CHECKING:
     from tactcad.design.tree import Design
 
-EXAMPLES = """\
-  tactcad size --stiffness 10 --load-arm 5
-  tactcad size --stiffness 40 --load-arm 3 --solve length --with sides=two --with hinge_thickness=0.3
-  tactcad size soft-tissue --stiffness 2 --load-arm 6 --force 0.5 --json
-"""
 
 # Lengths that --with takes besides the load arm, which has its own option.
 LENGTHS = tuple(name for name in REQUIRED if name not in ("load_arm", "poisson", "youngs_modulus"))

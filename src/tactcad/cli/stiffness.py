@@ -13,18 +13,6 @@ from .readings import add_map, from_log
 if TYPE_CHECKING:
     from tactcad.design.tree import Design
 
-EXAMPLES = """\
-  tactcad calibrate hardware/examples/calibration.csv --out calibration.csv
-  tactcad stiffness hardware/examples/grasp.csv --calibration calibration.csv
-  tactcad stiffness mine.csv --calibration calibration.csv --thickness 6+-0.3 --nu 0.49
-  tactcad stiffness mine.csv --calibration calibration.csv --reference 1 --json
-  tactcad stiffness run8.tdms --map map.toml --calibration calibration.csv   a lab's raw log
-
-FILE is CSV with the columns load, element, signal (N and V, or load_mN, signal_mV), and if there are
-several, run and sample: every element at every load. With a column time_s a load may be read any number of
-times, and if it returns later the drift is estimated. The calibration is the file of `tactcad calibrate`
-(--out, or --json). Of a planar design: load, element, bx, by, bz (mT), without load too."""
-
 
 def configure(parser: argparse.ArgumentParser) -> None:
     from tactcad.design.load import DEFAULT_DESIGN

@@ -17,17 +17,6 @@ if TYPE_CHECKING:
     from tactcad.sweep.run_sweep import Swept
     from tactcad.sweep.study import Study
 
-EXAMPLES = """\
-  tactcad sweep hardware/studies/hinges.toml --out hinges
-  tactcad sweep mine.toml --out mine --scheduler tcp://head:8786    on a running cluster
-  tactcad sweep mine.toml --out mine --within 0.1%    by the rung that keeps 0.1 %, not by the study's own
-  tactcad sweep plot hinges               DIR/plot.html: pairs, main effects, shares of variance
-  tactcad schema study                    every field of a study file
-
-DIR gets results.parquet, results.csv (up to 1e6 rows, above with --csv) and manifest.json. Each task's
-result is kept in DIR/store as it finishes: the same command again resumes a stopped study, computes nothing
-twice and gives the same bytes. Refused designs are rows with their reason; if all are, the exit status is
-1."""
 
 MOST_WORKERS = 1000
 

@@ -8,15 +8,6 @@ from contextlib import nullcontext
 
 from .parser import BY_NAME, UNLISTED, add_design, add_others
 
-EXAMPLES = """\
-  tactcad validate                           the findings, as text
-  tactcad validate --out validation          report.html (opens offline), report.json and plots/*.svg
-  tactcad validate --json                    findings and every number as JSON
-  tactcad validate --table1 mine.csv         another calibration table of the same form
-
-The folder is replaced in one step by a finished one. It may be missing, empty, or an earlier report as
-tactcad wrote it; any other is left as it is, unless --keep or --discard is given."""
-
 
 def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("-o", "--out", metavar="DIR", help="write the report into this folder")
