@@ -79,11 +79,12 @@ def data_records(module: str, name: str, kind: type[T]) -> dict[str, T]:
 
 def _cell(text: str, kind: Any) -> Any:
     """A cell's value: "true", "1 2 4" for a tuple, "gate=1 source=2" for a dict."""
+    of = typing.get_args(kind)
     if kind is bool:
         return {"true": True, "false": False}[text]
-    if typing.get_origin(kind) is tuple:
-        return tuple(map(typing.get_args(kind)[0], text.split()))
-    return dict(pair.split("=") for pair in text.split()) if typing.get_origin(kind) is dict else kind(text)
+    if typing.get_origin(kind) is dict:
+        return {name: of[1](value) for name, value in (pair.split("=") for pair in text.split())}
+    return tuple(map(of[0], text.split())) if typing.get_origin(kind) is tuple else (of or (kind,))[0](text)
 
 
 # Keys of our files have at most four names (element.override.N.hinge_thickness). Python's parser takes
