@@ -33,7 +33,7 @@ WRITTEN: dict[str, Callable[..., str]] = {
 }
 
 
-class _Writer(Formatter):
+class _Blanks(Formatter):
     def format_field(self, value: Any, spec: str) -> str:
         name = spec.rstrip("0123456789")
         if name not in WRITTEN:
@@ -41,7 +41,7 @@ class _Writer(Formatter):
         return WRITTEN[name](value, *map(int, spec[len(name) :]))
 
 
-write = _Writer().format
+write = _Blanks().format
 
 
 @cache
