@@ -31,9 +31,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--count", type=int, metavar="N", help=f"arrays of each distribution (default: {USUAL})"
     )
     add_allowance(parser, "half-width of the yield's 95 % interval", "number of arrays")
-    parser.add_argument(
-        "--seed", type=int, metavar="S", help="seed of the random numbers (default: the published one)"
-    )
+    parser.add_argument("--seed", type=int, metavar="S")
     add_json(parser)
 
 

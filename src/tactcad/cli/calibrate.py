@@ -18,36 +18,15 @@ if TYPE_CHECKING:
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("file", metavar="FILE", help="readings (CSV)")
+    parser.add_argument("file", metavar="FILE")
     add_map(parser)
-    parser.add_argument(
-        "--load-cell",
-        metavar="K[+-U]",
-        help="the force sensor's own stiffness in N/mm and the limits within which it is known, as 57.04+-1 "
-        "or 57.04+-2%% (inf for a rigid one; default the paper's 57.04; without limits, 2 %% are assumed); "
-        "the intervals hold for every load cell within them",
-    )
-    parser.add_argument(
-        "--design",
-        metavar="DESIGN",
-        help="take the load cell and its limits from the design's [calibration] instead "
-        "(load_cell_stiffness, load_cell_accuracy); warns of readings far from the design's estimates",
-    )
-    parser.add_argument(
-        "--run-scatter",
-        type=float,
-        metavar="S",
-        help="relative standard deviation of an element's slope from run to run, if known (0.01 for 1 %%); "
-        "default: estimated from the runs; 0.01 for a single one",
-    )
-    parser.add_argument(
-        "--level", type=float, default=0.95, metavar="P", help="level of the intervals (default 0.95)"
-    )
-    parser.add_argument("--drop-outliers", action="store_true", help="leave named outliers out of the fit")
-    parser.add_argument(
-        "-o", "--out", metavar="FILE", help="write the calibration as CSV, for `tactcad stiffness`"
-    )
-    parser.add_argument("--json", action="store_true", help="print as JSON")
+    parser.add_argument("--load-cell", metavar="K[+-U]")
+    parser.add_argument("--design", metavar="DESIGN")
+    parser.add_argument("--run-scatter", type=float, metavar="S")
+    parser.add_argument("--level", type=float, default=0.95, metavar="P")
+    parser.add_argument("--drop-outliers", action="store_true")
+    parser.add_argument("-o", "--out", metavar="FILE")
+    parser.add_argument("--json", action="store_true")
     add_needless_allowance(parser)
 
 

@@ -20,13 +20,11 @@ from .parser import UNLISTED, add_allowance, add_design, add_json, add_shop, add
 
 def configure(parser: argparse.ArgumentParser) -> None:
     add_design(parser, several=True)
-    parser.add_argument(
-        "--scene", action="append", metavar="NAME", help="check this scene; may be repeated (default: all)"
-    )
+    parser.add_argument("--scene", action="append", metavar="NAME")
     add_shop(parser)
     add_strict(parser)
-    parser.add_argument("--all", action="store_true", help="list every rule that a refused design breaks")
-    parser.add_argument("-o", "--out", metavar="DIR", help="write check.json and junit.xml there")
+    parser.add_argument("--all", action="store_true")
+    parser.add_argument("-o", "--out", metavar="DIR")
     parser.add_argument("--report", dest="out", help=UNLISTED)
     add_allowance(parser, "relative error of a part's meshed volume", "mesh")
     add_json(parser)

@@ -17,13 +17,9 @@ if TYPE_CHECKING:
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("target", metavar="TARGET.toml", help="target file: objects and means")
-    parser.add_argument(
-        "-o", "--out", metavar="DIR", required=True, help="new or empty folder for design and report"
-    )
-    parser.add_argument(
-        "--best", action="store_true", help="write the best design even if the target is not met"
-    )
+    parser.add_argument("target", metavar="TARGET.toml")
+    parser.add_argument("-o", "--out", metavar="DIR", required=True)
+    parser.add_argument("--best", action="store_true")
     add_allowance(parser, "half-width of the yield's 95 % interval", "number of arrays")
     add_json(parser)
 

@@ -39,43 +39,17 @@ class _ByEnding(argparse.Action):
 def configure(parser: argparse.ArgumentParser) -> None:
     # what --fail-on takes; tactcad.review.consequences, which has them, loads numpy
     kinds = ("changes", "geometry", "stiffness", "checks", "revision")
-    parser.add_argument("old", metavar="A", help="design, export's folder or golden file; or revision")
-    parser.add_argument("new", metavar="B", help="likewise, the new side")
-    parser.add_argument(
-        "design", metavar="DESIGN", nargs="?", help="the design of which A and B are git revisions"
-    )
-    parser.add_argument(
-        "--their-code",
-        action="store_true",
-        help="build each revision's design by that revision's own code, which runs as you",
-    )
+    parser.add_argument("old", metavar="A")
+    parser.add_argument("new", metavar="B")
+    parser.add_argument("design", metavar="DESIGN", nargs="?")
+    parser.add_argument("--their-code", action="store_true")
     add_json(parser)
-    parser.add_argument("--full", action="store_true", help="print every difference, however small")
-    parser.add_argument(
-        "-o",
-        "--out",
-        action=_ByEnding,
-        metavar="FILE",
-        help="also write FILE.html (contours laid over each other), FILE.md (at most 60 lines, for a pull "
-        "request) or FILE.FCStd (for FreeCAD); may be repeated",
-    )
-    parser.add_argument(
-        "--review",
-        metavar="FILE",
-        help="also write one offline page in 3-D: added, removed and kept material in colours",
-    )
+    parser.add_argument("--full", action="store_true")
+    parser.add_argument("-o", "--out", action=_ByEnding, metavar="FILE")
+    parser.add_argument("--review", metavar="FILE")
     for option in KINDS.values():
         parser.add_argument(f"--{option}", help=UNLISTED)
-    parser.add_argument(
-        "--fail-on",
-        action="append",
-        default=[],
-        choices=kinds,
-        metavar="KIND",
-        help="exit status 1 for any change (changes), other parts, places or bills (geometry), another K "
-        "(stiffness), a new failure of checks or rules (checks), or other "
-        "content under the same part number and revision letter (revision); may be repeated",
-    )
+    parser.add_argument("--fail-on", action="append", default=[], choices=kinds, metavar="KIND")
 
 
 def run(args: argparse.Namespace) -> int:

@@ -27,7 +27,7 @@ UNSHOWN = ("load_arm", "expected_error", "force", "gauge_strain_error", "peak_st
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("design", nargs="?", help="design file, or name in hardware/ (default macro-array)")
+    parser.add_argument("design", nargs="?")
     parser.add_argument(
         "--model",
         choices=RUNGS,
@@ -36,21 +36,11 @@ def configure(parser: argparse.ArgumentParser) -> None:
     )
     add_allowance(parser, "error of K, against solid elements refined to their limit,", "rung")
     parser.add_argument("--accuracy", help=UNLISTED)  # --within by its older name
-    parser.add_argument(
-        "--force", type=float, metavar="N", help="force on each pad (default: the design's rated force)"
-    )
-    parser.add_argument("--json", action="store_true", help="write JSON")
-    parser.add_argument(
-        "--batch", metavar="IN.csv", help="a table of designs, one a line (columns: docs/howto.md)"
-    )
-    parser.add_argument("-o", "--out", metavar="OUT.csv", help="the table that --batch writes")
-    parser.add_argument(
-        "--inspection",
-        metavar="FILE",
-        help="the design's inspection sheet, a copy filled in outside the export (inspections/, say): its "
-        "elements as "
-        "made, with the nominal values",
-    )
+    parser.add_argument("--force", type=float, metavar="N")
+    parser.add_argument("--json", action="store_true")
+    parser.add_argument("--batch", metavar="IN.csv")
+    parser.add_argument("-o", "--out", metavar="OUT.csv")
+    parser.add_argument("--inspection", metavar="FILE")
 
 
 def run(args: argparse.Namespace) -> int:

@@ -19,45 +19,15 @@ if TYPE_CHECKING:
 
 def configure(parser: argparse.ArgumentParser) -> None:
     add_design(parser, several=True)
-    parser.add_argument(
-        "--scene", action="append", metavar="NAME", help="export this scene; may be repeated (default: all)"
-    )
-    parser.add_argument(
-        "--pose",
-        action="append",
-        metavar="KEY=VALUE",
-        default=[],
-        help="configuration of the rigs: element=N, deflection=MM, weights=N, height=MM, cart=MM; may be "
-        "repeated",
-    )
-    parser.add_argument(
-        "--detail",
-        choices=("full", "envelope"),
-        default="full",
-        help="envelope: parts without holes and pockets, for layout; no cut files (default full)",
-    )
-    parser.add_argument(
-        "--guide", action="store_true", help="with the assembly guides: guide/SCENE.html and its pictures"
-    )
-    parser.add_argument(
-        "--drawings",
-        action="store_true",
-        help="with drawing sheets: drawings/PART_REVISION.pdf and .svg, of every part made",
-    )
-    parser.add_argument(
-        "--robot",
-        action="store_true",
-        help="with robot/: the array as URDF and MJCF, and its taxels as CSV and JSON; with --detail "
-        "envelope without meshes to look at",
-    )
-    parser.add_argument(
-        "--measured",
-        metavar="FILE",
-        help="an inspection.csv filled in: spacers and the places of equal elements follow from it; the "
-        "revision is followed by M, and sheets name the file",
-    )
+    parser.add_argument("--scene", action="append", metavar="NAME")
+    parser.add_argument("--pose", action="append", metavar="KEY=VALUE", default=[])
+    parser.add_argument("--detail", choices=("full", "envelope"), default="full")
+    parser.add_argument("--guide", action="store_true")
+    parser.add_argument("--drawings", action="store_true")
+    parser.add_argument("--robot", action="store_true")
+    parser.add_argument("--measured", metavar="FILE")
     add_strict(parser)
-    parser.add_argument("-o", "--out", metavar="DIR", help="folder to write (default exports/<design>)")
+    parser.add_argument("-o", "--out", metavar="DIR")
     add_others(parser)
     add_allowance(parser, "relative error of a part's meshed volume, written as stl/PART_REV.stl,", "mesh")
     add_json(parser)

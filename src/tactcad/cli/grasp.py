@@ -26,12 +26,7 @@ OBJECT = ("E", "nu", "thickness", "base")
 
 def configure(parser: argparse.ArgumentParser) -> None:
     add_design(parser)
-    parser.add_argument(
-        "--object",
-        required=True,
-        metavar="E=..,nu=..,thickness=..",
-        help="the object: modulus (MPa), Poisson's ratio, thickness (mm; inf: a half-space)",
-    )
+    parser.add_argument("--object", required=True, metavar="E=..,nu=..,thickness=..")
     parser.add_argument(
         "--load",
         type=float,
@@ -39,21 +34,10 @@ def configure(parser: argparse.ArgumentParser) -> None:
         metavar="N",
         help=f"on the whole array (default {PAPERS_LOAD:g}, the paper's axis without weights)",
     )
-    parser.add_argument(
-        "--angle",
-        default="0,0",
-        metavar="AX,AY",
-        help="inclination of the object's face, degrees (default 0,0)",
-    )
-    parser.add_argument(
-        "--rung",
-        choices=RUNGS,
-        help="model of the object (default: layer, or the cheapest that keeps --within)",
-    )
-    parser.add_argument(
-        "--within", metavar="P", help="largest error of the pads' forces, of their mean, such as 2%%"
-    )
-    parser.add_argument("-o", "--out", metavar="FILE.svg", help="draw the pressure under the pads")
+    parser.add_argument("--angle", default="0,0", metavar="AX,AY")
+    parser.add_argument("--rung", choices=RUNGS)
+    parser.add_argument("--within", metavar="P")
+    parser.add_argument("-o", "--out", metavar="FILE.svg")
     add_json(parser)
 
 

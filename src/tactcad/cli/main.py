@@ -128,6 +128,9 @@ def parser_of(command: str, raises: bool = False) -> Parser:
         raises=raises,
     )
     module.configure(parser)
+    said = _WORDS["options"]["shared"] | _WORDS["options"].get(command, {})
+    for action in parser._actions:  # by its long name, or a positional's own
+        action.help = action.help or said.get([action.dest, *action.option_strings][-1])
     parser.add_argument("-h", "--help", action="help", help=UNLISTED)
     loud = parser.add_mutually_exclusive_group()
     for short, long in LOUD:

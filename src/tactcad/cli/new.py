@@ -8,7 +8,7 @@ import argparse
 def configure(parser: argparse.ArgumentParser) -> None:
     from tactcad.design.load import DEFAULT_DESIGN
 
-    parser.add_argument("file", metavar="FILE", help="the design file to write, NAME.toml")
+    parser.add_argument("file", metavar="FILE")
     parser.add_argument(
         "--from",
         dest="source",

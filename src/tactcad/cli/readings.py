@@ -12,16 +12,10 @@ if TYPE_CHECKING:
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("file", metavar="FILE", help="the log (CSV, .lvm, .tdms)")
-    parser.add_argument("--map", required=True, metavar="MAP", help="the columns and steps of the log (TOML)")
-    parser.add_argument(
-        "-o",
-        "--out",
-        required=True,
-        metavar="CSV",
-        help="the readings, for `tactcad calibrate` or `stiffness`; a plot of the same name ends in .svg",
-    )
-    parser.add_argument("--json", action="store_true", help="print how columns and steps were read, as JSON")
+    parser.add_argument("file", metavar="FILE")
+    parser.add_argument("--map", required=True, metavar="MAP")
+    parser.add_argument("-o", "--out", required=True, metavar="CSV")
+    parser.add_argument("--json", action="store_true")
 
 
 def run(args: argparse.Namespace) -> int:

@@ -15,27 +15,14 @@ from .parser import add_design, add_json, add_others, add_shop
 
 def configure(parser: argparse.ArgumentParser) -> None:
     add_design(parser, several=True)
-    parser.add_argument(
-        "-o",
-        "--out",
-        metavar="DIR",
-        default="exports/releases",
-        help="folder of the zips (default exports/releases)",
-    )
-    parser.add_argument("--owner", metavar="TEXT", help="legal owner (default: [design] organisation)")
-    parser.add_argument("--contact", metavar="TEXT", help="contact for shops (default: [design] contact)")
-    parser.add_argument(
-        "--sample", action="store_true", help='without owner and contact: marked "sample, not for order"'
-    )
-    parser.add_argument(
-        "--sets",
-        choices=("one", "all"),
-        default="one",
-        help="order parts that set-ups share once, or for each (default one)",
-    )
+    parser.add_argument("-o", "--out", metavar="DIR", default="exports/releases")
+    parser.add_argument("--owner", metavar="TEXT")
+    parser.add_argument("--contact", metavar="TEXT")
+    parser.add_argument("--sample", action="store_true")
+    parser.add_argument("--sets", choices=("one", "all"), default="one")
     add_others(parser, "a zip there is not as tactcad wrote it", "NAME-kept-1.zip")
     add_shop(parser)
-    parser.add_argument("--draft", action="store_true", help="write PRELIMINARY zips even if checks fail")
+    parser.add_argument("--draft", action="store_true")
     add_json(parser)
 
 

@@ -21,13 +21,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
         metavar="DESIGN",
         help=f"a path, a name in hardware/ (default {DEFAULT_DESIGN}), or an export's folder",
     )
-    parser.add_argument(
-        "--scene", action="append", metavar="NAME", help="show this scene; may be repeated (default: all)"
-    )
-    parser.add_argument("--drawings", action="store_true", help="with the drawing sheet of every part made")
-    parser.add_argument(
-        "-o", "--out", metavar="FILE", help="page (default review.html), or FreeCAD's document, FILE.FCStd"
-    )
+    parser.add_argument("--scene", action="append", metavar="NAME")
+    parser.add_argument("--drawings", action="store_true")
+    parser.add_argument("-o", "--out", metavar="FILE")
     parser.add_argument("--freecad", help=UNLISTED)  # beside a page
     add_json(parser)
 

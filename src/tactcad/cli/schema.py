@@ -9,12 +9,12 @@ from .parser import BY_NAME, UNLISTED
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("table", nargs="?", metavar="TABLE", help="one table; or `target`, `study`")
+    parser.add_argument("table", nargs="?", metavar="TABLE")
     for other in ("target", "study"):
         parser.add_argument(
             f"--{other}", action="store_const", const=other, dest=f"table{BY_NAME}", help=UNLISTED
         )
-    parser.add_argument("--json", action="store_true", help="print JSON Schema")
+    parser.add_argument("--json", action="store_true")
 
 
 def run(args: argparse.Namespace) -> int:

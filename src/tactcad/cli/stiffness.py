@@ -17,21 +17,11 @@ if TYPE_CHECKING:
 def configure(parser: argparse.ArgumentParser) -> None:
     from tactcad.design.load import DEFAULT_DESIGN
 
-    parser.add_argument("file", metavar="FILE", help="grasp readings (CSV)")
+    parser.add_argument("file", metavar="FILE")
     add_map(parser)
-    parser.add_argument(
-        "--calibration", required=True, metavar="FILE", help="calibration of the elements (CSV or JSON)"
-    )
-    parser.add_argument(
-        "--reference",
-        type=int,
-        default=None,
-        metavar="N",
-        help="the reference element (default: the stiffest of those read)",
-    )
-    parser.add_argument(
-        "--level", type=float, default=0.95, metavar="P", help="level of the intervals (default 0.95)"
-    )
+    parser.add_argument("--calibration", required=True, metavar="FILE")
+    parser.add_argument("--reference", type=int, default=None, metavar="N")
+    parser.add_argument("--level", type=float, default=0.95, metavar="P")
     parser.add_argument(
         "--design",
         metavar="DESIGN",
@@ -39,28 +29,11 @@ def configure(parser: argparse.ArgumentParser) -> None:
         help="the array that was pressed; the places of its pads decide their coupling through the object "
         f"(default {DEFAULT_DESIGN})",
     )
-    parser.add_argument(
-        "--coupling",
-        type=float,
-        default=None,
-        metavar="C",
-        help="take the object as springs that couple the pads by at most this share of an elastic "
-        "half-space's coupling (0: each pad on an object of its own); without it the object is a layer",
-    )
-    parser.add_argument(
-        "--thickness",
-        metavar="H[+-DH]",
-        help="of the object, a layer bonded to a rigid base, with its limits, mm (inf: a half-space): its "
-        "Young's modulus and inclination are printed too; without it the intervals hold for all layers, from "
-        "the thinnest allowed to a half-space",
-    )
-    parser.add_argument(
-        "--nu", type=float, default=None, metavar="NU", help="Poisson's ratio of the layer (default 0.49)"
-    )
-    parser.add_argument(
-        "--picture", metavar="FILE.svg", help="of planar designs: draw forces and K_obj over the plane"
-    )
-    parser.add_argument("--json", action="store_true", help="print as JSON")
+    parser.add_argument("--coupling", type=float, default=None, metavar="C")
+    parser.add_argument("--thickness", metavar="H[+-DH]")
+    parser.add_argument("--nu", type=float, default=None, metavar="NU")
+    parser.add_argument("--picture", metavar="FILE.svg")
+    parser.add_argument("--json", action="store_true")
     add_needless_allowance(parser)
 
 

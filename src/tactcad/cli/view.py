@@ -10,8 +10,8 @@ from .parser import add_design
 
 def configure(parser: argparse.ArgumentParser) -> None:
     add_design(parser)
-    parser.add_argument("--scene", default="array", metavar="NAME", help="scene to show (default array)")
-    parser.add_argument("--port", type=int, default=0, help="port on 127.0.0.1 (default: any free one)")
+    parser.add_argument("--scene", default="array", metavar="NAME")
+    parser.add_argument("--port", type=int, default=0)
 
 
 def run(args: argparse.Namespace) -> int:
