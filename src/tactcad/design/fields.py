@@ -274,7 +274,12 @@ def given(spec: Spec, default: Any = REQUIRED, derived: str = "") -> Any:
 
 def present(value: T | None) -> T:
     """An optional table or value of a design that earlier code has ensured to be there: for the type checker,
-    not for input. Raises TypeError if it is not there."""
+    not for input.
+
+    Raises
+    ------
+    TypeError : it is not there.
+    """
     if value is None:
         raise TypeError("the design lacks a value that is needed here")
     return value

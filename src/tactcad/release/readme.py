@@ -259,8 +259,17 @@ BOARDS = (
 
 
 def package_readme(contents: ReleaseContents, one: Packed, whole: str, shop: Shop) -> bytes:
-    """The text. `contents`, `one`: the release, and the package; `whole`: name of the whole zip, with its
-    SHA-256; `shop`: the shop whose feed gave the wire's time."""
+    """The text.
+
+    Parameters
+    ----------
+    contents, one
+        The release, and the package.
+    whole
+        Name of the whole zip, with its SHA-256.
+    shop
+        The shop whose feed gave the wire's time.
+    """
     lines = first_lines(contents, one.package.title)
     lines += paragraph(
         f"Taken from {whole}. What this order does not need is left out; ask for the rest if you miss it."
