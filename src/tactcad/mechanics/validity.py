@@ -163,9 +163,9 @@ def groups(s: HingeSection) -> dict[str, Array]:
     return {name: value(s) for name, value in (PLANE_GROUPS | WIDTH_GROUPS).items()}
 
 
-def in_bounds(bounds: Mapping[str, Sequence[float | None]], values: Mapping[str, Array]) -> Array:
+def in_bounds(bounds: Mapping[str, Sequence[float | None]], values: Mapping[str, Array]) -> np.ndarray:
     """Mask of the designs with low <= group < high for each of a zone's bounds; None: no end."""
-    inside: Array = np.ones((), bool)
+    inside: np.ndarray = np.ones((), bool)
     for name, (low, high) in bounds.items():
         inside = inside & (values[name] >= (low or 0.0)) & (values[name] < (np.inf if high is None else high))
     return inside
