@@ -6,11 +6,6 @@ import argparse
 
 from .parser import UNLISTED
 
-EXAMPLES = """\
-  eval "$(tactcad completion bash)"              in ~/.bashrc
-  eval "$(tactcad completion zsh)"               in ~/.zshrc, after compinit
-  tactcad completion fish | source               in ~/.config/fish/config.fish"""
-
 SCRIPTS = {
     "bash": """\
 _tactcad() {
@@ -36,7 +31,7 @@ NAMES_DESIGN = ("design", "source", "old", "new")  # arguments that take a desig
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("shell", choices=(*SCRIPTS, "words"), metavar="SHELL", help="bash, zsh or fish")
+    parser.add_argument("shell", choices=(*SCRIPTS, "words"), metavar="SHELL")
     parser.add_argument("words", nargs=argparse.REMAINDER, help=UNLISTED)  # of the scripts: typed so far
 
 
