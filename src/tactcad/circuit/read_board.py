@@ -133,11 +133,9 @@ def _channel(design: Design, c: int, used: bool, wires: int) -> Iterator[Compone
 
 
 def _amplifier(design: Design) -> Iterator[Component]:
-    amplifier, resistance, gain = (
-        AMPLIFIERS[design.readout.amplifier],
-        gain_resistance(design),
-        set_gain(design),
-    )
+    amplifier = AMPLIFIERS[design.readout.amplifier]
+    resistance = gain_resistance(design)
+    gain = set_gain(design)
     strapped = amplifier.gains and design.readout.gain == max(amplifier.gains)
     first = "GAIN" if resistance or strapped else ""
     second = "GAIN_B" if resistance else first

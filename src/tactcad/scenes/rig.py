@@ -93,13 +93,9 @@ def _rigs(name: str) -> dict[str, Rig]:
     folder = import_module(family.scenes)
     inside = pkgutil.iter_modules(getattr(folder, "__path__", ()))
     modules = [import_module(f"{folder.__name__}.{name}") for _, name, _ in inside] or [folder]
-    declared: dict[str, tuple[Any, ...]] = {
-        m.__name__: getattr(m, "RIGS", (getattr(m, "RIG", None),)) for m in modules
-    }
-    if without := [name for name, some in declared.items() if not all(isinstance(rig, Rig) for rig in some)]:
+    if without := [m.__name__ for m in modules if not isinstance(getattr(m, "RIG", None), Rig)]:
         raise TypeError(f"no RIG is declared in {', '.join(without)}")
-    found: list[Rig] = [rig for some in declared.values() for rig in some]
-    sections = [*family.tables]
+    found, sections = [m.RIG for m in modules], [*family.tables]
     for rig in found:
         if wrong := [table for table in rig.tables if table not in sections]:
             raise TypeError(f"rig {rig.name}: a design has no table {', '.join(wrong)}")

@@ -1,0 +1,5 @@
+"""Calibration: weights along x."""
+
+from ..cell_cradle_scene import rig
+
+RIG = rig("x")
