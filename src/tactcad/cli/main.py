@@ -29,8 +29,8 @@ from tactcad.shutdown import end_on_signals, ignore_signals
 from . import streams
 from .parser import UNLISTED, Parser
 
-_WORDS = tomllib.loads((Path(__file__).parent / "commands.toml").read_text("utf-8"))
-GROUPS: dict[str, dict[str, str]] = _WORDS["groups"]
+WORDS = tomllib.loads((Path(__file__).parent / "commands.toml").read_text("utf-8"))
+GROUPS: dict[str, dict[str, str]] = WORDS["groups"]
 COMMANDS = {name: text for group in GROUPS.values() for name, text in group.items() if name != "help"}
 # Extras without which a command, or one of its options, is refused before any work.
 NEEDS = {
@@ -122,13 +122,13 @@ def parser_of(command: str, raises: bool = False) -> Parser:
     parser = Parser(
         prog=f"tactcad {command}",
         description=COMMANDS[command],
-        epilog=f"examples:\n{_WORDS['examples'][command]}\n\n-q, -v, exit statuses, variables: tactcad help",
+        epilog=f"examples:\n{WORDS['examples'][command]}\n\n-q, -v, exit statuses, variables: tactcad help",
         formatter_class=argparse.RawDescriptionHelpFormatter,
         add_help=False,
         raises=raises,
     )
     module.configure(parser)
-    said = _WORDS["options"]["shared"] | _WORDS["options"].get(command, {})
+    said = WORDS["options"]["shared"] | WORDS["options"].get(command, {})
     for action in parser._actions:  # by its long name, or a positional's own
         action.help = action.help or said.get([action.dest, *action.option_strings][-1])
     parser.add_argument("-h", "--help", action="help", help=UNLISTED)
@@ -145,7 +145,7 @@ def overview() -> str:
         for group, commands in GROUPS.items()
     ]
     head = "usage: tactcad COMMAND ...\n\nFrom one text file to a spring-based tactile sensor array."
-    return "\n\n".join([head, *groups, _WORDS["text"]["common"]])
+    return "\n\n".join([head, *groups, WORDS["text"]["common"]])
 
 
 def _dispatch(argv: list[str]) -> int:

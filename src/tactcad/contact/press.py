@@ -116,9 +116,8 @@ class PadsOnBody:
         self.face = blocks[which.ravel()].reshape(n, n, m, m).swapaxes(1, 2).reshape(n * m, n * m)
         if rung == "fem-object":
             self.face = (self.face + self.face.T) / 2  # elements that differ from pad to pad
-        self.modes = np.stack(
-            [np.ones(m), one[0], one[1]]
-        )  # sink and slopes to displacement of a patch, [3, patch]
+        # sink and slopes to displacement of a patch, [3, patch]
+        self.modes = np.stack([np.ones(m), one[0], one[1]])
 
     def press(
         self,

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import fields
 from typing import Any
 
-from tactcad.design.fields import Whole
+from tactcad.design.fields import Whole, spec_of
 
 from .target import TABLES, Target
 
@@ -33,7 +32,7 @@ def value_of(target: Target, name: str) -> Any:
 def _spec(path: str) -> Any:
     """Of one value of a field."""
     table, name = path.split(".")
-    spec = next(f for f in fields(TABLES[table]) if f.name == name).metadata["spec"]
+    spec = spec_of(TABLES[table], name)
     return getattr(spec, "item", spec)
 
 
