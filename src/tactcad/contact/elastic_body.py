@@ -27,9 +27,8 @@ Rectangles = tuple[np.ndarray, ...]  # x, y, a, b: centres and sides, mm
 
 DEEP = 40.0  # c from which on phi is 1 to the last digit
 WAVES = 1200  # Gauss points up to DEEP: G to 1e-12 up to q = 20, where the face no longer feels the load
-FAR = (
-    20.0  # layer thicknesses beyond which a layer's face does not move; it would by 1e-9 of the half-space's
-)
+# layer thicknesses beyond which a layer's face does not move; it would by 1e-9 of the half-space's
+FAR = 20.0
 GRID = 2001  # of q in the table of G: 1e-9 against the integral
 
 

@@ -56,10 +56,8 @@ class _Rings:
     def lay(self, body: Body, mesh: MeshQuad, turned: bool) -> None:
         """Set up the elements of a section: turned about z, or endless and strained in its plane alone."""
         basis = self.basis = Basis(mesh, ElementQuad2(), intorder=5)
-        self.mu, self.kappa = (
-            body.modulus / (2 * (1 + body.poisson)),
-            body.modulus / (3 * (1 - 2 * body.poisson)),
-        )
+        self.mu = body.modulus / (2 * (1 + body.poisson))
+        self.kappa = body.modulus / (3 * (1 - 2 * body.poisson))
         at = np.asarray(basis.global_coordinates())
         self.volume = 2 * pi * at[0] * basis.dx if turned else np.array(basis.dx)
         middle = (at.max(2) + at.min(2))[:, :, None] / 2

@@ -14,6 +14,7 @@ from pathlib import Path
 from textwrap import wrap
 from typing import Any
 
+from .fields import spec_of
 from .files import read_text
 from .load import MOST_BYTES, find, names, parse
 from .messages import InputError
@@ -91,7 +92,7 @@ def name_of(path: Path) -> str:
         raise InputError(str(path), "is there already; nothing was changed", legal="the name of a new file")
     if path.suffix != ".toml":
         raise InputError(str(path), "not a design file's name", legal="NAME.toml")
-    name = Identity.__dataclass_fields__["name"].metadata["spec"].read(path.stem, str(path))
+    name = spec_of(Identity, "name").read(path.stem, str(path))
     if name in names():
         raise InputError(
             str(path),

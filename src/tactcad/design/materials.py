@@ -13,7 +13,7 @@ from typing import Any
 
 from .fields import present
 from .messages import InputError, did_you_mean, in_brackets
-from .text_values import data_rows
+from .text_values import data_records, data_rows
 
 # A value that differs by more than this from the named material's belongs to another material.
 MOST_DIFFERENCE = 0.10
@@ -62,7 +62,7 @@ class Alloy:
     standard: str = ""
     temper: str = ""
     fatigue_cycles: float | None = None  # at which the fatigue strength holds
-    spread: Mapping[str, float] = field(default_factory=dict)
+    spread: dict[str, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -88,28 +88,7 @@ class Difference:
         return f"{name} {self.value:g}{unit} is {abs(self.relative):.1%} {side} {self.alloy}'s {self.table:g}"
 
 
-def _table() -> dict[str, Alloy]:
-    """The rows of data/materials.csv."""
-    rows = data_rows(__file__, "materials")
-    return {row["name"]: _alloy(row) for row in rows}
-
-
-def _alloy(row: dict[str, str]) -> Alloy:
-    prefix, more = "spread_", ("tensile_strength", "conductivity", "modulus_per_kelvin", "fatigue_cycles")
-    return Alloy(
-        name=row["name"],
-        **{name: float(row[name]) for name in (*PROPERTIES, *more)},
-        magnetic=row["magnetic"],
-        source=row["source"],
-        standard=row["standard"],
-        temper=row["temper"],
-        spread={
-            key.removeprefix(prefix): float(value) for key, value in row.items() if key.startswith(prefix)
-        },
-    )
-
-
-ALLOYS = _table()
+ALLOYS = data_records(__file__, "materials", Alloy)
 # What the water of a wire-cutting machine does to a metal that its supply makes the anode; trade practice,
 # not measured. A supply without mean voltage (anti-electrolysis) prevents it.
 ELECTROLYSIS = {"aluminium": "pits", "titanium": "discolours", "steel": "corrodes", "copper": "tarnishes"}

@@ -8,10 +8,9 @@ lengths in mm.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 from .fields import Number, OneOf, Whole, given
-from .text_values import data_rows
+from .text_values import data_records
 
 # Jitter of a sample's instant by its trigger, s, plus and minus. Chosen: a line of the card that is clocked
 # with its samples is some ns to a us late; USB hands a command on within a frame of 1 ms (USB 2.0, full
@@ -164,100 +163,13 @@ class Wire:
     ohm_per_metre: float
 
 
-def _rows(name: str) -> list[dict[str, str]]:
-    return data_rows(__file__, name)
-
-
-def _bought(row: dict[str, str]) -> dict[str, Any]:
-    verified = {"true": True, "false": False}[row["source_verified"]]
-    return {"name": row["name"], "maker": row["maker"], "mpn": row["mpn"], "verified": verified}
-
-
-def _numbers(row: dict[str, str], *names: str) -> dict[str, Any]:
-    return {name: float(row[name]) for name in names}
-
-
-def _pins(row: dict[str, str], *roles: str) -> dict[str, str]:
-    return {role: row[f"pin_{role}"] for role in roles}
-
-
-def _amplifier(row: dict[str, str]) -> Amplifier:
-    low, dots, high = row["gains"].partition("..")
-    gains = () if dots else tuple(map(float, row["gains"].split()))
-    least, most = (float(low), float(high)) if dots else (min(gains), max(gains))
-    same = ("gain_ohm", "bandwidth_100", "gain_bandwidth", "above_negative", "below_positive")
-    return Amplifier(
-        **_bought(row),
-        gains=gains,
-        least_gain=least,
-        most_gain=most,
-        **_numbers(row, *same, "least_supply", "most_supply", "settling"),
-        noise_in=float(row["noise_in"]) * 1e-9,
-        noise_out=float(row["noise_out"]) * 1e-9,
-        offset_in=float(row["offset_in"]) * 1e-6,
-        offset_out=float(row["offset_out"]) * 1e-6,
-        drift_in=float(row["drift_in"]) * 1e-6,
-        drift_out=float(row["drift_out"]) * 1e-6,
-        input_capacitance=float(row["input_pF"]) * 1e-12,
-        pins=_pins(row, "rg1", "minus", "plus", "negative", "ref", "out", "positive", "rg2"),
-    )
-
-
-def _multiplexer(row: dict[str, str]) -> Multiplexer:
-    return Multiplexer(
-        **_bought(row),
-        channels=int(row["channels"]),
-        **_numbers(row, "on_ohm", "settling", "least_supply", "most_supply"),
-        output_capacitance=float(row["output_pF"]) * 1e-12,
-        inputs_a=tuple(row["pins_a"].split()),
-        inputs_b=tuple(row["pins_b"].split()),
-        address=tuple(row["pins_address"].split()),
-        pins=_pins(row, "out_a", "out_b", "enable", "positive", "negative", "ground"),
-        decoder=row["decoder"],
-    )
-
-
-AMPLIFIERS = {row["name"]: _amplifier(row) for row in _rows("amplifiers")}
-SWITCHES = {
-    row["name"]: Switch(
-        **_bought(row), **_numbers(row, "on_ohm", "most_volts"), pins=_pins(row, "gate", "source", "drain")
-    )
-    for row in _rows("switches")
-}
-MULTIPLEXERS = {row["name"]: _multiplexer(row) for row in _rows("multiplexers")}
-COMPLETIONS = {
-    row["name"]: Completion(
-        **_bought(row),
-        description=row["description"],
-        package=row["package"],
-        **_numbers(row, "tolerance", "drift", "watts"),
-    )
-    for row in _rows("completions")
-}
-CONVERTERS = {
-    row["name"]: Converter(
-        **_bought(row),
-        inputs=int(row["inputs"]),
-        bits=int(row["bits"]),
-        gains=tuple(map(float, row["gains"].split())),
-        noise=float(row["noise_nV"]) * 1e-9,
-        drift=float(row["drift_nV"]) * 1e-9,
-        ratiometric=row["ratiometric"] == "true",
-        pins=dict(pin.split("=") for pin in row["pins"].split()),
-        package=row["package"],
-        source=row["source"],
-        **_numbers(row, "noise_gain", "noise_rate", "clock", "least_reference"),
-    )
-    for row in _rows("converters")
-}
-FOILS = {
-    row["name"]: Foil(**_bought(row), **_numbers(row, "strain", "fatigue", "cycles"))
-    for row in _rows("foils")
-}
-WIRES = {
-    row["name"]: Wire(row["name"], **_numbers(row, "diameter", "outer", "ohm_per_metre"))
-    for row in _rows("wires")
-}
+AMPLIFIERS = data_records(__file__, "amplifiers", Amplifier)
+SWITCHES = data_records(__file__, "switches", Switch)
+MULTIPLEXERS = data_records(__file__, "multiplexers", Multiplexer)
+COMPLETIONS = data_records(__file__, "completions", Completion)
+CONVERTERS = data_records(__file__, "converters", Converter)
+FOILS = data_records(__file__, "foils", Foil)
+WIRES = data_records(__file__, "wires", Wire)
 
 
 @dataclass(frozen=True)

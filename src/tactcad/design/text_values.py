@@ -8,15 +8,17 @@ from __future__ import annotations
 import csv
 import re
 import tomllib
+import typing
+from collections.abc import Iterator
 from math import isinf
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from .messages import InputError
 
-NINE_DIGITS = (
-    1e-8  # relative difference below which two numbers agree to nine digits, however the last was rounded
-)
+T = TypeVar("T")
+# relative difference below which two numbers agree to nine digits, however the last was rounded
+NINE_DIGITS = 1e-8
 _WHOLE = re.compile(r"[+-]?[0-9]+")
 _NUMBER = re.compile(r"[+-]?(([0-9]+\.?[0-9]*|\.[0-9]+)(e[+-]?[0-9]+)?|nan|inf(inity)?)", re.IGNORECASE)
 
@@ -53,6 +55,35 @@ def data_rows(module: str, name: str) -> list[dict[str, str]]:
     """
     lines = Path(module).with_name("data").joinpath(f"{name}.csv").read_text("utf-8").splitlines()
     return list(csv.DictReader(line for line in lines if not line.startswith("#")))
+
+
+SI = {"nV": 1e-9, "uV": 1e-6, "pF": 1e-12}  # units behind a column's name
+
+
+def data_records(module: str, name: str, kind: type[T]) -> dict[str, T]:
+    """`data_rows` as records of that kind by name, each cell by its field's type; columns of no field are
+    left out, and those with a unit behind the field's name are brought to SI."""
+    hints = typing.get_type_hints(kind)
+
+    def fields(row: dict[str, str]) -> Iterator[tuple[str, Any]]:
+        for column, text in row.items():
+            field, _, unit = column.rpartition("_")
+            if unit in SI:
+                yield field, float(text) * SI[unit]
+            elif column in hints:
+                yield column, _cell(text, hints[column])
+
+    return {row["name"]: kind(**dict(fields(row))) for row in data_rows(module, name)}
+
+
+def _cell(text: str, kind: Any) -> Any:
+    """A cell's value: "true", "1 2 4" for a tuple, "gate=1 source=2" for a dict."""
+    of = typing.get_args(kind)
+    if kind is bool:
+        return {"true": True, "false": False}[text]
+    if typing.get_origin(kind) is dict:
+        return {name: of[1](value) for name, value in (pair.split("=") for pair in text.split())}
+    return tuple(map(of[0], text.split())) if typing.get_origin(kind) is tuple else (of or (kind,))[0](text)
 
 
 # Keys of our files have at most four names (element.override.N.hinge_thickness). Python's parser takes

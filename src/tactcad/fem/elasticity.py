@@ -12,9 +12,8 @@ from tactcad.design.messages import CheckFailure
 
 Array = NDArray[np.float64]
 
-MOST_ROUNDING = (
-    1e-4  # of the compliance; a leaf a hundred times longer than thick stays below 2e-6 (tests/extremes)
-)
+# of the compliance; a leaf a hundred times longer than thick stays below 2e-6 (tests/extremes)
+MOST_ROUNDING = 1e-4
 
 
 def lame(E: float, nu: float, plane_stress: bool = False) -> tuple[float, float]:

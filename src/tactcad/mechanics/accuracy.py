@@ -138,13 +138,8 @@ def zones(s: HingeSection) -> np.ndarray:
 
 
 def in_zone(zone: dict, groups: dict[str, Array], two_sided: np.ndarray) -> np.ndarray:
-    """Mask of the designs in a zone: of its notch form, and with low <= group < high for each of its
-    bounds.
-    """
-    inside = two_sided == (zone["sides"] == "two")
-    for name, (low, high) in zone["bounds"].items():
-        inside = inside & (groups[name] >= low) & (groups[name] < (np.inf if high is None else high))
-    return inside
+    """Mask of the designs in a zone: of its notch form, and within its bounds."""
+    return (two_sided == (zone["sides"] == "two")) & validity.in_bounds(zone["bounds"], groups)
 
 
 def expected_error(s: HingeSection, candidate: Candidate) -> Array:

@@ -408,11 +408,8 @@ def stated(s: HingeSection, grid_length: float, rung: str) -> StrainErrors:
 
 
 def in_zone(bounds: dict[str, list[float | None]], s: HingeSection) -> np.ndarray:
-    """Designs with every group of a zone between its ends (None: no end)."""
-    groups, inside = validity.groups(s), np.ones(s.shape, dtype=bool)
-    for name, (low, high) in bounds.items():
-        inside &= (groups[name] >= (low or 0.0)) & (groups[name] < (np.inf if high is None else high))
-    return inside
+    """Designs with every group of a zone between its ends."""
+    return np.broadcast_to(validity.in_bounds(bounds, validity.groups(s)), s.shape)
 
 
 def _stated(s: HingeSection, name: str) -> Array:

@@ -114,6 +114,17 @@ def back_share(s: HingeSection, stiffness: Array, arm: Array, give: float) -> Ar
     return np.maximum((S * arm - L + (1.0 - S) * w) / (L + w), S * arm / L - 1.0)
 
 
+def overload_stress(
+    s: HingeSection, stiffness: Array, arm: Array, give: float, closing: Array, load: float
+) -> Array:
+    """Stress at the fillet under a load (N) whose part beyond `closing` (N) the stop meets, MPa; without a
+    check of the fit's range."""
+    beyond = load - closing
+    forwards = closing + stress_share(s, stiffness, arm, give) * beyond
+    backwards = back_share(s, stiffness, arm, give) * beyond
+    return strain.stress_beyond_the_fit(s, np.maximum(forwards, backwards))
+
+
 def deflection_share(s: HingeSection, stiffness: Array, arm: Array, give: float) -> Array:
     """Force at a free arm's load line (N) that bends the hinge by as large an angle as one newton does on a
     closed stop: M/L."""

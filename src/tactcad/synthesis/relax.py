@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import fields
 from typing import Any
+
+from tactcad.design.fields import Whole, spec_of
 
 from .target import TABLES, Target
 
@@ -20,50 +21,44 @@ NOT_NARROWING = ("target.half_width", "target.share", "room.height")  # eased, t
 Ease = Callable[[Target, float], Target | None]
 
 
-def _get(target: Target, path: str) -> Any:
+def value_of(target: Target, name: str) -> Any:
+    """The value of a field, or of one end of a range, by the name that `eased` gives it."""
+    path, _, end = name.partition("[")
+    table, field = path.split(".")
+    value = getattr(getattr(target, table), field)
+    return value[int(end[:-1])] if end and value else value
+
+
+def _spec(path: str) -> Any:
+    """Of one value of a field."""
     table, name = path.split(".")
-    return getattr(getattr(target, table), name)
+    spec = spec_of(TABLES[table], name)
+    return getattr(spec, "item", spec)
 
 
 def _legal(path: str, value: float) -> float:
     """The value, no further than a target file may say it."""
-    table, name = path.split(".")
-    spec = next(f for f in fields(TABLES[table]) if f.name == name).metadata["spec"]
-    spec = getattr(spec, "item", spec)
+    spec = _spec(path)
     return min(max(value, spec.low), spec.high)
 
 
-def _scaled(path: str, up: bool) -> Ease:
-    def ease(target: Target, by: float) -> Target | None:
-        value = _get(target, path)
-        return target.with_(path, _legal(path, value * by if up else value / by)) if value else None
-
-    return ease
-
-
-def _whole(path: str, up: bool = True) -> Ease:
-    def ease(target: Target, by: float) -> Target | None:
-        value = _get(target, path)
-        if by <= 1.0:
-            return target
-        other = max(value + 1, round(value * by)) if up else min(value - 1, round(value / by))
-        return target.with_(path, int(_legal(path, other)))
-
-    return ease
-
-
-def _end(path: str, end: int, up: bool, whole: bool = False) -> Ease:
-    """One end of a range."""
+def _scaled(name: str, up: bool) -> Ease:
+    """The value made larger or smaller by a factor; a count by one at least."""
+    path, _, end = name.partition("[")
 
     def ease(target: Target, by: float) -> Target | None:
-        pair = list(_get(target, path) or ())
-        if not pair:
+        value = value_of(target, name)
+        if not value:
             return None
-        pair[end] = pair[end] * by if up else pair[end] / by
-        if whole:
-            one_more = _get(target, path)[end] + (1 if up else -1) * (by > 1.0)
-            pair[end] = max(round(pair[end]), one_more) if up else min(round(pair[end]), one_more)
-        pair[end] = _legal(path, pair[end])
+        other = value * by if up else value / by
+        if isinstance(_spec(path), Whole):
+            one = value + (1 if up else -1) * (by > 1.0)
+            other = max(round(other), one) if up else min(round(other), one)
+        other = _legal(path, other)
+        if not end:
+            return target.with_(path, other)
+        pair = list(value_of(target, path))
+        pair[int(end[:-1])] = other
         return target.with_(path, tuple(pair)) if pair[0] <= pair[1] else None
 
     return ease
@@ -80,39 +75,41 @@ def _tolerances(target: Target, by: float) -> Target:
     return target.with_("stock.hinge_tolerances", finer)
 
 
-EASES: dict[str, Ease] = {
-    "target.half_width": _scaled("target.half_width", True),
+# By field: the ease, or whether a larger value is easier.
+EASIER: dict[str, Ease | bool] = {
+    "target.half_width": True,
     "target.share": _share,
-    "object.stiffness[0]": _end("object.stiffness", 0, True),
-    "object.stiffness[1]": _end("object.stiffness", 1, False),
-    "object.modulus[0]": _end("object.modulus", 0, True),
-    "object.modulus[1]": _end("object.modulus", 1, False),
-    "grasp.force": _scaled("grasp.force", True),
-    "grasp.element_force": _scaled("grasp.element_force", True),
-    "grasp.overload": _scaled("grasp.overload", False),
-    "grasp.loads": _whole("grasp.loads"),
-    "room.rows": _whole("room.rows"),
-    "room.elements[0]": _end("room.elements", 0, False, whole=True),
-    "room.elements[1]": _end("room.elements", 1, True, whole=True),
-    "room.pitch": _scaled("room.pitch", False),
-    "room.length": _scaled("room.length", True),
-    "room.width": _scaled("room.width", True),
-    "room.height": _scaled("room.height", True),
-    "elements.kinds": _whole("elements.kinds"),
-    "elements.of_a_kind": _whole("elements.of_a_kind", False),
-    "elements.arms[0]": _end("elements.arms", 0, False),
-    "elements.arms[1]": _end("elements.arms", 1, True),
-    "elements.hinges[0]": _end("elements.hinges", 0, False),
-    "elements.hinges[1]": _end("elements.hinges", 1, True),
+    "object.stiffness[0]": True,
+    "object.stiffness[1]": False,
+    "object.modulus[0]": True,
+    "object.modulus[1]": False,
+    "grasp.force": True,
+    "grasp.element_force": True,
+    "grasp.overload": False,
+    "grasp.loads": True,
+    "room.rows": True,
+    "room.elements[0]": False,
+    "room.elements[1]": True,
+    "room.pitch": False,
+    "room.length": True,
+    "room.width": True,
+    "room.height": True,
+    "elements.kinds": True,
+    "elements.of_a_kind": False,
+    "elements.arms[0]": False,
+    "elements.arms[1]": True,
+    "elements.hinges[0]": False,
+    "elements.hinges[1]": True,
     "stock.hinge_tolerances": _tolerances,
-    "known.thickness": _scaled("known.thickness", False),
-    "known.gauge_factor": _scaled("known.gauge_factor", False),
-    "known.runs": _whole("known.runs"),
-    "known.run_scatter": _scaled("known.run_scatter", False),
-    "known.force_noise": _scaled("known.force_noise", False),
-    "known.displacement_noise": _scaled("known.displacement_noise", False),
-    "known.contact": _scaled("known.contact", False),
+    "known.thickness": False,
+    "known.gauge_factor": False,
+    "known.runs": True,
+    "known.run_scatter": False,
+    "known.force_noise": False,
+    "known.displacement_noise": False,
+    "known.contact": False,
 }
+EASES = {name: _scaled(name, way) if isinstance(way, bool) else way for name, way in EASIER.items()}
 # Fields that matter to one kind of knowledge only.
 ONLY = {
     "drawn": ("stock.hinge_tolerances", "known.gauge_factor"),
@@ -130,14 +127,6 @@ def eased(target: Target, by: float = 1.0 + STEP) -> Iterator[tuple[str, Target]
             other = ease(target, by)
             if other is not None and other != target:
                 yield name, other
-
-
-def value_of(target: Target, name: str) -> Any:
-    """The value of a field by the name that `eased` gives it."""
-    path, _, end = name.partition("[")
-    table, field = path.split(".")
-    value = getattr(getattr(target, table), field)
-    return value[int(end[:-1])] if end else value
 
 
 def least_change(target: Target, name: str, possible: Callable[[Target], bool]) -> tuple[Any, Target] | None:

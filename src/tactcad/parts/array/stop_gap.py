@@ -15,12 +15,11 @@ from tactcad.design.materials import ALLOYS
 from tactcad.mechanics import ladder, strain, strength, validity
 from tactcad.mechanics.section import HingeSection
 from tactcad.mechanics.strength import (
-    back_share,
     deflection_share,
     largest_closing_force,
     largest_overload,
+    overload_stress,
     stop_share,
-    stress_share,
     tip_compliance,
 )
 
@@ -210,8 +209,7 @@ def overloads(layout: Layout) -> list[Overload]:
     closing = np.minimum((gap + tolerance + seat(layout)) / tip, load)
     beyond = load - closing
     # beyond the estimator's range K is NaN, and so are all figures but the gap
-    forwards = closing + stress_share(s, K, arm, give) * beyond
-    stress = strain.stress_beyond_the_fit(s, np.maximum(forwards, back_share(s, K, arm, give) * beyond))
+    stress = overload_stress(s, K, arm, give, closing, load)
     yields = strength.yield_force_where_known(s, alloy)
     figures = {
         "gap": gap + tolerance + seat(layout),

@@ -10,6 +10,7 @@ from math import ceil, floor, log10
 from operator import attrgetter
 from typing import Any, TypeVar
 
+from tactcad.design.fields import spec_of, with_value
 from tactcad.design.tree import CommonTables
 
 from ..array.layout import Layout
@@ -114,10 +115,7 @@ def remedy(design: CommonTables, line: Deflection, lines: Lines) -> tuple[str, o
     """
     for path in line.fields:
         section, name = path.split(".")
-        value, spec = (
-            attrgetter(path)(design),
-            getattr(design, section).__dataclass_fields__[name].metadata["spec"],
-        )
+        value, spec = (attrgetter(path)(design), spec_of(type(getattr(design, section)), name))
         for end, words in ((spec.high, "at least"), (spec.low, "at most")):
             if _helps(design, line, lines, path, end):
                 return (
@@ -147,7 +145,6 @@ def _nearest(design: CommonTables, line: Deflection, lines: Lines, path: str, fa
 
 
 def _helps(design: CommonTables, line: Deflection, lines: Lines, path: str, value: float) -> bool:
-    section, name = path.split(".")
-    changed = replace(design, **{section: replace(getattr(design, section), **{name: value})})
+    changed = with_value(design, path, value)
     same = (d for d in lines(changed) if (d.part, d.model) == (line.part, line.model))
     return not next(same).too_much
