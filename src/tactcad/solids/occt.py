@@ -32,13 +32,15 @@ __all__ = [
     "TopTools_ListOfShape",
     "as_edge",
     "as_face",
+    "as_shell",
     "as_vertex",
     "as_wire",
 ]
 
 # OCP 7.9 marks static functions by _s where OCP 8 does not.
-as_edge, as_face, as_vertex, as_wire = (
-    getattr(TopoDS, f"{kind}_s", None) or getattr(TopoDS, kind) for kind in ("Edge", "Face", "Vertex", "Wire")
+as_edge, as_face, as_shell, as_vertex, as_wire = (
+    getattr(TopoDS, f"{kind}_s", None) or getattr(TopoDS, kind)
+    for kind in ("Edge", "Face", "Shell", "Vertex", "Wire")
 )
 
 
@@ -67,8 +69,17 @@ def location(origin: Vector, rotation: Rotation) -> TopLoc_Location:
 
 
 def placed_shape(shape: TopoDS_Shape, origin: Vector, rotation: Rotation) -> TopoDS_Shape:
-    """The same shape, shared, at a place in the scene. `shape`: in its own frame, mm; `origin`: of that frame
-    in the scene, mm; `rotation`: rows of the matrix that turns local into scene directions."""
+    """The same shape, shared, at a place in the scene.
+
+    Parameters
+    ----------
+    shape
+        In its own frame, mm.
+    origin
+        Of that frame in the scene, mm.
+    rotation
+        Rows of the matrix that turns local into scene directions.
+    """
     return shape.Located(location(origin, rotation))
 
 
