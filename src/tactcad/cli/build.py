@@ -21,15 +21,6 @@ if TYPE_CHECKING:
     from tactcad.stacks.stack import StackLine
     from tactcad.stacks.virtual_build import Builds
 
-EXAMPLES = """\
-  tactcad build                            1000 arrays of hardware/macro-array.toml, seed as published
-  tactcad build soft-tissue --count 10000  more arrays: the yield to a fraction of a percent
-  tactcad build --within 1%                enough for a 95 % interval of the yield of plus and minus 1 %
-  tactcad build my-sensor.toml --seed 7 --json
-
-Every dimension of every part is drawn at random within its limits, and the array is assembled by its guide.
-Arrays that fail are counted, with the limit to change. Exit status 1 if fewer than 99.5 % of the arrays
-meet all requirements, under normal or uniform parts; corners are for information."""
 
 USUAL, MOST = 1000, 1_000_000
 
@@ -40,9 +31,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--count", type=int, metavar="N", help=f"arrays of each distribution (default: {USUAL})"
     )
     add_allowance(parser, "half-width of the yield's 95 % interval", "number of arrays")
-    parser.add_argument(
-        "--seed", type=int, metavar="S", help="seed of the random numbers (default: the published one)"
-    )
+    parser.add_argument("--seed", type=int, metavar="S")
     add_json(parser)
 
 

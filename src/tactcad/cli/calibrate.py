@@ -16,53 +16,17 @@ if TYPE_CHECKING:
     from tactcad.design.tree import Design
     from tactcad.lab.load_cell import LoadCell
 
-EXAMPLES = """\
-  tactcad calibrate hardware/examples/calibration.csv                     Table 1's columns with intervals
-  tactcad calibrate mine.csv --load-cell 57.04 --out cal.csv      and write them for `tactcad stiffness`
-  tactcad calibrate mine.csv --load-cell 57.04+-0.5 --run-scatter 0.005   measured cell, runs known to repeat
-  tactcad calibrate mine.csv --design my-sensor.toml              the load cell of the design's [calibration]
-  tactcad calibrate mine.csv --load-cell inf --json               a rigid force sensor; JSON
-  tactcad calibrate run7.lvm --map map.toml --out cal.csv         a lab's raw log
-
-FILE is CSV with the columns element, run, displacement, force, signal: the stage's displacement, in mm, N
-and V; or with the unit in the name: displacement_um, force_mN, signal_mV. Lines that start with # are
-comments; semicolons or tabs between columns, and decimal commas with them, are read too. With a column
-time_s a displacement may be read any number of times, and if it returns later the drift is estimated.
-Of a planar design (--design): element, run, fx, fy, fz (N, fz down on the pad), bx, by, bz (mT), and sink
-(mm) to measure K; every run along one axis, two at least along each."""
-
 
 def configure(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("file", metavar="FILE", help="readings (CSV)")
+    parser.add_argument("file", metavar="FILE")
     add_map(parser)
-    parser.add_argument(
-        "--load-cell",
-        metavar="K[+-U]",
-        help="the force sensor's own stiffness in N/mm and the limits within which it is known, as 57.04+-1 "
-        "or 57.04+-2%% (inf for a rigid one; default the paper's 57.04; without limits, 2 %% are assumed); "
-        "the intervals hold for every load cell within them",
-    )
-    parser.add_argument(
-        "--design",
-        metavar="DESIGN",
-        help="take the load cell and its limits from the design's [calibration] instead "
-        "(load_cell_stiffness, load_cell_accuracy); warns of readings far from the design's estimates",
-    )
-    parser.add_argument(
-        "--run-scatter",
-        type=float,
-        metavar="S",
-        help="relative standard deviation of an element's slope from run to run, if known (0.01 for 1 %%); "
-        "default: estimated from the runs; 0.01 for a single one",
-    )
-    parser.add_argument(
-        "--level", type=float, default=0.95, metavar="P", help="level of the intervals (default 0.95)"
-    )
-    parser.add_argument("--drop-outliers", action="store_true", help="leave named outliers out of the fit")
-    parser.add_argument(
-        "-o", "--out", metavar="FILE", help="write the calibration as CSV, for `tactcad stiffness`"
-    )
-    parser.add_argument("--json", action="store_true", help="print as JSON")
+    parser.add_argument("--load-cell", metavar="K[+-U]")
+    parser.add_argument("--design", metavar="DESIGN")
+    parser.add_argument("--run-scatter", type=float, metavar="S")
+    parser.add_argument("--level", type=float, default=0.95, metavar="P")
+    parser.add_argument("--drop-outliers", action="store_true")
+    parser.add_argument("-o", "--out", metavar="FILE")
+    parser.add_argument("--json", action="store_true")
     add_needless_allowance(parser)
 
 

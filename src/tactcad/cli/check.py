@@ -17,29 +17,14 @@ if TYPE_CHECKING:
 
 from .parser import UNLISTED, add_allowance, add_design, add_json, add_shop, add_strict, allowance
 
-EXAMPLES = """\
-  tactcad check                           every check of hardware/macro-array.toml
-  tactcad check soft-tissue --json        findings, runs and times as JSON
-  tactcad check --shop my-shop.toml       with your own shop's limits
-  tactcad check macro-array soft-tissue --out exports/check
-                                          both designs; check.json and junit.xml in that folder
-  tactcad check --within 0.1%             parts meshed so that each volume is within 0.1 % of the solid's
-  tactcad check --in 60                   meshed as finely as 60 s allow; no check is left out
-
-Failures are printed in a table at the end and make the exit status 1. Flags (such as the hinge, for the
-quotation, or a rig that does not fit the array, which fails with --strict) are listed. A design in
-hardware/ is compared with its golden file in exports/golden/ too."""
-
 
 def configure(parser: argparse.ArgumentParser) -> None:
     add_design(parser, several=True)
-    parser.add_argument(
-        "--scene", action="append", metavar="NAME", help="check this scene; may be repeated (default: all)"
-    )
+    parser.add_argument("--scene", action="append", metavar="NAME")
     add_shop(parser)
     add_strict(parser)
-    parser.add_argument("--all", action="store_true", help="list every rule that a refused design breaks")
-    parser.add_argument("-o", "--out", metavar="DIR", help="write check.json and junit.xml there")
+    parser.add_argument("--all", action="store_true")
+    parser.add_argument("-o", "--out", metavar="DIR")
     parser.add_argument("--report", dest="out", help=UNLISTED)
     add_allowance(parser, "relative error of a part's meshed volume", "mesh")
     add_json(parser)

@@ -6,42 +6,18 @@ import argparse
 
 from .parser import UNLISTED
 
-EXAMPLES = """\
-  eval "$(tactcad completion bash)"              in ~/.bashrc
-  eval "$(tactcad completion zsh)"               in ~/.zshrc, after compinit
-  tactcad completion fish | source               in ~/.config/fish/config.fish"""
-
-SCRIPTS = {
-    "bash": """\
-_tactcad() {
-    local IFS=$'\\n'
-    COMPREPLY=($(tactcad completion words "${COMP_WORDS[@]:1:COMP_CWORD}" 2>/dev/null))
-}
-complete -o default -F _tactcad tactcad""",
-    "zsh": """\
-_tactcad() {
-    local -a found
-    found=(${(f)"$(tactcad completion words "${(@)words[2,CURRENT]}" 2>/dev/null)"})
-    if (( $#found )); then compadd -a found; else _files; fi
-}
-compdef _tactcad tactcad""",
-    "fish": """\
-function __tactcad
-    set -l found (tactcad completion words (commandline -opc)[2..] (commandline -ct) 2>/dev/null)
-    if test -n "$found"; printf '%s\\n' $found; else; __fish_complete_path (commandline -ct); end
-end
-complete -c tactcad -f -a '(__tactcad)'""",
-}
 NAMES_DESIGN = ("design", "source", "old", "new")  # arguments that take a design's name
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("shell", choices=(*SCRIPTS, "words"), metavar="SHELL", help="bash, zsh or fish")
+    parser.add_argument("shell", choices=("bash", "zsh", "fish", "words"), metavar="SHELL")
     parser.add_argument("words", nargs=argparse.REMAINDER, help=UNLISTED)  # of the scripts: typed so far
 
 
 def run(args: argparse.Namespace) -> int:
-    print("\n".join(candidates(args.words)) if args.shell == "words" else SCRIPTS[args.shell])
+    from .main import WORDS
+
+    print("\n".join(candidates(args.words)) if args.shell == "words" else WORDS["completion"][args.shell])
     return 0
 
 

@@ -15,29 +15,11 @@ from .parser import add_allowance, add_json, allowance
 if TYPE_CHECKING:
     from tactcad.synthesis.synthesise import Synthesis
 
-EXAMPLES = """\
-  tactcad design hardware/targets/better-array.toml --out better
-  tactcad design mine.toml --out mine --within 0.5%    the yield's 95 % interval plus and minus 0.5 % at most
-  tactcad design mine.toml --out mine --in 20   the best design found by then, and part of the report
-  tactcad design mine.toml --out mine --best    the best design, even if the target is not met
-  tactcad design hardware/targets/jaw-array.toml --out jaw    planar cells: a target with [planar]
-  tactcad schema target                         every field of a target file
-
-DIR gets the answer first: design.toml, which every rule accepts, report.html and report.json. What limits
-it and a design file for each alternative follow. Without --in the answer takes at most 30 s on two cores,
-and all of it 2 minutes; 2 and 3 minutes if the object is a body (a modulus or a thickness).
-If the target cannot be met, the exit status is 1: the miss is printed, with the least change of each single
-field that would make it possible, and nothing is written except with --best."""
-
 
 def configure(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("target", metavar="TARGET.toml", help="target file: objects and means")
-    parser.add_argument(
-        "-o", "--out", metavar="DIR", required=True, help="new or empty folder for design and report"
-    )
-    parser.add_argument(
-        "--best", action="store_true", help="write the best design even if the target is not met"
-    )
+    parser.add_argument("target", metavar="TARGET.toml")
+    parser.add_argument("-o", "--out", metavar="DIR", required=True)
+    parser.add_argument("--best", action="store_true")
     add_allowance(parser, "half-width of the yield's 95 % interval", "number of arrays")
     add_json(parser)
 

@@ -18,25 +18,6 @@ if TYPE_CHECKING:
     from tactcad.export.sides import Side
     from tactcad.review.consequences import Meaning
 
-EXAMPLES = """\
-  tactcad diff exports/golden/macro-array.json macro-array     what changed since the committed geometry
-  tactcad diff before exports/macro-array --out changes.html  two exports, with their pictures side by side
-  tactcad diff macro-array my/design.toml --json               two designs, as JSON
-  tactcad diff HEAD~3 HEAD macro-array                         two git revisions of a design
-  tactcad diff HEAD . macro-array --review changes.html        what changed since the commit, in 3-D
-  tactcad diff HEAD . macro-array --out changes.FCStd          the same in FreeCAD
-  tactcad diff HEAD~3 HEAD macro-array --their-code            the same, each built by the code of its time
-  tactcad diff origin/main HEAD macro-array --out changes.md --fail-on checks --fail-on revision
-                                                               for a pull request
-
-A and B are each a design (a path or a name in hardware/), an export's folder, or a golden file (.json);
-with DESIGN they are git revisions (a commit, branch or tag, as HEAD~3), or '.' for the present files. The
-present code reads the designs of both revisions, and nothing of the repository runs. --their-code runs each
-revision's own code as you: use it on code that you trust. The report starts with the edits, most important
-first, each with its own effects by the present code: K, rated force, signal, stop gap, yield, mass, cut,
-parts, sheets, bill, and checks that turned. Data that only one side has is left out and named. The exit
-status is 0 with or without changes, but 1 if a --fail-on condition is met."""
-
 
 MOST_CHANGES = 40  # lines of differences without --full; chosen: about a screen
 KINDS = {".html": "html", ".md": "markdown", ".FCStd": "freecad"}  # by a file's ending its option
@@ -58,43 +39,17 @@ class _ByEnding(argparse.Action):
 def configure(parser: argparse.ArgumentParser) -> None:
     # what --fail-on takes; tactcad.review.consequences, which has them, loads numpy
     kinds = ("changes", "geometry", "stiffness", "checks", "revision")
-    parser.add_argument("old", metavar="A", help="design, export's folder or golden file; or revision")
-    parser.add_argument("new", metavar="B", help="likewise, the new side")
-    parser.add_argument(
-        "design", metavar="DESIGN", nargs="?", help="the design of which A and B are git revisions"
-    )
-    parser.add_argument(
-        "--their-code",
-        action="store_true",
-        help="build each revision's design by that revision's own code, which runs as you",
-    )
+    parser.add_argument("old", metavar="A")
+    parser.add_argument("new", metavar="B")
+    parser.add_argument("design", metavar="DESIGN", nargs="?")
+    parser.add_argument("--their-code", action="store_true")
     add_json(parser)
-    parser.add_argument("--full", action="store_true", help="print every difference, however small")
-    parser.add_argument(
-        "-o",
-        "--out",
-        action=_ByEnding,
-        metavar="FILE",
-        help="also write FILE.html (contours laid over each other), FILE.md (at most 60 lines, for a pull "
-        "request) or FILE.FCStd (for FreeCAD); may be repeated",
-    )
-    parser.add_argument(
-        "--review",
-        metavar="FILE",
-        help="also write one offline page in 3-D: added, removed and kept material in colours",
-    )
+    parser.add_argument("--full", action="store_true")
+    parser.add_argument("-o", "--out", action=_ByEnding, metavar="FILE")
+    parser.add_argument("--review", metavar="FILE")
     for option in KINDS.values():
         parser.add_argument(f"--{option}", help=UNLISTED)
-    parser.add_argument(
-        "--fail-on",
-        action="append",
-        default=[],
-        choices=kinds,
-        metavar="KIND",
-        help="exit status 1 for any change (changes), other parts, places or bills (geometry), another K "
-        "(stiffness), a new failure of checks or rules (checks), or other "
-        "content under the same part number and revision letter (revision); may be repeated",
-    )
+    parser.add_argument("--fail-on", action="append", default=[], choices=kinds, metavar="KIND")
 
 
 def run(args: argparse.Namespace) -> int:

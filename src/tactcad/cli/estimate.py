@@ -21,26 +21,13 @@ if TYPE_CHECKING:
     from tactcad.mechanics.section import HingeSection
     from tactcad.parts.array.layout import Layout
 
-EXAMPLES = """\
-  tactcad estimate
-  tactcad estimate hardware/soft-tissue.toml --force 0.5 --json
-  tactcad estimate --model fem-plane
-  tactcad estimate --within 1%               # the quickest rung with a measured worst error within it
-  tactcad estimate --in 5                    # the most accurate one within 5 s
-  tactcad estimate soft-tissue --within 0.1% --in 60 --json
-  tactcad estimate --batch designs.csv --model plane --out stiffness.csv
-  tactcad estimate --batch designs.csv --within 0.5% --out stiffness.csv    # a rung for every row
-  tactcad estimate --inspection inspections/macro-array-D.csv
-                                      the elements as made, from the inspection sheet that the shop
-                                      filled in: a copy of an export's inspection.csv, kept outside the export
-"""
 
 # An element's figures that the table for the terminal leaves out.
 UNSHOWN = ("load_arm", "expected_error", "force", "gauge_strain_error", "peak_strain_error", "stress_error")
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("design", nargs="?", help="design file, or name in hardware/ (default macro-array)")
+    parser.add_argument("design", nargs="?")
     parser.add_argument(
         "--model",
         choices=RUNGS,
@@ -49,21 +36,11 @@ def configure(parser: argparse.ArgumentParser) -> None:
     )
     add_allowance(parser, "error of K, against solid elements refined to their limit,", "rung")
     parser.add_argument("--accuracy", help=UNLISTED)  # --within by its older name
-    parser.add_argument(
-        "--force", type=float, metavar="N", help="force on each pad (default: the design's rated force)"
-    )
-    parser.add_argument("--json", action="store_true", help="write JSON")
-    parser.add_argument(
-        "--batch", metavar="IN.csv", help="a table of designs, one a line (columns: docs/howto.md)"
-    )
-    parser.add_argument("-o", "--out", metavar="OUT.csv", help="the table that --batch writes")
-    parser.add_argument(
-        "--inspection",
-        metavar="FILE",
-        help="the design's inspection sheet, a copy filled in outside the export (inspections/, say): its "
-        "elements as "
-        "made, with the nominal values",
-    )
+    parser.add_argument("--force", type=float, metavar="N")
+    parser.add_argument("--json", action="store_true")
+    parser.add_argument("--batch", metavar="IN.csv")
+    parser.add_argument("-o", "--out", metavar="OUT.csv")
+    parser.add_argument("--inspection", metavar="FILE")
 
 
 def run(args: argparse.Namespace) -> int:

@@ -16,69 +16,18 @@ from .parser import add_allowance, add_design, add_json, add_others, add_strict,
 if TYPE_CHECKING:
     from tactcad.export.pipeline import Progress
 
-EXAMPLES = """\
-  tactcad export                              the array of hardware/macro-array.toml, to exports/macro-array
-  tactcad export soft-tissue --out soft       another design, to a folder of your choice
-  tactcad export my/design.toml --scene array one scene only
-  tactcad export hardware/*.toml              several designs, one after another, each to exports/<its name>
-  tactcad export --scene calibration --pose element=4 --out element-4
-                                              a rig in a chosen configuration
-  tactcad export --guide                      with the assembly guides, to open in a browser
-  tactcad export --drawings                   with a dimensioned sheet of every part made, as PDF and SVG
-  tactcad export --robot                      with robot/: URDF, MJCF and a table of taxels (docs/robot.md)
-  tactcad export --measured inspections/macro-array-L.csv --drawings
-                                              issued again, with spacers for the measured sheet
-  tactcad export --within 0.1%                with an STL of every part made, its volume within 0.1 %
-  tactcad export --in 60                      the same, as fine as 60 s allow with an empty cache
-
-The folder is replaced in one step by a finished one; a second export with nothing changed writes nothing.
-Rigs follow the array. If a rig cannot be built of parts that are sold, the export ends with a warning that
-names the field, its value and its legal values; with --strict the exit status is 1.
-A folder with files that tactcad did not write is left as it is, unless --keep or --discard is given: fill
-in a copy of inspection.csv (in inspections/, say), not the export's own."""
-
 
 def configure(parser: argparse.ArgumentParser) -> None:
     add_design(parser, several=True)
-    parser.add_argument(
-        "--scene", action="append", metavar="NAME", help="export this scene; may be repeated (default: all)"
-    )
-    parser.add_argument(
-        "--pose",
-        action="append",
-        metavar="KEY=VALUE",
-        default=[],
-        help="configuration of the rigs: element=N, deflection=MM, weights=N, height=MM, cart=MM; may be "
-        "repeated",
-    )
-    parser.add_argument(
-        "--detail",
-        choices=("full", "envelope"),
-        default="full",
-        help="envelope: parts without holes and pockets, for layout; no cut files (default full)",
-    )
-    parser.add_argument(
-        "--guide", action="store_true", help="with the assembly guides: guide/SCENE.html and its pictures"
-    )
-    parser.add_argument(
-        "--drawings",
-        action="store_true",
-        help="with drawing sheets: drawings/PART_REVISION.pdf and .svg, of every part made",
-    )
-    parser.add_argument(
-        "--robot",
-        action="store_true",
-        help="with robot/: the array as URDF and MJCF, and its taxels as CSV and JSON; with --detail "
-        "envelope without meshes to look at",
-    )
-    parser.add_argument(
-        "--measured",
-        metavar="FILE",
-        help="an inspection.csv filled in: spacers and the places of equal elements follow from it; the "
-        "revision is followed by M, and sheets name the file",
-    )
+    parser.add_argument("--scene", action="append", metavar="NAME")
+    parser.add_argument("--pose", action="append", metavar="KEY=VALUE", default=[])
+    parser.add_argument("--detail", choices=("full", "envelope"), default="full")
+    parser.add_argument("--guide", action="store_true")
+    parser.add_argument("--drawings", action="store_true")
+    parser.add_argument("--robot", action="store_true")
+    parser.add_argument("--measured", metavar="FILE")
     add_strict(parser)
-    parser.add_argument("-o", "--out", metavar="DIR", help="folder to write (default exports/<design>)")
+    parser.add_argument("-o", "--out", metavar="DIR")
     add_others(parser)
     add_allowance(parser, "relative error of a part's meshed volume, written as stl/PART_REV.stl,", "mesh")
     add_json(parser)

@@ -7,15 +7,6 @@ import sys
 
 from .parser import add_design
 
-EXAMPLES = """\
-  tactcad golden                   the golden file of hardware/macro-array.toml
-  make golden                      those of every design in hardware/
-
-Runs every check first, prints what changed, and writes exports/golden/<design>.json only if nothing
-fails. Other content under the same revision letter is refused: give the design a new one. It then prints the
-lines [design.unchanged] that let parts that did not change keep their letters. A part that changed is refused
-its old letter."""
-
 
 def configure(parser: argparse.ArgumentParser) -> None:
     add_design(parser, several=True)

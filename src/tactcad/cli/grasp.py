@@ -18,17 +18,6 @@ if TYPE_CHECKING:
     from tactcad.contact.elastic_body import Body
     from tactcad.lab.pressed import PressedArray
 
-EXAMPLES = """\
-  tactcad grasp --object E=0.5,nu=0.49,thickness=6
-  tactcad grasp soft-tissue --object E=0.05,nu=0.49,thickness=10 --load 0.2 --angle 0.5,1
-  tactcad grasp --object E=0.5,nu=0.49,thickness=inf --rung springs --json
-  tactcad grasp --object E=0.5,nu=0.49,thickness=6,base=frictionless --out pressure.svg
-
-E in MPa, thickness in mm (inf: a half-space); base: bonded (default) or frictionless. Angles in degrees,
-positive if the object's face falls away toward +x (along the arms) and +y (along the rows). Rung layer
-(default): rigid pads that tilt and lift on a continuous body. Rung springs: a separate spring under every
-pad, as the paper's equations have it. Rung fem-object: as layer, the body by solid elements (some minutes).
-Rung large: as layer, corrected for large strain. Errors and ranges: docs/accuracy.md."""
 
 PAPERS_LOAD = 3.235  # N; the paper's axis without weights
 RUNGS = ("springs", "layer", "fem-object", "large")
@@ -37,12 +26,7 @@ OBJECT = ("E", "nu", "thickness", "base")
 
 def configure(parser: argparse.ArgumentParser) -> None:
     add_design(parser)
-    parser.add_argument(
-        "--object",
-        required=True,
-        metavar="E=..,nu=..,thickness=..",
-        help="the object: modulus (MPa), Poisson's ratio, thickness (mm; inf: a half-space)",
-    )
+    parser.add_argument("--object", required=True, metavar="E=..,nu=..,thickness=..")
     parser.add_argument(
         "--load",
         type=float,
@@ -50,21 +34,10 @@ def configure(parser: argparse.ArgumentParser) -> None:
         metavar="N",
         help=f"on the whole array (default {PAPERS_LOAD:g}, the paper's axis without weights)",
     )
-    parser.add_argument(
-        "--angle",
-        default="0,0",
-        metavar="AX,AY",
-        help="inclination of the object's face, degrees (default 0,0)",
-    )
-    parser.add_argument(
-        "--rung",
-        choices=RUNGS,
-        help="model of the object (default: layer, or the cheapest that keeps --within)",
-    )
-    parser.add_argument(
-        "--within", metavar="P", help="largest error of the pads' forces, of their mean, such as 2%%"
-    )
-    parser.add_argument("-o", "--out", metavar="FILE.svg", help="draw the pressure under the pads")
+    parser.add_argument("--angle", default="0,0", metavar="AX,AY")
+    parser.add_argument("--rung", choices=RUNGS)
+    parser.add_argument("--within", metavar="P")
+    parser.add_argument("-o", "--out", metavar="FILE.svg")
     add_json(parser)
 
 

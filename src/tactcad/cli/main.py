@@ -1,7 +1,7 @@
 """The `tactcad` command: finds the sub-command's module, runs it, turns refusals into exit status.
 
-A sub-command is one module with EXAMPLES (text), configure(parser) and run(args) -> exit status; it imports
-what it needs inside run, so that `tactcad estimate` never pays for the kernel.
+A sub-command is one module with configure(parser) and run(args) -> exit status, and its words in
+commands.toml; it imports what it needs inside run, so that `tactcad estimate` never pays for the kernel.
 """
 
 from __future__ import annotations
@@ -12,8 +12,10 @@ import importlib
 import json
 import os
 import sys
+import tomllib
 from collections.abc import Callable
 from contextlib import suppress
+from pathlib import Path
 from time import perf_counter
 
 from tactcad import __version__
@@ -27,51 +29,9 @@ from tactcad.shutdown import end_on_signals, ignore_signals
 from . import streams
 from .parser import UNLISTED, Parser
 
-GROUPS = {
-    "make": {
-        "new": "write a design file to start from",
-        "design": "find the design that feels a target, and how surely",
-        "export": "write the files of a design: STEP, DXF, bill of materials, pictures",
-        "check": "run every check on a design",
-        "build": "build a thousand arrays virtually from parts within their limits, and count the failures",
-        "release": "run every check, and write one zip that a shop can quote from",
-    },
-    "look": {
-        "review": "write one offline page: the sensor in 3-D, with limits, findings, estimates and bill",
-        "view": "serve the same page live; it follows the design file as you edit",
-        "diff": "show what changed between two designs, git revisions, exports or golden files",
-    },
-    "know": {
-        "estimate": "stiffness, strain and strength of a design's elements, or of a table of designs",
-        "size": "the hinge for a given stiffness, and how far cutting tolerances change it",
-        "grasp": "press an array on a soft body: deflection, force and signal of every element",
-        "readings": "a lab's log (CSV, .lvm, .tdms) to the tables that calibrate and stiffness read",
-        "calibrate": "force, deflection and signal readings to stiffness and sensitivity, with intervals",
-        "stiffness": "grasp readings and a calibration to the object's stiffness, with intervals",
-        "validate": "compare the models with the paper's Tables 1 and 2, as a report",
-        "sweep": "measure many designs, on one machine or a cluster, into one table",
-        "schema": "print every field of a design file with unit, range, default and meaning",
-    },
-    "keep": {"golden": "run every check, show what changed, and write a design's golden geometry"},
-    "help": {
-        "help": "show this text, or a command's options with examples: tactcad help COMMAND",
-        "completion": "print the completion of commands and options for bash, zsh or fish",
-    },
-}
+WORDS = tomllib.loads((Path(__file__).parent / "commands.toml").read_text("utf-8"))
+GROUPS: dict[str, dict[str, str]] = WORDS["groups"]
 COMMANDS = {name: text for group in GROUPS.values() for name, text in group.items() if name != "help"}
-COMMON = """\
-every command takes:
-  -h, --help         its options, with examples
-  -q, --quiet        no progress, results and refusals only
-  -v, --verbose      a line for each piece of work, where output goes to a file or a pipe
-
-exit status: 0 done; 1 a check failed, or a request cannot be met; 2 bad input
-
-variables:
-  TACTCAD_CACHE      folder that keeps what was made (default: .cache in a checkout, else the user's cache)
-  TACTCAD_PROFILE    set: modules loaded, files made, times and memory, on standard error
-  NO_COLOR           set: no colours on a terminal"""
-
 # Extras without which a command, or one of its options, is refused before any work.
 NEEDS = {
     "export": ("cad",),
@@ -162,12 +122,15 @@ def parser_of(command: str, raises: bool = False) -> Parser:
     parser = Parser(
         prog=f"tactcad {command}",
         description=COMMANDS[command],
-        epilog=f"examples:\n{module.EXAMPLES}\n\n-q, -v, exit statuses, variables: tactcad help",
+        epilog=f"examples:\n{WORDS['examples'][command]}\n\n-q, -v, exit statuses, variables: tactcad help",
         formatter_class=argparse.RawDescriptionHelpFormatter,
         add_help=False,
         raises=raises,
     )
     module.configure(parser)
+    said = WORDS["options"]["shared"] | WORDS["options"].get(command, {})
+    for action in parser._actions:  # by its long name, or a positional's own
+        action.help = action.help or said.get([action.dest, *action.option_strings][-1])
     parser.add_argument("-h", "--help", action="help", help=UNLISTED)
     loud = parser.add_mutually_exclusive_group()
     for short, long in LOUD:
@@ -182,7 +145,7 @@ def overview() -> str:
         for group, commands in GROUPS.items()
     ]
     head = "usage: tactcad COMMAND ...\n\nFrom one text file to a spring-based tactile sensor array."
-    return "\n\n".join([head, *groups, COMMON])
+    return "\n\n".join([head, *groups, WORDS["text"]["common"]])
 
 
 def _dispatch(argv: list[str]) -> int:

@@ -4,18 +4,11 @@ from __future__ import annotations
 
 import argparse
 
-EXAMPLES = """\
-  tactcad new my-sensor.toml                      the published array under a name of your own
-  tactcad new my-sensor.toml --from soft-tissue   from another named design, or from a file
-
-The design's name is the file's. Everything else is the other design's, with its comments and origins; it
-starts at revision A, dated today. A file that is there is never written over."""
-
 
 def configure(parser: argparse.ArgumentParser) -> None:
     from tactcad.design.load import DEFAULT_DESIGN
 
-    parser.add_argument("file", metavar="FILE", help="the design file to write, NAME.toml")
+    parser.add_argument("file", metavar="FILE")
     parser.add_argument(
         "--from",
         dest="source",

@@ -80,19 +80,15 @@ def add_design(parser: argparse.ArgumentParser, several: bool = False) -> None:
 
 
 def add_shop(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument(
-        "--shop", metavar="FILE", help="your shop's limits (default: the ones that come with tactcad)"
-    )
+    parser.add_argument("--shop", metavar="FILE")
 
 
 def add_json(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--json", action="store_true", help="report on standard output as JSON")
+    parser.add_argument("--json", action="store_true")
 
 
 def add_strict(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument(
-        "--strict", action="store_true", help="exit status 1 if a test rig does not fit the array"
-    )
+    parser.add_argument("--strict", action="store_true")
 
 
 def add_others(
@@ -110,9 +106,7 @@ def add_others(
         default="refuse",
         help=f"if {where}: move it aside, as {kept} (default: refuse)",
     )
-    others.add_argument(
-        "--discard", dest="others", action="store_const", const="discard", help="remove it, unread"
-    )
+    others.add_argument("--discard", dest="others", action="store_const", const="discard")
 
 
 BY_NAME = "_by_name"  # suffix of the dest of an option that replaces a positional
@@ -136,12 +130,7 @@ def add_allowance(parser: argparse.ArgumentParser, of: str, chosen: str) -> None
         help=f"largest {of} that you accept, as 1%% or 0.01; picks the quickest {chosen} within it, or "
         f"refuses, and prints the cost of a step more or less (docs/accuracy.md)",
     )
-    parser.add_argument(
-        "--in",
-        dest="seconds",
-        metavar="SECONDS",
-        help="time budget in seconds: picks the most accurate setting that fits; no check is left out for it",
-    )
+    parser.add_argument("--in", dest="seconds", metavar="SECONDS")
 
 
 def add_needless_allowance(parser: argparse.ArgumentParser) -> None:

@@ -10,52 +10,12 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from tactcad.lab.log_readings import Taken
 
-EXAMPLES = """\
-  tactcad readings hardware/examples/grasp-log.csv --map hardware/examples/grasp-map.toml --out grasp.csv
-  tactcad readings run7.lvm --map map.toml --out calibration.csv --json
-  tactcad stiffness run8.tdms --map map.toml --calibration cal.csv     without a file in between
-
-FILE is a log of time and channels: CSV with any separator and either decimal sign, LabVIEW's .lvm, or .tdms.
-MAP (TOML) assigns columns to elements, with their units, and defines the steps:
-
-  [log]
-  kind = "grasp"              # or "calibration"
-  time = "Time (s)"           # a log without time: rate = 1000.0 (Hz)
-  mains = 50                  # the mean is over whole periods of it
-  [signal]
-  unit = "mV"                 # of all channels: V, mV, uV
-  least = -5.0                # V; readings at least or most count as saturated
-  most = 5.0
-  [channels]
-  "Dev1/ai0" = 1              # column = element
-  "Dev1/ai1" = { element = 2, factor = -1.0 }
-  [steps]
-  by = "plateau"              # or "marks" of a column, or "times" = [[0, 9.5], [11, 20]]; a mark of 0, - or
-                              # nothing is none
-  column = "Fz"
-  apart = 0.3                 # least step of that column
-  hold = 4.0                  # s, shortest plateau
-  settle = 0.5                # s left out at its beginning
-  [load]                      # of a calibration: [element], [run], [displacement], [force]
-  column = "Fz"               # or values = [0, 3.235, 4.216], one a step; each = 7: seven steps share one
-  unit = "N"
-  least = 0.05                # less than that is no load
-
-OUT.svg shows how columns and steps were read. A channel that is dead, frozen or saturated is named and its
-element left out."""
-
 
 def configure(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("file", metavar="FILE", help="the log (CSV, .lvm, .tdms)")
-    parser.add_argument("--map", required=True, metavar="MAP", help="the columns and steps of the log (TOML)")
-    parser.add_argument(
-        "-o",
-        "--out",
-        required=True,
-        metavar="CSV",
-        help="the readings, for `tactcad calibrate` or `stiffness`; a plot of the same name ends in .svg",
-    )
-    parser.add_argument("--json", action="store_true", help="print how columns and steps were read, as JSON")
+    parser.add_argument("file", metavar="FILE")
+    parser.add_argument("--map", required=True, metavar="MAP")
+    parser.add_argument("-o", "--out", required=True, metavar="CSV")
+    parser.add_argument("--json", action="store_true")
 
 
 def run(args: argparse.Namespace) -> int:

@@ -12,49 +12,17 @@ from pathlib import Path
 
 from .parser import add_design, add_json, add_others, add_shop
 
-EXAMPLES = """\
-  tactcad release my-sensor.toml --owner "Our lab" --contact "workshop@our-lab.example"
-                                      exports/releases/my-sensor-<revision>.zip, and one for each supplier
-  tactcad release soft-tissue --sample --out to-look-at
-                                      without owner: "sample, not for order" in zip, README and title blocks
-  tactcad release macro-array --sample --sets all
-                                      every set-up complete, not one set of shared parts
-  tactcad release my-sensor.toml --shop my-shop.toml
-                                      with your own shop's limits for wire cutting, and its feed
-  tactcad release my-sensor.toml --draft
-                                      although a check fails: PRELIMINARY on sheets, in README and file name
-
-One zip that a shop can quote from: README, cut files, solids, drawing sheets, bills of materials, inspection
-sheet, strength summary, guides, checksums. One more zip each for wire cutting, milling and turning,
-sheet, and purchase (mechanical, electronic), with what that supplier needs and nothing else. Owner and
-contact are the design's ([design] organisation and contact) or given here. Every check runs first, and the
-golden file is compared; if one fails, or an earlier zip is not exactly as tactcad wrote it (--keep,
---discard), nothing is written and earlier zips stay as they are."""
-
 
 def configure(parser: argparse.ArgumentParser) -> None:
     add_design(parser, several=True)
-    parser.add_argument(
-        "-o",
-        "--out",
-        metavar="DIR",
-        default="exports/releases",
-        help="folder of the zips (default exports/releases)",
-    )
-    parser.add_argument("--owner", metavar="TEXT", help="legal owner (default: [design] organisation)")
-    parser.add_argument("--contact", metavar="TEXT", help="contact for shops (default: [design] contact)")
-    parser.add_argument(
-        "--sample", action="store_true", help='without owner and contact: marked "sample, not for order"'
-    )
-    parser.add_argument(
-        "--sets",
-        choices=("one", "all"),
-        default="one",
-        help="order parts that set-ups share once, or for each (default one)",
-    )
+    parser.add_argument("-o", "--out", metavar="DIR", default="exports/releases")
+    parser.add_argument("--owner", metavar="TEXT")
+    parser.add_argument("--contact", metavar="TEXT")
+    parser.add_argument("--sample", action="store_true")
+    parser.add_argument("--sets", choices=("one", "all"), default="one")
     add_others(parser, "a zip there is not as tactcad wrote it", "NAME-kept-1.zip")
     add_shop(parser)
-    parser.add_argument("--draft", action="store_true", help="write PRELIMINARY zips even if checks fail")
+    parser.add_argument("--draft", action="store_true")
     add_json(parser)
 
 

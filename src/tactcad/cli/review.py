@@ -10,19 +10,6 @@ from pathlib import Path
 
 from .parser import UNLISTED, add_json
 
-EXAMPLES = """\
-  tactcad review                                  review.html of hardware/macro-array.toml, all its scenes
-  tactcad review soft-tissue --out soft.html      another design, to a file of your choice
-  tactcad review my/design.toml --scene array     one scene only, which is faster
-  tactcad review macro-array --drawings           with the drawing sheet of every part made
-  tactcad review exports/macro-array              of an export, with its sheets
-  tactcad review --out macro-array.FCStd      the same for FreeCAD, made by FreeCAD itself
-
-One file that opens in a browser, without server or network: scenes in three dimensions, with cuts, the
-exploded view by the guide's steps and the rigs' motions; a click on a part shows its number, material,
-mass, limits, findings, bill row, and of an element stiffness, strain, rated force and pairs. Every check
-runs."""
-
 
 def configure(parser: argparse.ArgumentParser) -> None:
     from tactcad.design.load import DEFAULT_DESIGN
@@ -34,13 +21,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
         metavar="DESIGN",
         help=f"a path, a name in hardware/ (default {DEFAULT_DESIGN}), or an export's folder",
     )
-    parser.add_argument(
-        "--scene", action="append", metavar="NAME", help="show this scene; may be repeated (default: all)"
-    )
-    parser.add_argument("--drawings", action="store_true", help="with the drawing sheet of every part made")
-    parser.add_argument(
-        "-o", "--out", metavar="FILE", help="page (default review.html), or FreeCAD's document, FILE.FCStd"
-    )
+    parser.add_argument("--scene", action="append", metavar="NAME")
+    parser.add_argument("--drawings", action="store_true")
+    parser.add_argument("-o", "--out", metavar="FILE")
     parser.add_argument("--freecad", help=UNLISTED)  # beside a page
     add_json(parser)
 

@@ -7,21 +7,14 @@ import json
 
 from .parser import BY_NAME, UNLISTED
 
-EXAMPLES = """\
-  tactcad schema              every field of a design file, table by table
-  tactcad schema element      the fields of one table
-  tactcad schema target       every field of a target file, which `tactcad design` takes
-  tactcad schema study        every field of a study file, which `tactcad sweep` takes
-  tactcad schema --json       the same as JSON Schema, for editors that check TOML"""
-
 
 def configure(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("table", nargs="?", metavar="TABLE", help="one table; or `target`, `study`")
+    parser.add_argument("table", nargs="?", metavar="TABLE")
     for other in ("target", "study"):
         parser.add_argument(
             f"--{other}", action="store_const", const=other, dest=f"table{BY_NAME}", help=UNLISTED
         )
-    parser.add_argument("--json", action="store_true", help="print JSON Schema")
+    parser.add_argument("--json", action="store_true")
 
 
 def run(args: argparse.Namespace) -> int:

@@ -19,11 +19,6 @@ from .parser import BY_NAME, UNLISTED, add_allowance, allowance, refuse_named
 if TYPE_CHECKING:
     from tactcad.design.tree import Design
 
-EXAMPLES = """\
-  tactcad size --stiffness 10 --load-arm 5
-  tactcad size --stiffness 40 --load-arm 3 --solve length --with sides=two --with hinge_thickness=0.3
-  tactcad size soft-tissue --stiffness 2 --load-arm 6 --force 0.5 --json
-"""
 
 # Lengths that --with takes besides the load arm, which has its own option.
 LENGTHS = tuple(name for name in REQUIRED if name not in ("load_arm", "poisson", "youngs_modulus"))
@@ -31,18 +26,9 @@ OWN = ("sides", *LENGTHS, "youngs_modulus", "poisson", "alloy")
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument(
-        "--stiffness", type=float, required=True, metavar="K", help="wanted tip stiffness, N/mm"
-    )
-    parser.add_argument(
-        "--load-arm", type=float, required=True, metavar="L", help="hinge centre to load line, mm"
-    )
-    parser.add_argument(
-        "--solve",
-        choices=("thickness", "length"),
-        default="thickness",
-        help="what to find: hinge thickness (default) or slot length",
-    )
+    parser.add_argument("--stiffness", type=float, required=True, metavar="K")
+    parser.add_argument("--load-arm", type=float, required=True, metavar="L")
+    parser.add_argument("--solve", choices=("thickness", "length"), default="thickness")
     parser.add_argument(
         "design", nargs="?", default=DEFAULT_DESIGN, help=f"gives all other values (default {DEFAULT_DESIGN})"
     )
@@ -58,15 +44,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
     for name in OWN:  # each as an option of its own, as before
         kind = str if name in ("sides", "alloy") else float
         parser.add_argument(f"--{name.replace('_', '-')}", type=kind, help=UNLISTED)
-    parser.add_argument(
-        "--force", type=float, metavar="N", help="force on the pad (default: the design's rated force)"
-    )
-    parser.add_argument(
-        "--tolerance",
-        type=float,
-        metavar="MM",
-        help="plus and minus of the length found (default: the design's)",
-    )
+    parser.add_argument("--force", type=float, metavar="N")
+    parser.add_argument("--tolerance", type=float, metavar="MM")
     parser.add_argument(
         "--model",
         choices=CLOSED_FORMS,
@@ -74,7 +53,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         help=f"one of {', '.join(CLOSED_FORMS)} (default {DEFAULT_RUNG})",
     )
     add_allowance(parser, "error of K, against solid elements refined to their limit,", "rung")
-    parser.add_argument("--json", action="store_true", help="write JSON")
+    parser.add_argument("--json", action="store_true")
 
 
 def run(args: argparse.Namespace) -> int:

@@ -13,37 +13,15 @@ from .readings import add_map, from_log
 if TYPE_CHECKING:
     from tactcad.design.tree import Design
 
-EXAMPLES = """\
-  tactcad calibrate hardware/examples/calibration.csv --out calibration.csv
-  tactcad stiffness hardware/examples/grasp.csv --calibration calibration.csv
-  tactcad stiffness mine.csv --calibration calibration.csv --thickness 6+-0.3 --nu 0.49
-  tactcad stiffness mine.csv --calibration calibration.csv --reference 1 --json
-  tactcad stiffness run8.tdms --map map.toml --calibration calibration.csv   a lab's raw log
-
-FILE is CSV with the columns load, element, signal (N and V, or load_mN, signal_mV), and if there are
-several, run and sample: every element at every load. With a column time_s a load may be read any number of
-times, and if it returns later the drift is estimated. The calibration is the file of `tactcad calibrate`
-(--out, or --json). Of a planar design: load, element, bx, by, bz (mT), without load too."""
-
 
 def configure(parser: argparse.ArgumentParser) -> None:
     from tactcad.design.load import DEFAULT_DESIGN
 
-    parser.add_argument("file", metavar="FILE", help="grasp readings (CSV)")
+    parser.add_argument("file", metavar="FILE")
     add_map(parser)
-    parser.add_argument(
-        "--calibration", required=True, metavar="FILE", help="calibration of the elements (CSV or JSON)"
-    )
-    parser.add_argument(
-        "--reference",
-        type=int,
-        default=None,
-        metavar="N",
-        help="the reference element (default: the stiffest of those read)",
-    )
-    parser.add_argument(
-        "--level", type=float, default=0.95, metavar="P", help="level of the intervals (default 0.95)"
-    )
+    parser.add_argument("--calibration", required=True, metavar="FILE")
+    parser.add_argument("--reference", type=int, default=None, metavar="N")
+    parser.add_argument("--level", type=float, default=0.95, metavar="P")
     parser.add_argument(
         "--design",
         metavar="DESIGN",
@@ -51,28 +29,11 @@ def configure(parser: argparse.ArgumentParser) -> None:
         help="the array that was pressed; the places of its pads decide their coupling through the object "
         f"(default {DEFAULT_DESIGN})",
     )
-    parser.add_argument(
-        "--coupling",
-        type=float,
-        default=None,
-        metavar="C",
-        help="take the object as springs that couple the pads by at most this share of an elastic "
-        "half-space's coupling (0: each pad on an object of its own); without it the object is a layer",
-    )
-    parser.add_argument(
-        "--thickness",
-        metavar="H[+-DH]",
-        help="of the object, a layer bonded to a rigid base, with its limits, mm (inf: a half-space): its "
-        "Young's modulus and inclination are printed too; without it the intervals hold for all layers, from "
-        "the thinnest allowed to a half-space",
-    )
-    parser.add_argument(
-        "--nu", type=float, default=None, metavar="NU", help="Poisson's ratio of the layer (default 0.49)"
-    )
-    parser.add_argument(
-        "--picture", metavar="FILE.svg", help="of planar designs: draw forces and K_obj over the plane"
-    )
-    parser.add_argument("--json", action="store_true", help="print as JSON")
+    parser.add_argument("--coupling", type=float, default=None, metavar="C")
+    parser.add_argument("--thickness", metavar="H[+-DH]")
+    parser.add_argument("--nu", type=float, default=None, metavar="NU")
+    parser.add_argument("--picture", metavar="FILE.svg")
+    parser.add_argument("--json", action="store_true")
     add_needless_allowance(parser)
 
 

@@ -17,44 +17,17 @@ if TYPE_CHECKING:
     from tactcad.sweep.run_sweep import Swept
     from tactcad.sweep.study import Study
 
-EXAMPLES = """\
-  tactcad sweep hardware/studies/hinges.toml --out hinges
-  tactcad sweep mine.toml --out mine --scheduler tcp://head:8786    on a running cluster
-  tactcad sweep mine.toml --out mine --within 0.1%    by the rung that keeps 0.1 %, not by the study's own
-  tactcad sweep plot hinges               DIR/plot.html: pairs, main effects, shares of variance
-  tactcad schema study                    every field of a study file
-
-DIR gets results.parquet, results.csv (up to 1e6 rows, above with --csv) and manifest.json. Each task's
-result is kept in DIR/store as it finishes: the same command again resumes a stopped study, computes nothing
-twice and gives the same bytes. Refused designs are rows with their reason; if all are, the exit status is
-1."""
 
 MOST_WORKERS = 1000
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument(
-        "study", nargs="+", metavar="STUDY.toml", help="study: varied fields and measures; or: plot DIR"
-    )
-    parser.add_argument(
-        "-o", "--out", metavar="DIR", help="folder of this study: new, empty, or begun before"
-    )
-    parser.add_argument(
-        "--scheduler",
-        metavar="ADDRESS",
-        help="of a Dask scheduler, as tcp://HOST:8786, whose workers see DIR by the same path (default: "
-        "processes on this machine)",
-    )
-    parser.add_argument(
-        "--store",
-        metavar="ADDRESS",
-        help="where tasks' results are kept, as s3://bucket/path: any that fsspec knows and every worker "
-        "reaches (default: DIR/store)",
-    )
-    parser.add_argument(
-        "--workers", type=int, metavar="N", help="processes on this machine (default: one a core)"
-    )
-    parser.add_argument("--csv", action="store_true", help="also write results.csv above 1e6 rows")
+    parser.add_argument("study", nargs="+", metavar="STUDY.toml")
+    parser.add_argument("-o", "--out", metavar="DIR")
+    parser.add_argument("--scheduler", metavar="ADDRESS")
+    parser.add_argument("--store", metavar="ADDRESS")
+    parser.add_argument("--workers", type=int, metavar="N")
+    parser.add_argument("--csv", action="store_true")
     add_allowance(
         parser,
         "error of K, and half-width of the yield's 95 % interval if the study has builds,",

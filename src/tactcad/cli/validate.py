@@ -8,24 +8,15 @@ from contextlib import nullcontext
 
 from .parser import BY_NAME, UNLISTED, add_design, add_others
 
-EXAMPLES = """\
-  tactcad validate                           the findings, as text
-  tactcad validate --out validation          report.html (opens offline), report.json and plots/*.svg
-  tactcad validate --json                    findings and every number as JSON
-  tactcad validate --table1 mine.csv         another calibration table of the same form
-
-The folder is replaced in one step by a finished one. It may be missing, empty, or an earlier report as
-tactcad wrote it; any other is left as it is, unless --keep or --discard is given."""
-
 
 def configure(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("-o", "--out", metavar="DIR", help="write the report into this folder")
+    parser.add_argument("-o", "--out", metavar="DIR")
     add_others(parser)
-    parser.add_argument("--json", action="store_true", help="print the report as JSON on standard output")
+    parser.add_argument("--json", action="store_true")
     add_design(parser)
     parser.add_argument("--design", dest=f"design{BY_NAME}", help=UNLISTED)
-    parser.add_argument("--table1", metavar="FILE", help="a CSV file in place of the paper's Table 1")
-    parser.add_argument("--table2", metavar="FILE", help="a CSV file in place of the paper's Table 2")
+    parser.add_argument("--table1", metavar="FILE")
+    parser.add_argument("--table2", metavar="FILE")
 
 
 def run(args: argparse.Namespace) -> int:

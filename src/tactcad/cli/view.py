@@ -7,21 +7,11 @@ import sys
 
 from .parser import add_design
 
-EXAMPLES = """\
-  tactcad view my/design.toml                      its array; open the printed address in a browser
-  tactcad view my/design.toml --scene grasping     a rig
-  tactcad view my/design.toml --port 8123          always the same port; the token changes
-
-The page of `tactcad review` follows the file: every save shows the new sensor in the same view, with the
-numbers that changed, before and after. If a rule is broken or the text is wrong, it says so and keeps the
-last good model. It listens on 127.0.0.1 only and needs the token in the printed address. Checks and virtual
-builds take seconds and are left out. Ctrl-C ends it."""
-
 
 def configure(parser: argparse.ArgumentParser) -> None:
     add_design(parser)
-    parser.add_argument("--scene", default="array", metavar="NAME", help="scene to show (default array)")
-    parser.add_argument("--port", type=int, default=0, help="port on 127.0.0.1 (default: any free one)")
+    parser.add_argument("--scene", default="array", metavar="NAME")
+    parser.add_argument("--port", type=int, default=0)
 
 
 def run(args: argparse.Namespace) -> int:

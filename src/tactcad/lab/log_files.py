@@ -57,11 +57,7 @@ class LabLog:
 def read_log(path: str | Path) -> LabLog:
     """Read a log; the format goes by the file's ending, all else than .lvm and .tdms is CSV.
 
-    Raises
-    ------
-    InputError
-        Not such a file; a row of another length; a column named twice.
-    """
+    Raises InputError: not such a file; a row of another length; a column named twice."""
     ending = Path(path).suffix.lower()
     if ending == ".tdms":
         return _tdms(path)

@@ -24,11 +24,11 @@ from tactcad.paper.published import Published
 from tactcad.paper.reference_stiffness import Table2Study
 from tactcad.parts.array.element import WIRE_TOLERANCE
 from tactcad.report import plots as d
-from tactcad.report.figures import listed, percent, sig
+from tactcad.report.figures import percent, sig
 from tactcad.report.report import Picture, ReportSection, ReportTable
 
 from .grasp_figures import elements_in_parallel
-from .prose import drawn, effect_text, section, tabulated
+from .prose import drawn, effect_text, saying, section, table
 
 
 @dataclass(frozen=True)
@@ -394,22 +394,33 @@ def page(b: Budget) -> ReportSection:
 
 
 def findings(b: Budget) -> tuple[str, ...]:
-    top = b.effects[:3]
+    say = saying("budget", b=b)
+    top, left = b.effects[:3], sorted(b.effects, key=lambda e: -e.remaining)[:2]
     small = next(e for e in b.effects if e.name.startswith("closed form"))
-    above = [e for e in b.effects if e.on_object > small.on_object]
-    left = sorted(b.effects, key=lambda e: -e.remaining)[:2]
-    large = [e for e in b.effects if e.on_object > MATTERS]
     return (
-        f"Largest are {listed(f'{e.name} ({percent(e.on_object)})' for e in top)}. {len(large)} of "
-        f"{len(b.effects)} effects move K_obj by more than {percent(MATTERS)} each.",
-        f"An error of 1 % in K_r is {abs(b.sensitivity_reference):.2f} % in K_obj here, 1 % in K_m "
-        f"{abs(b.sensitivity_measuring):.2f} %, 1 % in R {abs(b.sensitivity_ratio):.2f} %.",
-        f"Together (root of squares) they make {percent(b.total())} as the paper's rig stood, with K "
-        f"from the drawing; with each remedy {percent(b.total(remaining=True))}. Then "
-        f"{listed(f'{e.name} ({percent(e.remaining)})' for e in left)} lead.",
-        f"The closed form's own error ({percent(small.short_arm)} of K, {percent(small.on_object)} of "
-        f"K_obj) is smaller than {len(above)} of the other {len(b.effects) - 1} effects: it is a sharp "
-        "tool, not the answer.",
+        say(
+            "largest",
+            top=[f"{e.name} ({percent(e.on_object)})" for e in top],
+            large=sum(e.on_object > MATTERS for e in b.effects),
+            count=len(b.effects),
+            matters=MATTERS,
+        ),
+        say(
+            "sensitivity",
+            by=[abs(v) for v in (b.sensitivity_reference, b.sensitivity_measuring, b.sensitivity_ratio)],
+        ),
+        say(
+            "together",
+            stood=b.total(),
+            left=b.total(remaining=True),
+            lead=[f"{e.name} ({percent(e.remaining)})" for e in left],
+        ),
+        say(
+            "closed form",
+            small=small,
+            above=sum(e.on_object > small.on_object for e in b.effects),
+            others=len(b.effects) - 1,
+        ),
     )
 
 
@@ -417,16 +428,15 @@ def _table(b: Budget) -> ReportTable:
     def part(v: float) -> str:
         return "–" if np.isnan(v) else percent(v) if v < 10 else f"× {sig(v)}"
 
-    return tabulated(
+    return table(
         "budget table",
-        b.effects,
-        ("effect", "", lambda e: e.name),
-        ("on K", "shortest arm", lambda e: part(e.short_arm)),
-        ("on K", "longest arm", lambda e: part(e.long_arm)),
-        ("on K_obj", "", lambda e: part(e.on_object)),
-        ("how computed", "", lambda e: e.how),
-        ("remedy", "", lambda e: e.remedy),
-        ("remaining", "on K_obj", lambda e: part(e.remaining)),
+        [e.name for e in b.effects],
+        [part(e.short_arm) for e in b.effects],
+        [part(e.long_arm) for e in b.effects],
+        [part(e.on_object) for e in b.effects],
+        [e.how for e in b.effects],
+        [e.remedy for e in b.effects],
+        [part(e.remaining) for e in b.effects],
     )
 
 

@@ -6,6 +6,7 @@ Truth: Table 1's stiffnesses and sensitivities. Two samples, one soft and one fa
 from __future__ import annotations
 
 import sys
+from importlib.resources import files
 from pathlib import Path
 
 import numpy as np
@@ -104,38 +105,6 @@ def grasp_log(rng: np.random.Generator) -> str:
     return "\n".join(lines) + "\n"
 
 
-GRASP_MAP = (
-    """\
-# What grasp-log.csv holds: `tactcad readings grasp-log.csv --map grasp-map.toml --out readings.csv`.
-
-[log]
-kind = "grasp"
-time = "Time (s)"
-
-[signal]
-unit = "V"
-least = -5.0    # the converter's range: what reaches it is saturated
-most = 5.0
-
-[channels]      # column = element
-"""
-    + "".join(f'"Dev1/ai{i}" = {i + 1}\n' for i in range(10))
-    + """
-[steps]
-by = "plateau"
-column = "Fz (N)"
-apart = 0.3     # N, a third of a weight
-hold = 2.0      # s, the shortest plateau
-settle = 0.5    # s left out at its beginning
-
-[load]
-column = "Fz (N)"
-unit = "N"
-least = 0.05    # N, below which the array hangs free
-"""
-)
-
-
 def write(folder: Path) -> None:
     """calibration.csv, grasp.csv, grasp-log.csv and grasp-map.toml."""
     rng = np.random.default_rng(SEED)
@@ -143,7 +112,7 @@ def write(folder: Path) -> None:
     (folder / "calibration.csv").write_text(calibration_csv(rng), "utf-8")
     (folder / "grasp.csv").write_text(grasp_csv(rng), "utf-8")
     (folder / "grasp-log.csv").write_text(grasp_log(rng), "utf-8")
-    (folder / "grasp-map.toml").write_text(GRASP_MAP, "utf-8")
+    (folder / "grasp-map.toml").write_bytes((files("tactcad.paper") / "data" / "grasp-map.toml").read_bytes())
 
 
 if __name__ == "__main__":

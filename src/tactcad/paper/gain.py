@@ -18,10 +18,10 @@ from tactcad.paper.array_model import ArrayModel
 from tactcad.paper.published import Published
 from tactcad.paper.residuals import matched
 from tactcad.report import plots as d
-from tactcad.report.figures import exact, interval, listed, percent, sig, signed_percent
-from tactcad.report.report import Cell, Marked, Picture, ReportSection, ReportTable
+from tactcad.report.figures import sig
+from tactcad.report.report import Picture, ReportSection, ReportTable
 
-from .prose import drawn, section, table, tabulated
+from .prose import drawn, grid, marked, saying, section, table
 
 LENGTHS = np.linspace(0.7, 1.5, 17)  # mm
 
@@ -128,90 +128,58 @@ def page(g: GainFit, array: ArrayModel) -> ReportSection:
 
 
 def findings(g: GainFit, array: ArrayModel) -> tuple[str, ...]:
-    far = np.abs(g.residual) > 2 * g.scatter
+    say, s = saying("gain", g=g, array=array), g.signal
+    far, limited = g.element[_far(g)], g.element[s.limited]
     inside = g.fitted_low <= g.design_gain <= g.fitted_high
-    change = g.scatter_at_length.max() / g.scatter_at_length.min() - 1
-    sentences = [
-        f"One gain of {sig(g.fitted_gain)} V per unit of strain (95 % "
-        f"{interval(g.fitted_low, g.fitted_high)}) leaves a scatter of {percent(g.scatter)} in K_v. "
-        f"Excitation {array.readout.excitation:g} V × amplifier {array.readout.gain:g} × gauge factor "
-        f"{array.gauge.factor:g}/4 gives {sig(g.design_gain)}, {'inside' if inside else 'OUTSIDE'} that "
-        "interval.",
-        "What the data identify is gain over hinge length, not the gain: over slot lengths from "
-        f"{g.lengths[0]:.2f} to {g.lengths[-1]:.2f} mm the fitted gain runs from "
-        f"{sig(g.gain_at_length[0])} to {sig(g.gain_at_length[-1])} V (as the effective length that K fixes "
-        f"to the power {g.per_length_exponent:.2f}; a grid longer than the leaf keeps it below 1), while the "
-        f"scatter changes by {percent(change)} of itself.",
-        (
-            f"Element{'s' if far.sum() > 1 else ''} {listed(f'no. {n}' for n in g.element[far])} "
-            f"lie{'' if far.sum() > 1 else 's'} more than two standard deviations off."
-            if far.any()
-            else "No element lies more than two standard deviations off: gauge place and bonding scatter "
-            "over all of them alike."
+    spread = g.scatter_at_length.max() / g.scatter_at_length.min() - 1
+    drifts = [d.max() * 1e3 for d in (g.drift_always_on, g.drift_switched)]
+    return (
+        say("one", fitted=(g.fitted_low, g.fitted_high), where="inside" if inside else "OUTSIDE"),
+        say("length", longest=g.lengths[-1], at_longest=g.gain_at_length[-1], spread=spread),
+        say("off" if len(far) == 1 else "all off" if len(far) else "none off", far=far),
+        *([say("limited", limited=limited)] if len(limited) else []),
+        say(
+            "bridge",
+            bent=np.abs(s.nonlinearity).max(),
+            strain=s.strain.max(),
+            resolution=(s.resolution.min() * 1e3, s.resolution.max() * 1e3),
         ),
-    ]
-    if g.signal.limited.any():
-        sentences.append(
-            "At the paper's largest deflections the read-out of "
-            f"{listed(f'no. {n}' for n in g.element[g.signal.limited])} reaches a supply's or the "
-            "converter's limit."
-        )
-    sentences.append(
-        f"The quarter bridge is non-linear by up to {percent(np.abs(g.signal.nonlinearity).max())} at the "
-        f"paper's largest deflections (strains up to {percent(g.signal.strain.max())}); two standard "
-        "deviations of the averaged reading are "
-        f"{interval(g.signal.resolution.min() * 1e3, g.signal.resolution.max() * 1e3, 2)} mN, "
-        "with the noise that the design assumes."
+        say("heating", drifts=drifts, share=g.switched.power / g.always_on.power),
     )
-    sentences.append(
-        f"With power on all the time a grid stays {sig(g.always_on.rise, 2)} K warmer than its leaf at "
-        f"{sig(g.always_on.power_density, 2)} kW/m² and reads up to "
-        f"{sig(g.drift_always_on.max() * 1e3, 2)} mN too much; powered only while reading, "
-        f"{sig(g.switched.rise, 2)} K and {sig(g.drift_switched.max() * 1e3, 2)} mN remain at the end of "
-        f"a reading, with {percent(g.switched.power / g.always_on.power)} of the heat."
-    )
-    return tuple(sentences)
+
+
+def _far(g: GainFit) -> np.ndarray:
+    return np.abs(g.residual) > 2 * g.scatter
 
 
 def _heating(g: GainFit, array: ArrayModel) -> ReportTable:
     switched = f"on for {array.power.on_time * 1e3:g} ms in every {array.power.period:g} s"
-    return tabulated(
+    ways, drifts = (g.always_on, g.switched), (g.drift_always_on, g.drift_switched)
+    return table(
         "gain heating",
-        (("power on all the time", g.always_on, g.drift_always_on), (switched, g.switched, g.drift_switched)),
-        ("", "", lambda row: row[0]),
-        ("mean power", "mW", lambda row: row[1].power * 1e3),
-        ("per grid area", "kW/m²", lambda row: row[1].power_density),
-        ("grid over leaf", "K", lambda row: row[1].rise),
-        ("drift dR/R", "10⁻⁶", lambda row: f"{row[1].drift * 1e6:.1f}".replace("-", "−")),
-        ("reads as, least", "mN", lambda row: row[2].min() * 1e3),
-        ("largest", "mN", lambda row: row[2].max() * 1e3),
+        ("power on all the time", switched),
+        [w.power * 1e3 for w in ways],
+        [w.power_density for w in ways],
+        [w.rise for w in ways],
+        [w.drift * 1e6 for w in ways],
+        [d.min() * 1e3 for d in drifts],
+        [d.max() * 1e3 for d in drifts],
     )
 
 
 def _by_element(g: GainFit) -> ReportTable:
-    def fitted(i: int) -> Cell:
-        return Marked(g.predicted[i]) if abs(g.residual[i]) > 2 * g.scatter else g.predicted[i]
-
-    return tabulated(
+    s = g.signal
+    return table(
         "gain by_element",
-        range(len(g.element)),
-        ("element", "", lambda i: int(g.element[i])),
-        ("arm a", "mm", lambda i: exact(g.arm[i])),
-        ("foil strain per deflection", "%/mm", lambda i: g.strain_per_deflection[i] * 100),
-        ("K_v printed", "V/mm", lambda i: exact(g.measured[i])),
-        ("K_v, fitted gain", "V/mm", fitted),
-        ("printed over fitted", "−1", lambda i: signed_percent(np.expm1(g.residual[i]))),
-        ("K_v/K printed", "V/N", lambda i: exact(g.measured_per_force[i])),
-        ("K_v/K, design's gain", "V/N", lambda i: g.signal.per_force[i]),
-        ("signal at largest deflection", "V", lambda i: g.signal.volts[i]),
-        ("bridge non-linearity", "", lambda i: percent(g.signal.nonlinearity[i])),
-        ("resolution", "mN", lambda i: g.signal.resolution[i] * 1e3),
+        *(g.element, g.arm, g.strain_per_deflection * 100, g.measured, marked(g.predicted, _far(g))),
+        *(np.expm1(g.residual), g.measured_per_force, s.per_force, s.volts, s.nonlinearity),
+        s.resolution * 1e3,
     )
 
 
 def _lengths(g: GainFit) -> ReportTable:
     pick = np.unique(np.linspace(0, len(g.lengths) - 1, 7).round().astype(int))
-    return table(
+    return grid(
         "gain lengths",
         (("slot length", "mm"), *((f"{g.lengths[i]:.2f}", "") for i in pick)),
         (

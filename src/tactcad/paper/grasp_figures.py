@@ -15,10 +15,9 @@ from tactcad.paper.array_model import ArrayModel
 from tactcad.paper.published import Published
 from tactcad.paper.reference_stiffness import Table2Study
 from tactcad.report import plots as d
-from tactcad.report.figures import interval, percent, sig, signed_percent
 from tactcad.report.report import Picture, ReportSection, ReportTable
 
-from .prose import drawn, section, tabulated
+from .prose import drawn, saying, section, table
 
 REPEATS = 400  # simulated grasps for the error bars
 
@@ -168,38 +167,30 @@ def page(six: Figure6, seven: Figure7, array: ArrayModel) -> ReportSection:
 
 
 def findings(six: Figure6, seven: Figure7, array: ArrayModel) -> tuple[str, ...]:
-    better = _miss(six, six.as_supported) < _miss(six, six.as_printed)
-    uneven = float((six.with_pad_heights.deviation / six.with_pad_heights.true[:, None]).max())
-    noise = float((six.as_supported.deviation / six.as_supported.true[:, None]).max())
-    sentences = [
-        f"For the {six.object_stiffness:g} N/mm sample the simulation with K_r = "
-        f"{sig(six.as_supported.reference_stiffness)} N/mm is {percent(_miss(six, six.as_supported))} "
-        f"(rms) from Table 2's R; with the printed {six.as_printed.reference_stiffness:g} it is "
-        f"{percent(_miss(six, six.as_printed))}. "
-        + ("The supported one is closer." if better else "The printed one is closer."),
-        "R does not depend on the load as long as pads are in one plane: read-out noise moves it by at "
-        f"most {percent(noise)} (one standard deviation, at {six.load[0]:g} N). Pads out of plane by "
-        f"±{array.tolerance.pad_height * 1e3:g} µm move an R made of totals by {percent(uneven)} there, "
-        f"{'which Figure 6 would show' if uneven > VISIBLE else 'which Figure 6 would hardly show'}; "
-        "made of slopes, R keeps to "
-        f"{percent(float(np.abs(six.slopes_with_pad_heights / six.with_pad_heights.true - 1).max()))}.",
-        "At the largest load the simulated reference element deflects by "
-        f"{sig(six.as_supported.reference_deflection[-1])} µm with the supported and by "
-        f"{sig(six.as_printed.reference_deflection[-1])} µm with the printed stiffness (section 7 holds "
-        "both against the printed range).",
-    ]
-    sentences.append(
-        f"The paper's six straight lines of R over K_m/K_obj leave {sig(seven.line_rms)} (rms of R) with "
-        f"{seven.line_parameters} parameters; equation (2) leaves {sig(seven.model_rms)} with "
-        f"{seven.model_parameters}, and bends: R levels off at K_r/K_m. "
-        + (
-            "The points scatter too much to tell which is right."
-            if seven.p_lines > 0.01
-            else f"The lines fit better than chance allows (F test, p {seven.p_lines:.0e}): one reference "
-            f"stiffness alone does not carry all of Table 2."
-        )
+    say, own, printed = saying("figures", six=six, seven=seven), six.as_supported, six.as_printed
+    own_miss, printed_miss = _miss(six, own), _miss(six, printed)
+    uneven, noise = (
+        float((s.deviation / s.true[:, None]).max()) for s in (six.with_pad_heights, six.as_supported)
     )
-    return tuple(sentences)
+    slopes = float(np.abs(six.slopes_with_pad_heights / six.with_pad_heights.true - 1).max())
+    return (
+        say(
+            "closer",
+            own_miss=own_miss,
+            printed_miss=printed_miss,
+            better="supported" if own_miss < printed_miss else "printed",
+        ),
+        say(
+            "load",
+            noise=noise,
+            height=array.tolerance.pad_height * 1e3,
+            uneven=uneven,
+            shown="would show" if uneven > VISIBLE else "would hardly show",
+            slopes=slopes,
+        ),
+        say("deflection", own=own.reference_deflection[-1], printed=printed.reference_deflection[-1]),
+        say("lines", which=say("scatter" if seven.p_lines > 0.01 else "no chance")),
+    )
 
 
 def _miss(six: Figure6, s: Simulated) -> float:
@@ -207,36 +198,21 @@ def _miss(six: Figure6, s: Simulated) -> float:
 
 
 def _table6(six: Figure6) -> ReportTable:
-    least, most = six.load[0], six.load[-1]
-
-    def off(s: Simulated, i: int) -> str:
-        return signed_percent(s.true[i] / six.measured[i] - 1)
-
-    return tabulated(
+    own, printed, uneven = six.as_supported, six.as_printed, six.with_pad_heights
+    return table(
         "grasp table6",
-        range(len(six.measuring)),
-        ("K_m", "N/mm", lambda i: f"{six.measuring[i]:g}"),
-        ("R measured", "", lambda i: six.measured[i]),
-        ("R, supported K_r", "", lambda i: six.as_supported.true[i]),
-        ("off", "", lambda i: off(six.as_supported, i)),
-        ("R, printed K_r", "", lambda i: six.as_printed.true[i]),
-        ("off", "", lambda i: off(six.as_printed, i)),
-        ("s of R by noise", f"{least:g} N", lambda i: six.as_supported.deviation[i, 0]),
-        ("s of R by pad heights", f"{least:g} N", lambda i: six.with_pad_heights.deviation[i, 0]),
-        ("the same", f"{most:.4g} N", lambda i: six.with_pad_heights.deviation[i, -1]),
-        object_stiffness=six.object_stiffness,
+        *(six.measuring, six.measured),
+        *(own.true, own.true / six.measured - 1),
+        *(printed.true, printed.true / six.measured - 1),
+        *(own.deviation[:, 0], uneven.deviation[:, 0], uneven.deviation[:, -1]),
+        six=six,
+        most=six.load[-1],
     )
 
 
 def _table7(seven: Figure7) -> ReportTable:
-    return tabulated(
-        "grasp table7",
-        range(len(seven.measuring)),
-        ("K_m", "N/mm", lambda i: f"{seven.measuring[i]:g}"),
-        ("K_m/K_obj", "", lambda i: interval(seven.relative[i].min(), seven.relative[i].max())),
-        ("R", "", lambda i: interval(seven.ratio[i].min(), seven.ratio[i].max())),
-        ("slope of the line", "", lambda i: seven.slope[i]),
-    )
+    spans = ([(row.min(), row.max()) for row in points] for points in (seven.relative, seven.ratio))
+    return table("grasp table7", seven.measuring, *spans, seven.slope)
 
 
 def _figure6(six: Figure6) -> Picture:

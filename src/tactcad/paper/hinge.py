@@ -19,10 +19,9 @@ from tactcad.paper.array_model import ArrayModel
 from tactcad.paper.published import Published
 from tactcad.paper.residuals import matched
 from tactcad.report import plots as d
-from tactcad.report.figures import interval, percent, sig, signed_percent
 from tactcad.report.report import UNREPORTED, Picture, ReportSection, ReportTable
 
-from .prose import drawn, section, table, tabulated
+from .prose import drawn, grid, saying, section, table
 
 LENGTHS = np.linspace(0.30, 2.0, 171)  # mm, slot length l
 RADII = np.linspace(0.05, 0.60, 56)  # mm, fillet radius r
@@ -218,125 +217,61 @@ def page(h: HingeFit, array: ArrayModel) -> ReportSection:
 
 
 def findings(h: HingeFit) -> tuple[str, ...]:
-    own = h.own
+    own, s = h.own, h.strains
+    say = saying("hinge", h=h, own=own, s=s, allowed=STRAIN_ACCURACY, largest=RADII[-1])
     inside = own.design_low <= h.design_length <= own.design_high
-    sentences = [
-        f"At the design's fillet radius {h.design_radius:g} mm, t as the paper gives it, the {own.name} "
-        f"hinge that fits best is {own.design_length:.2f} mm long, 95 % interval {own.design_low:.2f} to "
-        f"{own.design_high:.2f} mm. The design's {h.design_length:g} mm lies "
-        f"{'inside' if inside else 'OUTSIDE'} it.",
-        f"Length and fillet radius cannot be told apart: along the valley from r = {_valley(h)[0]:.2f} "
-        f"to {_valley(h)[1]:.2f} mm the scatter stays within {percent(_valley(h)[2])} of its least. What "
-        f"K does fix is one effective length, E b t³/(12 K L²) = {sig(own.effective_length)} mm, and "
-        f"that only within {percent(own.effective_spread / 2)} either way.",
-        (
-            f"One-sided and two-sided notches fit equally well (ratio of square sums {h.f_ratio:.3f}; "
-            f"only above {sig(h.f_limit)} would they differ): Table 1 does not tell the notch form."
-            if h.forms_alike
-            else f"The notch forms do not fit equally well (ratio of square sums {sig(h.f_ratio)}, limit "
-            f"{sig(h.f_limit)})."
-        ),
-        _load_point(h),
-        _strain_form(h),
-    ]
-    moved = max(h.leave_out, key=lambda n: abs(h.leave_out[n] - own.design_length))
-    change = h.leave_out[moved] / own.design_length - 1
-    within = own.design_low <= h.leave_out[moved] <= own.design_high
-    sentences.append(
-        f"No single element decides the length: without no. {moved} it moves most, by "
-        f"{signed_percent(change)}, inside the interval."
-        if within
-        else f"One element decides the length: without no. {moved} it moves by {signed_percent(change)}, "
-        f"out of the interval."
-    )
-    return tuple(sentences)
-
-
-def _load_point(h: HingeFit) -> str:
-    s = h.strains
+    ok = np.isfinite(own.scatter_at_radius)  # radii over which some length fits: the valley
+    valley, scatter = RADII[ok], own.scatter_at_radius[ok]
     centre = abs(s.offset - s.pad_half) <= max(0.02 * s.pad_half, s.offset_half)
-    return (
-        f"The two printed strains put the load {s.offset:.3f} ± {s.offset_half:.3f} mm from the tip "
-        "(rounding of the print), "
-        + (
-            f"which is the pad's centre ({s.pad_half:g} mm): L = a − {s.pad_half:g} mm."
-            if centre
-            else f"which is not the pad's centre ({s.pad_half:g} mm)."
-        )
-        + f" They are {s.factor:.4f} ± {s.factor_half:.4f} of the nominal 6FL/(E b t²)."
-    )
-
-
-def _strain_form(h: HingeFit) -> str:
     fits = {f.name: f.radius_from_strain for f in h.forms if np.isfinite(f.radius_from_strain[0])}
-    own = f"a plane model's own strain error of {percent(STRAIN_ACCURACY)} (two of them allowed)"
-    if not fits:
-        return f"That factor fits no notch form and no fillet radius up to {RADII[-1]:g} mm within {own}."
-    ranges = " and ".join(
-        f"{name} with r from {low:.2f} to {high:.2f} mm" for name, (low, high) in fits.items()
-    )
-    if len(fits) == len(h.forms):
-        return f"That factor fits {ranges}, within {own}: the strains do not tell the notch form either."
+    ranges = " and ".join(f"{name} with r from {a:.2f} to {b:.2f} mm" for name, (a, b) in fits.items())
+    moved = max(h.leave_out, key=lambda n: abs(h.leave_out[n] - own.design_length))
+    within = own.design_low <= h.leave_out[moved] <= own.design_high
     return (
-        f"That factor fits {ranges}, within {own}; the other form does not: the only hint at the notch "
-        "form in the paper."
+        say("best", where="inside" if inside else "OUTSIDE"),
+        say(
+            "valley",
+            least=valley[0],
+            most=valley[-1],
+            change=scatter.max() / scatter.min() - 1,
+            half=own.effective_spread / 2,
+        ),
+        say("alike" if h.forms_alike else "unlike"),
+        say("load point", where=say("centre" if centre else "not centre")),
+        say("both forms" if len(fits) == len(h.forms) else "one form" if fits else "no form", ranges=ranges),
+        say(
+            "all decide" if within else "one decides",
+            moved=moved,
+            change=h.leave_out[moved] / own.design_length - 1,
+        ),
     )
-
-
-def _valley(h: HingeFit) -> tuple[float, float, float]:
-    """Radii over which some length fits, and how much the scatter changes along them."""
-    scatter = h.own.scatter_at_radius
-    ok = np.isfinite(scatter)
-    return float(RADII[ok][0]), float(RADII[ok][-1]), float(scatter[ok].max() / scatter[ok].min() - 1)
 
 
 def _forms(h: HingeFit) -> ReportTable:
-    own = h.own
-    return tabulated(
+    return table(
         "hinge forms",
-        h.forms,
-        ("notch", "", lambda f: f.name),
-        (f"length at r = {h.design_radius:g} mm", "mm", lambda f: f.design_length),
-        ("95 % interval", "mm", lambda f: interval(f.design_low, f.design_high)),
-        ("least square sum at l", "mm", lambda f: f.best_length),
-        ("and r", "mm", lambda f: f.best_radius),
-        ("scatter left in K", "ln", lambda f: percent(f.best_scatter)),
-        ("E b t³/(12 K L²)", "mm", lambda f: f.effective_length),
+        [f.name for f in h.forms],
+        [f.design_length for f in h.forms],
+        [(f.design_low, f.design_high) for f in h.forms],
+        [f.best_length for f in h.forms],
+        [f.best_radius for f in h.forms],
+        [f.best_scatter for f in h.forms],
+        [f.effective_length for f in h.forms],
+        h=h,
+        own=h.own,
         count=len(h.element),
-        design_length=own.design_length,
-        design_low=own.design_low,
-        design_high=own.design_high,
-        design_radius=h.design_radius,
-        form=own.name,
     )
 
 
 def _strain_table(h: HingeFit, array: ArrayModel) -> ReportTable:
-    s = h.strains
-    section = array.section.rows([0])
-    rows = []
-    for arm, printed, nominal in zip(s.arms, s.printed, s.nominal):
-        forms = [
-            float(face_factor(section.with_(two_sided=two)).item()) * nominal * 100 for two in (False, True)
-        ]
-        rows.append((arm, printed * 100, nominal * 100, f"{printed / nominal:.4f}", *forms))
-    return table(
-        "hinge strains",
-        (
-            ("arm a", "mm"),
-            ("printed", "%"),
-            ("6FL/(E b t²), L = a − 1", "%"),
-            ("printed over nominal", ""),
-            ("one-sided, gauge face", "%"),
-            ("two-sided, gauge face", "%"),
-        ),
-        tuple(rows),
-        design_radius=h.design_radius,
-    )
+    s, one = h.strains, array.section.rows([0])
+    printed, nominal = np.array(s.printed) * 100, np.array(s.nominal) * 100
+    forms = [float(face_factor(one.with_(two_sided=two)).item()) * nominal for two in (False, True)]
+    return table("hinge strains", s.arms, printed, nominal, printed / nominal, *forms, h=h)
 
 
 def _left_out(h: HingeFit) -> ReportTable:
-    return table(
+    return grid(
         "hinge left_out",
         (("left out", ""), *((f"no. {n}", "") for n in h.leave_out)),
         (("l, mm", *(f"{v:.2f}" for v in h.leave_out.values())),),

@@ -21,10 +21,10 @@ from tactcad.paper.grasp_figures import elements_in_parallel
 from tactcad.paper.published import Published
 from tactcad.paper.reference_stiffness import Table2Study
 from tactcad.report import plots as d
-from tactcad.report.figures import interval, listed, percent, sig
+from tactcad.report.figures import sig
 from tactcad.report.report import Picture, ReportSection, ReportTable
 
-from .prose import drawn, section, tabulated
+from .prose import drawn, saying, section, table
 
 GRID = np.radians(np.linspace(-1.2, 1.2, 5))  # first tries of each angle
 STEP = 1e-4  # of slopes, mm of heights and ln of stiffnesses, for derivatives
@@ -219,59 +219,47 @@ def page(v: Inclination) -> ReportSection:
 
 
 def findings(v: Inclination) -> tuple[str, ...]:
-    a, b, n = v.level, v.inclined, v.level.left.size
+    say, b, n = saying("inclination", v=v), v.inclined, v.level.left.size
     steep = np.degrees(np.hypot(*np.arctan(b.slope).T))
-    worst = int(np.argmax(steep))
-    taken = 1 - b.rss / v.springs
-    other = listed(f"{sig(s)} at {t:g} mm" for t, s in zip(OTHERS, v.by_thickness))
-    unlike = b.rss * (1 + fdtri(1, n - b.parameters, 0.95) / (n - b.parameters))  # by one more parameter
-    alike = [t for t, s in zip(OTHERS, v.by_thickness) if s < unlike]
+    rest = n - b.parameters
+    unlike = b.rss * (1 + fdtri(1, rest, 0.95) / rest)  # by one more parameter
+    alike = [f"{t:g} mm" for t, s in zip(OTHERS, v.by_thickness) if s < unlike]
     off = v.own_object.object_ / v.object_printed
     return (
-        f"Two angles of each sample's face take {percent(taken)} of the variance of ln R that separate "
-        f"springs leave (sum of squares {sig(v.springs)} to {sig(b.rss)}; level layers {sig(a.rss)}): F = "
-        f"{sig(v.f)} with {b.parameters - a.parameters} and {n - b.parameters} degrees of freedom, p "
-        f"{v.p:.1g}. "
-        + (
-            "An inclined sample explains what nothing else did."
-            if v.p < 0.01
-            else "That is no more than as many parameters take by chance."
+        say(
+            "taken",
+            share=1 - b.rss / v.springs,
+            extra=b.parameters - v.level.parameters,
+            rest=rest,
+            verdict=say("explains" if v.p < 0.01 else "chance"),
         ),
-        f"The faces are inclined by {interval(steep.min(), steep.max())} degrees, most on the "
-        f"{v.object_printed[worst]:g} N/mm sample; K_r = {sig(b.reference)} N/mm then, and ln R scatters by "
-        f"{percent(float((b.left**2).mean() ** 0.5))}.",
-        f"What the data do not tell apart: inclined samples leave {sig(b.rss)} at {v.thickness:g} mm, "
-        f"{other}; "
-        + (f"{listed(f'{t:g} mm' for t in alike)} would do. " if alike else "these fit worse. ")
-        + f"Pads of other heights, the same for all samples, with level faces leave {sig(v.heights.rss)} "
-        f"with {v.heights.parameters} parameters. Heights and a common angle act alike: 0.1 degrees over "
-        "16 mm are 28 um.",
-        f"With K_obj free as well, inclined samples give {interval(off.min(), off.max())} times the printed "
-        f"K_obj and leave {sig(v.own_object.rss)}.",
+        say(
+            "steep",
+            span=(steep.min(), steep.max()),
+            steepest=v.object_printed[np.argmax(steep)],
+            scatter=(b.left**2).mean() ** 0.5,
+        ),
+        say(
+            "not told",
+            other=[f"{sig(s)} at {t:g} mm" for t, s in zip(OTHERS, v.by_thickness)],
+            alike=say("alike", alike=alike) if alike else say("worse"),
+        ),
+        say("own object", off=(off.min(), off.max())),
     )
 
 
 def _table(v: Inclination) -> ReportTable:
-    b, own = v.inclined, v.own_object
-    angle, half = np.degrees(np.arctan(b.slope)), np.degrees(b.slope_half)
-
-    def of(j: int, k: int) -> str:
-        return f"{angle[j, k]:.2f} ± {half[j, k]:.2f}"
-
-    def fitted(j: int) -> str:
-        low, high = own.object_[j] * np.exp(np.array([-1, 1]) * np.minimum(own.object_half[j], 50))
-        return f"{sig(own.object_[j])} ({sig(low)} to {sig(high)})"
-
-    return tabulated(
+    own = v.own_object
+    angle, half = np.degrees(np.arctan(v.inclined.slope)), np.degrees(v.inclined.slope_half)
+    angles = ([f"{a:.2f} ± {h:.2f}" for a, h in zip(angle[:, k], half[:, k])] for k in (0, 1))
+    ends = own.object_ * np.exp(np.array([[-1], [1]]) * np.minimum(own.object_half, 50))
+    return table(
         "inclination angles",
-        range(len(v.object_printed)),
-        ("K_obj", "N/mm", lambda j: f"{v.object_printed[j]:g}"),
-        ("along the arms", "degrees", lambda j: of(j, 0)),
-        ("along the rows", "degrees", lambda j: of(j, 1)),
-        ("scatter of ln R, level", "", lambda j: percent(float((v.level.left[:, j] ** 2).mean() ** 0.5))),
-        ("inclined", "", lambda j: percent(float((b.left[:, j] ** 2).mean() ** 0.5))),
-        ("K_obj free as well", "N/mm", fitted),
-        thickness=f"{v.thickness:g}",
+        v.object_printed,
+        *angles,
+        *((fitted.left**2).mean(0) ** 0.5 for fitted in (v.level, v.inclined)),
+        [f"{sig(x)} ({sig(low)} to {sig(high)})" for x, low, high in zip(own.object_, *ends)],
+        v=v,
     )
 
 

@@ -12,10 +12,10 @@ from tactcad.lab.regression import t_quantile
 from tactcad.mechanics import lumped
 from tactcad.paper.reference_stiffness import Table2Study, solve
 from tactcad.report import plots as d
-from tactcad.report.figures import interval, percent, sig
-from tactcad.report.report import Marked, Picture, ReportSection, ReportTable
+from tactcad.report.figures import interval, sig
+from tactcad.report.report import Cell, Picture, ReportSection, ReportTable
 
-from .prose import drawn, section, table
+from .prose import drawn, grid, marked, saying, section
 
 
 @dataclass(frozen=True)
@@ -127,73 +127,89 @@ def page(v: Inversion) -> ReportSection:
 
 
 def findings(v: Inversion) -> tuple[str, ...]:
-    x = v.object_stiffness
-    n = x.size * len(v.measuring)
-    printed, supported = (_right(w.estimate, x) for w in (v.printed, v.supported))
-    held = v.supported.holds(x)
-    well = np.abs(v.supported.condition) < WELL
-    lost = ~v.supported.physical()
-    rows_lost = [f"{k:g}" for k, bad in zip(v.measuring, lost) if bad.any()]
-    sentences = [
-        f"With the printed K_r = {v.printed.reference:g} N/mm {printed.sum()} of {n} readings "
-        f"give a K_obj within a factor {FACTOR:g} of the sample's, with K_r = "
-        f"{sig(v.supported.reference)} N/mm {supported.sum()}; the median is "
-        f"{sig(_median(v.printed, x))} and {sig(_median(v.supported, x))} times the sample's"
-        + _median_of_positive(v, x)
-        + ".",
-        _without_its_own(v),
-        _without_reading(v),
-        f"With the supported K_r {lost.sum()} readings give no positive K_obj at all"
-        + (f" (K_m = {', '.join(rows_lost)} N/mm)." if lost.any() else ".")
-        + f" The 95 % interval (R scatters by {percent(v.ratio_error)}) holds the sample's K_obj for "
-        f"{held.sum()} of {n}"
-        + f", and is bounded for {(v.supported.bounded & (v.supported.low > 0)).sum()}.",
-    ]
-    if well.any() and (~well).any():
-        sentences.append(_by_condition(v, well))
-    return tuple(sentences)
-
-
-def _without_its_own(v: Inversion) -> str:
-    """Number of correct ones with K_r fitted without the reading under test."""
-    x = v.object_stiffness
-    left_out, *ends = (_right(e, x).sum() for e in (v.left_out, *v.at_ends))
-    same = f"{ends[0]} with either end" if ends[0] == ends[1] else f"{ends[0]} and {ends[1]} with the ends"
-    return (
-        "That K_r is fitted to these very readings: with the one that all others support, without the "
-        f"reading's own element and sample, {left_out} are within the factor; {same} of its 95 % interval."
-    )
-
-
-def _without_reading(v: Inversion) -> str:
-    """Number that would be right with the samples' geometric mean as the answer to all, without any
-    reading."""
-    x, elements = v.object_stiffness, len(v.measuring)
+    x, w = v.object_stiffness, v.supported
+    say = saying("inversion", v=v, w=w, factor=FACTOR, well=WELL, n=x.size * len(v.measuring))
+    positive = w.physical()
+    right, printed, left_out = (_right(e, x) for e in (w.estimate, v.printed.estimate, v.left_out))
+    ends = [_right(e, x).sum() for e in v.at_ends]
+    # near R = 1 an estimate that is not positive counts as infinitely stiff
+    medians = [float(np.median(np.where(i.physical(), i.estimate, np.inf) / x)) for i in (v.printed, w)]
+    some = positive.any() and not positive.all()
+    of_positive = float(np.median((w.estimate / x)[positive])) if some else None
     log = np.log(x)
     one = np.exp(log.mean())
     of_others = np.exp((log.sum() - log) / (len(x) - 1)) if len(x) > 1 else x
-    return (
-        f"Always answering {sig(one)} N/mm, the samples' geometric mean, without any reading is within the "
-        f"factor for {elements * _within_factor(one, x).sum()}, the mean of the other samples for "
-        f"{elements * _within_factor(of_others, x).sum()}."
-    )
+    rows_lost = ", ".join(f"{k:g}" for k, ok in zip(v.measuring, positive) if not ok.all())
+    well = np.abs(w.condition) < WELL
+    sentences = [
+        say(
+            "right",
+            printed=printed.sum(),
+            supported=right.sum(),
+            medians=medians,
+            infinite=say("infinite", median=of_positive) if some else "",
+        ),
+        say(
+            "own readings",
+            left_out=left_out.sum(),
+            ends=say("same ends" if ends[0] == ends[1] else "ends", ends=ends),
+        ),
+        say(
+            "no reading",
+            one=one,
+            right=len(v.measuring) * _within_factor(one, x).sum(),
+            of_others=len(v.measuring) * _within_factor(of_others, x).sum(),
+        ),
+        say(
+            "intervals",
+            lost=(~positive).sum(),
+            rows=say("rows lost", rows=rows_lost) if rows_lost else "",
+            held=w.holds(x).sum(),
+            bounded=(w.bounded & (w.low > 0)).sum(),
+        ),
+    ]
+    if well.any() and (~well).any():
+        error = np.abs(np.log(np.where(positive, w.estimate, np.inf) / x))
+        least = np.abs(w.condition).min()
+        sentences.append(
+            say(
+                "condition",
+                below=right[well].sum(),
+                of_below=well.sum(),
+                left_out=left_out[well].sum(),
+                mean=np.broadcast_to(_within_factor(one, x), well.shape)[well].sum(),
+                above=right[~well].sum(),
+                of_above=(~well).sum(),
+                typical=[_typical(np.median(error[group])) for group in (well, ~well)],
+                least=least,
+                at_best=v.ratio_error * least,
+            )
+        )
+    return tuple(sentences)
 
 
-def _by_condition(v: Inversion, well: np.ndarray) -> str:
-    x = v.object_stiffness
-    error = np.abs(np.log(np.where(v.supported.physical(), v.supported.estimate, np.nan) / x))
-    inside, outside = (_typical(error, m) for m in (well, ~well))
-    supported, left_out = (_right(e, x) for e in (v.supported.estimate, v.left_out))
-    mean = np.broadcast_to(_within_factor(np.exp(np.log(x).mean()), x), well.shape)
-    least = np.abs(v.supported.condition).min()
-    return (
-        f"The condition number says beforehand which readings count: below {WELL:g} {supported[well].sum()} "
-        f"of {well.sum()} are within the factor ({left_out[well].sum()} with the K_r that the others "
-        f"support, {mean[well].sum()} without any reading), above it {supported[~well].sum()} of "
-        f"{(~well).sum()}. The typical error is {inside} below and {outside} above; rank correlation of "
-        f"condition number and error {v.rank_correlation:.2f}. Least is {sig(least)}, so that "
-        f"{percent(v.ratio_error)} in R are at best "
-        f"{percent(v.ratio_error * least)} in K_obj."
+def _typical(error: float) -> str:
+    """A median error of ln K_obj; without bound where half of a group has no estimate."""
+    return f"a factor {np.exp(error):.2f}" if np.isfinite(error) else "without bound"
+
+
+def _table(v: Inversion, w: Inverted) -> ReportTable:
+    def cell(value: float, low: float, high: float, bounded: bool) -> str:
+        held = interval(max(low, 0.0), high, 2) if high > 0 else "none ≥ 0"
+        return f"{sig(value, 2)} ({held if bounded else 'open'})"
+
+    rows: list[tuple[Cell, ...]] = []
+    right = _right(w.estimate, v.object_stiffness)
+    for i, k in enumerate(v.measuring):
+        cells = map(cell, w.estimate[i], w.low[i], w.high[i], w.bounded[i])
+        rows.append((f"{k:g}", *marked(cells, ~right[i])))
+        rows.append(("condition", *(f"{c:.1f}" for c in w.condition[i])))
+    return grid(
+        "inversion table",
+        (("K_m", "N/mm"), *((f"sample {x:g}", "N/mm") for x in v.object_stiffness)),
+        rows,
+        w=w,
+        factor=FACTOR,
     )
 
 
@@ -204,48 +220,6 @@ def _within_factor(estimate: np.ndarray, x: np.ndarray) -> np.ndarray:
 def _right(estimate: np.ndarray, x: np.ndarray) -> np.ndarray:
     positive = np.isfinite(estimate) & (estimate > 0)
     return positive & _within_factor(np.where(positive, estimate, 1.0), x)
-
-
-def _median(w: Inverted, x: np.ndarray) -> float:
-    """Median of estimate over K_obj; near R = 1 an estimate that is not positive counts as infinitely
-    stiff.
-    """
-    return float(np.median(np.where(w.physical(), w.estimate, np.inf) / x))
-
-
-def _median_of_positive(v: Inversion, x: np.ndarray) -> str:
-    """The supported median over positive estimates, if it differs from that over all."""
-    positive = v.supported.physical()
-    if positive.all() or not positive.any():
-        return ""
-    median = float(np.median((v.supported.estimate / x)[positive]))
-    return f" where what is not positive counts as infinite ({sig(median)} the latter without it)"
-
-
-def _typical(error: np.ndarray, where: np.ndarray) -> str:
-    """Median error of a group as a factor; 'without bound' where half of the group has no estimate."""
-    middle = np.median(np.where(np.isnan(error[where]), np.inf, error[where]))
-    return f"a factor {np.exp(middle):.2f}" if np.isfinite(middle) else "without bound"
-
-
-def _table(v: Inversion, w: Inverted) -> ReportTable:
-    rows = []
-    for i, k in enumerate(v.measuring):
-        cells = []
-        for j, x in enumerate(v.object_stiffness):
-            low, high, value = w.low[i, j], w.high[i, j], w.estimate[i, j]
-            held = interval(max(low, 0.0), high, 2) if high > 0 else "none ≥ 0"
-            text = f"{sig(value, 2)} ({held if w.bounded[i, j] else 'open'})"
-            cells.append(text if _right(value, x) else Marked(text))
-        rows.append((f"{k:g}", *cells))
-        rows.append(("condition", *(f"{c:.1f}" for c in w.condition[i])))
-    return table(
-        "inversion table",
-        (("K_m", "N/mm"), *((f"sample {x:g}", "N/mm") for x in v.object_stiffness)),
-        tuple(rows),
-        reference=sig(w.reference),
-        factor=FACTOR,
-    )
 
 
 def _plot(v: Inversion) -> Picture:

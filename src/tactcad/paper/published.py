@@ -37,14 +37,13 @@ TABLE_2_FIELDS = (
 
 @dataclass(frozen=True)
 class Column:
-    """Printed numbers of one unit: values and half steps have the same shape."""
+    """Printed numbers: values and half steps have the same shape."""
 
     value: np.ndarray
     half_step: np.ndarray
-    unit: str
 
     def __getitem__(self, key: Any) -> Column:
-        return Column(self.value[key], self.half_step[key], self.unit)
+        return Column(self.value[key], self.half_step[key])
 
 
 @dataclass(frozen=True)
@@ -85,8 +84,6 @@ class Published:
     table2: Table2
     figure: dict[str, float]  # single figures by name
     half_step: dict[str, float]
-    unit: dict[str, str]
-    place: dict[str, str]
 
     @property
     def reference(self) -> int:
@@ -97,37 +94,22 @@ class Published:
 def load(table1: str | Path | None = None, table2: str | Path | None = None) -> Published:
     """The paper's data.
 
-    Parameters
-    ----------
-    table1, table2
-        Files of the same form that replace the paper's tables.
-
-    Raises
-    ------
-    InputError
-        With file, line and column: a missing column, text for a number, a value out of range, an element
-        listed twice, gaps in the grid of Table 2.
-    """
+    `table1`, `table2`: files of the same form that replace the paper's tables. Raises InputError with file,
+    line and column: a missing column, text for a number, a value out of range, an element listed twice, gaps
+    in the grid of Table 2."""
     data = Path(str(files("tactcad.paper"))) / "data"
-    path = data / "printed.csv"
-    lines = [line.split(",", 3) for line in path.read_text("utf-8").splitlines() if not line.startswith("#")][
-        1:
-    ]
-    figures = (
-        {name: float(text) for name, text, _, _ in lines},
-        {name: half_step(text) for name, text, _, _ in lines},
-        {name: unit for name, _, unit, _ in lines},
-        {name: place for name, _, _, place in lines},
-    )
+    lines = [line.split(",") for line in (data / "printed.csv").read_text("utf-8").splitlines()]
+    printed = {name: text for name, text, *_ in lines if name[0] != "#" and name != "name"}
     return Published(
         _table1(read(table1 or data / "table1.csv", TABLE_1_FIELDS)),
         _table2(read(table2 or data / "table2.csv", TABLE_2_FIELDS)),
-        *figures,
+        {name: float(text) for name, text in printed.items()},
+        {name: half_step(text) for name, text in printed.items()},
     )
 
 
 def _column(rows: Rows, field: Field) -> Column:
-    return Column(rows.values(field.name), rows.half_steps(field.name), field.unit)
+    return Column(rows.values(field.name), rows.half_steps(field.name))
 
 
 def _table1(rows: Rows) -> Table1:
@@ -156,7 +138,7 @@ def _table2(rows: Rows) -> Table2:
 
     def grid(field: Field) -> Column:
         column = _column(rows, field)
-        return Column(column.value[order].reshape(shape), column.half_step[order].reshape(shape), field.unit)
+        return Column(column.value[order].reshape(shape), column.half_step[order].reshape(shape))
 
     return Table2(
         grid(TABLE_2_FIELDS[0])[:, 0],

@@ -19,10 +19,10 @@ from tactcad.paper.published import Published
 from tactcad.paper.reference_stiffness import Table2Study
 from tactcad.paper.residuals import matched, solve
 from tactcad.report import plots as d
-from tactcad.report.figures import interval, listed, percent, sig
-from tactcad.report.report import Cell, Marked, Picture, ReportSection, ReportTable
+from tactcad.report.figures import sig
+from tactcad.report.report import Picture, ReportSection, ReportTable
 
-from .prose import drawn, section, table, tabulated
+from .prose import drawn, marked, saying, section, table
 
 
 @dataclass(frozen=True)
@@ -235,107 +235,58 @@ def page(e: ReferenceElement) -> ReportSection:
 
 
 def findings(e: ReferenceElement) -> tuple[str, ...]:
-    return (_ranges_said(e), _loads(e), *_explained(e))
-
-
-def _ranges_said(e: ReferenceElement) -> str:
+    say = saying("reference", e=e)
     low, high = min(e.implied_k_v), max(e.implied_k_v)
-    head = (
-        f"The printed signals of {_printed(e.signal)} V and deflections of {_printed(e.deflection)} µm go "
-        f"with a K_v of {interval(low, high)} V/mm; "
-    )
-    if low <= e.printed_k_v <= high:
-        return head + f"Table 1's {e.printed_k_v:g} V/mm lies within."
-    factor = e.printed_k_v / high if e.printed_k_v > high else low / e.printed_k_v
+    more, less = e.printed_k_v / high, low / e.printed_k_v
+    way, factor = ("more", more) if more > 1 else ("less", less)
+    inside = say("inside") if max(more, less) <= 1 else say("outside", way=way, factor=factor)
+    telling = [x.name for x in e.explanations if abs(x.miss_per_deflection) > 2 * e.scatter]
+    open_ = [x.name for x in e.explanations if x.name not in telling]
+    possible = [x.name for x in e.explanations if x.possible]
+    predicted = [
+        say("predicts", name=x.name, size=_size(x), k_v=x.signal_per_deflection) for x in e.explanations
+    ]
+    beyond = "possible" if e.best.possible else "beyond" if e.best.name == "hinge thickness" else "though"
     return (
-        head + f"Table 1 has {e.printed_k_v:g}, at least {sig(factor)} times "
-        f"{'more' if e.printed_k_v > high else 'less'}. With that K_v the signals would mean "
-        f"{interval(*e.deflection_from_signal)} µm."
+        say("ranges", implied=(low, high), inside=inside),
+        _loads(e),
+        say(
+            "explained",
+            ratio=e.stiffness / e.nominal_stiffness,
+            predicted=predicted,
+            told=say("told", telling=telling, verb="are" if len(telling) > 1 else "is", open=open_)
+            if telling
+            else say("not told"),
+        ),
+        say(
+            "best",
+            best=e.best,
+            but=say(beyond, limit=e.best.limit),
+            which=say("geometry", possible=possible) if possible else say("no geometry"),
+        ),
     )
-
-
-def _printed(pair: tuple[float, float]) -> str:
-    return f"{pair[0]:g} to {pair[1]:g}"
-
-
-# explanation of Table 2 -> its name in a sentence, and its meaning if only it fits
-ACCOUNTS = {
-    "as printed": ("as printed", "Then Table 1 and the reference element's readings agree as they stand."),
-    "softer reference element": (
-        "with a softer reference element",
-        "Then its K in Table 1 is wrong, and its deflections in Table 2 are right.",
-    ),
-    "deflection scale of the reference element off": (
-        "with its deflection scale off",
-        "Then its K and K_v in Table 1 may stand, and its deflections behind Table 2, hence every R, "
-        "are wrong by one factor.",
-    ),
-}
 
 
 def _loads(e: ReferenceElement) -> str:
     """The explanation of Table 2 that agrees with the printed deflections and signals."""
-    first = e.readings[0]
-    said = "; ".join(
-        f"{ACCOUNTS[r.name][0]}, {interval(*r.deflection)} µm and {interval(*r.signal, 2)} V"
-        for r in e.readings
-    )
-    text = (
-        "At the grasping force that the softest element's largest deflection fixes (about "
-        f"{sig(first.load, 2)} N, or {first.weights:.0f} added weights, which the paper does not count) "
-        f"the reference element would show: {said}. Printed are {_printed(e.deflection)} µm and "
-        f"{_printed(e.signal)} V. "
-    )
+    say, first = saying("reference", e=e), e.readings[0]
+    names = {r.name: say(f"account {r.name}") for r in e.readings}
+    readings = "; ".join(say("reading", name=names[r.name], r=r) for r in e.readings)
     both = [r.name for r in e.readings if r.deflection_agrees and r.signal_agrees]
-    if len(both) == 1:
-        return text + f"Only '{ACCOUNTS[both[0]][0]}' overlaps both ranges. {ACCOUNTS[both[0]][1]}"
-    if both:
-        return (
-            text + f"{listed(repr(ACCOUNTS[n][0]) for n in both)} overlap both ranges: these readings do not "
-            f"tell them apart."
-        )
     some = [
-        f"'{ACCOUNTS[r.name][0]}' only the {'deflections' if r.deflection_agrees else 'signals'}"
+        f"'{names[r.name]}' only the {'deflections' if r.deflection_agrees else 'signals'}"
         for r in e.readings
         if r.deflection_agrees or r.signal_agrees
     ]
-    return text + (f"None overlaps both ranges; {listed(some)}." if some else "None overlaps either range.")
-
-
-def _explained(e: ReferenceElement) -> list[str]:
-    telling = [x for x in e.explanations if abs(x.miss_per_deflection) > 2 * e.scatter]
-    open_ = [x for x in e.explanations if x not in telling]
-    ratio = e.stiffness / e.nominal_stiffness
-    sentences = [
-        f"No. {e.element}'s K is {sig(ratio)} times the beam model's {sig(e.nominal_stiffness)} N/mm. By "
-        "K_v, "
-        + listed(f"{x.name} ({_size(x)}) predicts {sig(x.signal_per_deflection)}" for x in e.explanations)
-        + f" V/mm, where {e.printed_k_v:g} is printed. K_v of single elements scatters by "
-        f"{percent(e.scatter)}: "
-        + (
-            f"{listed(x.name for x in telling)} {'are' if len(telling) > 1 else 'is'} unlikely (over two "
-            f"standard deviations off), {listed(x.name for x in open_)} cannot be told apart."
-            if telling
-            else "none can be ruled out."
-        )
-    ]
-    best, possible = e.best, [x for x in e.explanations if x.possible]
-    sentences.append(
-        f"Least off in K_v is {best.name}"
-        + (
-            f", and it is {best.limit}."
-            if best.possible
-            else f", but its size is beyond the {best.limit}."
-            if best.name == "hinge thickness"
-            else f", though {best.limit}."
-        )
-        + (
-            f" Possible within the geometry: {listed(x.name for x in possible)} only."
-            if possible
-            else " None is possible within the geometry."
-        )
+    return say("loads", first=first, readings=readings) + (
+        say("only", name=names[both[0]], meaning=say(f"meaning {both[0]}"))
+        if len(both) == 1
+        else say("several", names=[repr(names[n]) for n in both])
+        if both
+        else say("one range", some=some)
+        if some
+        else say("no range")
     )
-    return sentences
 
 
 def _size(x: Explanation) -> str:
@@ -343,61 +294,43 @@ def _size(x: Explanation) -> str:
 
 
 def _ranges(e: ReferenceElement) -> ReportTable:
-    rows = (
-        ("printed signal, V", *e.signal),
-        ("printed deflection, µm", *e.deflection),
-        ("K_v that they imply, V/mm", *e.implied_k_v),
-        (f"deflection by Table 1's K_v of {e.printed_k_v:g} V/mm, µm", *e.deflection_from_signal),
-    )
-    return table(
-        "reference ranges",
-        (("", ""), ("least", ""), ("largest", "")),
-        rows,
-        softest_k_v=sig(e.softest_k_v[0]),
-        softest_k_v_2=sig(e.softest_k_v[1]),
-    )
+    ranges = np.array([e.signal, e.deflection, e.implied_k_v, e.deflection_from_signal])
+    by_k_v = f"deflection by Table 1's K_v of {e.printed_k_v:g} V/mm, µm"
+    names = ("printed signal, V", "printed deflection, µm", "K_v that they imply, V/mm", by_k_v)
+    return table("reference ranges", names, *ranges.T, e=e)
 
 
 def _accounts(e: ReferenceElement) -> ReportTable:
-    def pick(text: str, agrees: bool) -> Cell:
-        return text if agrees else Marked(text)
-
-    return tabulated(
+    return table(
         "reference accounts",
-        e.readings,
-        ("account", "", lambda r: r.name),
-        ("K_r", "N/mm", lambda r: r.stiffness),
-        ("load", "N", lambda r: r.load),
-        ("added weights", "", lambda r: f"{r.weights:.1f}"),
-        ("deflection as printed", "µm", lambda r: pick(interval(*r.deflection), r.deflection_agrees)),
-        ("signal by K_v", "V", lambda r: pick(interval(*r.signal), r.signal_agrees)),
-        deflection=_printed(e.deflection),
-        signal=_printed(e.signal),
+        [r.name for r in e.readings],
+        [r.stiffness for r in e.readings],
+        [r.load for r in e.readings],
+        [r.weights for r in e.readings],
+        marked([r.deflection for r in e.readings], [not r.deflection_agrees for r in e.readings]),
+        marked([r.signal for r in e.readings], [not r.signal_agrees for r in e.readings]),
+        e=e,
     )
 
 
 def _explanation_table(e: ReferenceElement) -> ReportTable:
-    def mark(v: float) -> Cell:
-        text = f"{np.expm1(v) * 100:+.0f} %".replace("-", "−")
-        return Marked(text) if abs(v) > 2 * e.scatter else text
-
-    return tabulated(
+    miss = np.array([(x.miss_per_deflection, x.miss_per_force) for x in e.explanations]).T
+    by_k_v, by_force = (marked(np.expm1(m), np.abs(m) > 2 * e.scatter) for m in miss)
+    return table(
         "reference explanations",
-        e.explanations,
-        ("explanation", "", lambda x: x.name),
-        ("its size", "", _size),
-        ("possible", "", lambda x: "yes" if x.possible else "no"),
-        ("limit", "", lambda x: x.limit),
-        ("K_v", "V/mm", lambda x: x.signal_per_deflection),
-        ("printed is off by", "", lambda x: mark(x.miss_per_deflection)),
-        ("K_v/K", "V/N", lambda x: x.signal_per_force),
-        ("printed is off by", "", lambda x: mark(x.miss_per_force)),
-        stiffness=e.stiffness,
-        gain=sig(e.gain),
-        scatter=percent(e.scatter),
+        [x.name for x in e.explanations],
+        [_size(x) for x in e.explanations],
+        ["yes" if x.possible else "no" for x in e.explanations],
+        [x.limit for x in e.explanations],
+        [x.signal_per_deflection for x in e.explanations],
+        by_k_v,
+        [x.signal_per_force for x in e.explanations],
+        by_force,
+        e=e,
     )
 
 
+# explanation of Table 2 -> its name in a sentence, and its meaning if only it fits
 def _plot(e: ReferenceElement) -> Picture:
     with d.panels(size=(11.2, 3.1)) as (figure, ax):
         y = np.arange(len(e.explanations))[::-1]

@@ -20,10 +20,10 @@ from tactcad.paper.array_model import ArrayModel
 from tactcad.paper.published import Published
 from tactcad.parts.array.element import WIRE_TOLERANCE
 from tactcad.report import plots as d
-from tactcad.report.figures import exact, interval, listed, percent, sig, signed_percent
-from tactcad.report.report import Cell, Marked, Picture, ReportSection, ReportTable
+from tactcad.report.figures import exact, percent, signed_percent
+from tactcad.report.report import Picture, ReportSection, ReportTable
 
-from .prose import drawn, section, table, tabulated
+from .prose import drawn, grid, marked, saying, section, table
 
 DRAWS = 40_000  # the bands' ends repeat within 0.5 %
 EDGE = 0.02  # ln K closer than this to a band's end is reported at its edge, neither inside nor outside
@@ -197,138 +197,89 @@ def page(r: Residuals, array: ArrayModel) -> ReportSection:
 
 def findings(r: Residuals, array: ArrayModel) -> tuple[str, ...]:
     """Sentences chosen by the residuals and the bands."""
-    e = r.element
-    worst = r.furthest
-    out_cut, out_pad = r.outside(r.band_cut), r.outside(r.band_pad)
-    common = (
-        f"no common factor is left (mean {signed_percent(np.expm1(r.mean))})"
-        if abs(r.mean) < SMALL_FACTOR
-        else f"all of them together are {signed_percent(np.expm1(r.mean))} off"
-    )
-    others = f"; {percent(r.scatter_of_others)} without no. {e[worst]}" if len(e) > 2 else ""
-    sentences = [
-        f"With the hinge of the design {array.name}, {common}, but single elements scatter by "
-        f"{percent(r.scatter)} (standard deviation of ln K{others}), "
-        "whichever rung is used: the model's own error is far below that.",
-        f"Furthest off is no. {e[worst]}: {sig(np.exp(r.residual[worst]))} times the prediction. Alone, "
-        + _cause(r, worst, array)
-        + ".",
-    ]
-    if out_cut.any():
-        sentences.append(
-            f"{out_cut.sum()} of {len(e)} elements (nos. {listed(e[out_cut])}) lie outside the 95 % band "
-            "that cutting and clamping tolerances leave. With the contact anywhere on the pad, "
-            + (
-                f"still outside: {listed(f'no. {n}' for n in e[out_pad])}."
-                if out_pad.any()
-                else f"none is outside{_edge(r)}: where a flat sensor tip touches a flat pad is the widest "
-                f"single uncertainty of Table 1."
-            )
-        )
-    else:
-        sentences.append(
-            f"All {len(e)} elements lie inside the 95 % band that cutting and clamping tolerances leave."
-        )
-    sentences += _equal_arms(r)
-    return tuple(sentences)
-
-
-def _edge(r: Residuals) -> str:
-    edge = r.element[r.at_edge(r.band_pad)]
-    return f" (at the edge: {listed(f'no. {n}' for n in edge)})" if len(edge) else ""
-
-
-def _place(r: Residuals, band: np.ndarray, i: int) -> str:
-    return "at its edge" if r.at_edge(band)[i] else "outside" if r.outside(band)[i] else "inside"
-
-
-def _cause(r: Residuals, i: int, array: ArrayModel) -> str:
-    t, dt, dl = r.hinge_thickness_needed[i], r.hinge_thickness_change[i], r.load_arm_change[i]
+    say, n, worst = saying("stiffness", r=r), r.element, r.furthest
+    out_cut, out_pad = n[r.outside(r.band_cut)], n[r.outside(r.band_pad)]
+    edge = n[r.at_edge(r.band_pad)]
+    t, dt, dl = r.hinge_thickness_needed[worst], r.hinge_thickness_change[worst], r.load_arm_change[worst]
     wide = [name for name, half in WIRE_TOLERANCE.items() if abs(dt) <= half]
-    thick = (
-        f"a hinge of {sig(t)} mm ({dt * 1e3:+.0f} µm, "
-        + (
-            f"within {wide[-1]} of the wire)"
-            if wide
-            else f"{sig(abs(dt) / max(WIRE_TOLERANCE.values()), 2)} times what even one pass of the "
-            f"wire leaves)"
-        )
-        if np.isfinite(t)
-        else "no hinge thickness within the model's range"
+    passes = say("in passes", passes=wide[-1]) if wide else ""
+    hinge = say(
+        "hinge",
+        t=t,
+        change=dt * 1e3,
+        wire=passes or say("beyond passes", times=abs(dt) / max(WIRE_TOLERANCE.values())),
     )
-    load = (
-        f"a load point {abs(dl):.2f} mm {'nearer to' if dl < 0 else 'further from'} the hinge "
-        + ("(still on the pad)" if abs(dl) <= r.pad_half else "(off the pad)")
-        if np.isfinite(dl)
-        else "no load point"
+    load = say(
+        "load point",
+        change=abs(dl),
+        way="nearer to" if dl < 0 else "further from",
+        pad="still on the pad" if abs(dl) <= r.pad_half else "off the pad",
     )
-    return f"{thick} or {load} would explain it"
-
-
-def _equal_arms(r: Residuals) -> list[str]:
-    """The largest ratio between elements of equal arm."""
-    pairs = [(i, j) for i, j in permutations(range(len(r.element)), 2) if r.arm[i] == r.arm[j]]
+    pairs = [(i, j) for i, j in permutations(range(len(n)), 2) if r.arm[i] == r.arm[j]]
     i, j = max(pairs, key=lambda pair: r.measured[pair[0]] / r.measured[pair[1]], default=(0, 0))
-    if r.measured[i] <= r.measured[j]:
-        return []
-    return [
-        f"Nominally equal elements differ by up to {sig(r.measured[i] / r.measured[j])} (nos. {r.element[i]} "
-        f"and {r.element[j]}): no model that knows only the arm length can fit both."
-    ]
+    return (
+        say(
+            "scatter",
+            design=array.name,
+            common=say("no factor" if abs(r.mean) < SMALL_FACTOR else "factor", mean=np.expm1(r.mean)),
+            others=say("others", worst=n[worst]) if len(n) > 2 else "",
+        ),
+        say(
+            "furthest",
+            worst=n[worst],
+            times=np.exp(r.residual[worst]),
+            hinge=hinge if np.isfinite(t) else say("no hinge"),
+            load=load if np.isfinite(dl) else say("no load point"),
+        ),
+        say(
+            "outside",
+            count=len(out_cut),
+            all=len(n),
+            cut=out_cut,
+            pad=say("still outside", pad=out_pad)
+            if len(out_pad)
+            else say("none outside", edge=say("at edge", edge=edge) if len(edge) else ""),
+        )
+        if len(out_cut)
+        else say("all inside", all=len(n)),
+        *(
+            [say("equal arms", ratio=r.measured[i] / r.measured[j], i=n[i], j=n[j])]
+            if r.measured[i] > r.measured[j]
+            else []
+        ),
+    )
 
 
 def _rungs(r: Residuals) -> ReportTable:
-    rows = tuple(
-        (
-            int(n),
-            exact(r.arm[i]),
-            exact(r.measured[i]),
-            *(values[i] for values in r.predicted.values()),
-            signed_percent(np.expm1(r.residual[i])),
-        )
-        for i, n in enumerate(r.element)
-    )
-    logs = {name: np.log(r.measured / values) for name, values in r.predicted.items()}
-    mean = ("mean", "", "", *(signed_percent(np.expm1(v.mean())) for v in logs.values()), "")
-    scatter = ("scatter", "", "", *(percent(v.std(ddof=1)) for v in logs.values()), "")
+    logs = [np.log(r.measured / values) for values in r.predicted.values()]
     columns = (
         ("element", ""),
         ("arm a", "mm"),
         ("measured K", "N/mm"),
-        *((f"{name}", "N/mm") for name in r.predicted),
+        *((name, "N/mm") for name in r.predicted),
         (f"measured over {r.rung}", "−1"),
     )
-    return table("stiffness rungs", columns, (*rows, mean, scatter))
+    off = map(signed_percent, np.expm1(r.residual))
+    rows = zip(r.element, map(exact, r.arm), map(exact, r.measured), *r.predicted.values(), off)
+    mean = ("mean", "", "", *(signed_percent(np.expm1(v.mean())) for v in logs), "")
+    scatter = ("scatter", "", "", *(percent(v.std(ddof=1)) for v in logs), "")
+    return grid("stiffness rungs", columns, (*rows, mean, scatter))
 
 
 def _explained(r: Residuals, array: ArrayModel) -> ReportTable:
-    def change(text: str, beyond: bool) -> Cell:
-        text = text.replace("-", "−")
-        return Marked(text) if beyond else text
+    def places(band: np.ndarray) -> list[str]:
+        out, edge = r.outside(band), r.at_edge(band)
+        return ["at its edge" if e else "outside" if o else "inside" for o, e in zip(out, edge)]
 
-    def thicker(i: int) -> Cell:
-        um = r.hinge_thickness_change[i] * 1e3
-        return change(f"{um:+.1f}", abs(um) > WIRE_TOLERANCE["1 pass"] * 1e3)
-
-    def longer(i: int) -> Cell:
-        mm = r.load_arm_change[i]
-        return change(f"{mm:+.2f}", not abs(mm) <= r.pad_half)
-
-    wire = ", ".join(f"{name} ±{half * 1e3:g} µm" for name, half in WIRE_TOLERANCE.items())
-    return tabulated(
+    um, mm = r.hinge_thickness_change * 1e3, r.load_arm_change
+    return table(
         "stiffness explained",
-        range(len(r.element)),
-        ("element", "", lambda i: int(r.element[i])),
-        ("arm a", "mm", lambda i: exact(r.arm[i])),
-        ("measured K", "N/mm", lambda i: exact(r.measured[i])),
-        ("band, cutting", "N/mm", lambda i: interval(*r.band_cut[:, i])),
-        ("", "", lambda i: _place(r, r.band_cut, i)),
-        ("band, and pad", "N/mm", lambda i: interval(*r.band_pad[:, i])),
-        ("", "", lambda i: _place(r, r.band_pad, i)),
-        ("hinge change", "µm", thicker),
-        ("load point change", "mm", longer),
+        *(r.element, r.arm, r.measured),
+        *(r.band_cut.T, places(r.band_cut), r.band_pad.T, places(r.band_pad)),
+        marked(um, np.abs(um) > WIRE_TOLERANCE["1 pass"] * 1e3),
+        marked(mm, ~(np.abs(mm) <= r.pad_half)),
         pad_length=array.pad_length,
-        wire=wire,
+        wire=", ".join(f"{name} ±{half * 1e3:g} µm" for name, half in WIRE_TOLERANCE.items()),
     )
 
 

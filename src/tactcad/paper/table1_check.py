@@ -7,6 +7,7 @@ whose slope is the true compliance in series and whose intercept is the travel.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,10 +15,10 @@ import numpy as np
 from tactcad.lab.regression import fit_lines, t_quantile
 from tactcad.paper.published import Column, Published
 from tactcad.report import plots as d
-from tactcad.report.figures import exact, interval, listed, sig, signed_percent
-from tactcad.report.report import Marked, Picture, ReportSection, ReportTable
+from tactcad.report.figures import sig, signed_percent
+from tactcad.report.report import Cell, Picture, ReportSection, ReportTable
 
-from .prose import drawn, section, table
+from .prose import drawn, marked, saying, section, table
 
 
 @dataclass(frozen=True)
@@ -123,115 +124,73 @@ def page(c: Table1Check, data: Published) -> ReportSection:
 
 
 def findings(c: Table1Check, data: Published) -> tuple[str, ...]:
-    cell, travel, step = (
-        data.figure[k] for k in ("load_cell_stiffness", "calibration_travel", "calibration_step")
-    )
-    s = c.series
+    s, figure, K = c.series, data.figure, data.table1.stiffness.value
+    cell, travel = figure["load_cell_stiffness"], figure["calibration_travel"]
+    say = saying("table1", c=c, s=s, figure=figure, count=len(c.element))
     agrees = s.line_low <= cell <= s.line_high
-    intercept = "a line that does not pass through zero would do that (the intercepts are not printed)"
-    products = (
-        ("K × deflection", "the printed force", c.force, intercept),
-        ("|K_v| × deflection", "the printed signal", c.signal, "again an intercept would do that"),
-        ("K_v/K from its two columns", "the printed K_v/K", c.ratio, "one of the three is misprinted"),
-    )
-    sentences = [
-        *(_product_finding(*product, c.element) for product in products),
-        f"With {cell:g} N/mm in series, the printed deflections and forces add up to travels of "
-        f"{interval(s.travel.min(), s.travel.max(), 4)} µm, not {travel:g}. Deflection against force over "
-        f"all elements is a line of {sig(s.line_stiffness)} N/mm in series (95 % "
-        f"{interval(s.line_low, s.line_high)}) from a travel of {s.line_travel:.0f} ± "
-        f"{s.line_travel_half:.0f} µm: "
-        + (
-            "the printed load cell is compatible with that."
-            if agrees
-            else f"{'softer' if s.line_stiffness < cell else 'stiffer'} than the load cell alone. "
-            + (
-                "Something else gave way, or the stiffest elements were not taken to the full travel."
-                if s.line_stiffness < cell
-                else ""
-            )
-        ),
-    ]
+    softer = s.line_stiffness < cell
     early = s.nearest_step < travel
-    if early.any():
-        sentences.append(
-            f"Nos. {listed(c.element[early])} come nearest to a travel of "
-            f"{listed(sorted({f'{v:g}' for v in s.nearest_step[early]}))} µm, a whole number of {step:g} "
-            f"µm steps below {travel:g}: they may have been stopped early"
-            + (
-                f", as no. {_over(c, data)} had to be, which at full travel would pass the force sensor's "
-                f"{data.figure['load_cell_range']:g} N."
-                if _over(c, data) is not None
-                else "."
-            )
-        )
-    return tuple(sentences)
-
-
-def _over(c: Table1Check, data: Published) -> int | None:
-    """The element that would exceed the force sensor's range at full travel, if one does."""
-    K, cell = data.table1.stiffness.value, data.figure["load_cell_stiffness"]
-    force = K * cell / (K + cell) * data.figure["calibration_travel"] * 1e-3
-    i = int(np.argmax(force))
-    return int(c.element[i]) if force[i] > data.figure["load_cell_range"] else None
-
-
-def _product_finding(name: str, against: str, p: ColumnProduct, reason: str, element: np.ndarray) -> str:
-    beyond = p.beyond_rounding
-    if not beyond.any():
-        return f"{name} agrees with {against} within rounding for all {len(element)} elements."
-    worst = int(np.argmax(np.abs(p.difference)))
-    sign = "All are low: " if (p.difference[beyond] < 0).all() and beyond.sum() > 1 else ""
+    force = K * cell / (K + cell) * travel * 1e-3  # at full travel
+    most = int(np.argmax(force))
+    over = force[most] > figure["load_cell_range"]
     return (
-        f"{name} differs from {against} by more than rounding for {beyond.sum()} of {len(element)} "
-        f"elements, most for no. {element[worst]} ({signed_percent(p.difference[worst])}). "
-        f"{sign}{reason[0].upper() + reason[1:] if not sign else reason}."
+        *(_product_finding(say, name, c) for name in ("force", "signal", "ratio")),
+        say(
+            "series",
+            travel=(s.travel.min(), s.travel.max()),
+            line=(s.line_low, s.line_high),
+            verdict=say("compatible" if agrees else "softer" if softer else "stiffer"),
+        ),
+        *(
+            [
+                say(
+                    "early",
+                    early=c.element[early],
+                    steps=sorted({f"{v:g}" for v in s.nearest_step[early]}),
+                    over=say("over", most=c.element[most]) if over else ".",
+                )
+            ]
+            if early.any()
+            else []
+        ),
+    )
+
+
+def _product_finding(say: Callable[..., str], name: str, c: Table1Check) -> str:
+    p: ColumnProduct = getattr(c, name)
+    names = {"name": say(f"{name} product"), "against": say(f"{name} printed")}
+    beyond, worst = p.beyond_rounding, int(np.argmax(np.abs(p.difference)))
+    if not beyond.any():
+        return say("agrees", **names)
+    reason = say(f"{name} reason")
+    low = beyond.sum() > 1 and (p.difference[beyond] < 0).all()
+    return say(
+        "differs",
+        **names,
+        beyond=beyond.sum(),
+        worst=c.element[worst],
+        off=p.difference[worst],
+        reason=say("all low", reason=reason) if low else reason[0].upper() + reason[1:],
     )
 
 
 def _products(c: Table1Check) -> ReportTable:
-    def cells(p: ColumnProduct, i: int) -> tuple:
-        shown = f"{signed_percent(p.difference[i]).removesuffix(' %')} ± {sig(p.rounding[i] * 100, 2)}"
-        return (exact(p.printed[i]), p.computed[i], Marked(shown) if p.beyond_rounding[i] else shown)
-
-    rows = tuple(
-        (int(n), *cells(c.force, i), *cells(c.signal, i), *cells(c.ratio, i)) for i, n in enumerate(c.element)
-    )
-
-    def head(name: str, unit: str) -> tuple:
-        return ((f"{name} printed", unit), ("from columns", unit), ("difference", "% ± rounding"))
-
-    return table(
-        "table1 products",
-        (("element", ""), *head("force", "N"), *head("signal", "V"), *head("K_v/K", "V/N")),
-        rows,
-    )
+    columns: list[Iterable[Cell]] = []
+    for p in (c.force, c.signal, c.ratio):
+        off = (
+            f"{signed_percent(d).removesuffix(' %')} ± {sig(r * 100, 2)}"
+            for d, r in zip(p.difference, p.rounding)
+        )
+        columns += [p.printed, p.computed, marked(off, p.beyond_rounding)]
+    return table("table1 products", c.element, *columns)
 
 
 def _series_table(c: Table1Check, data: Published) -> ReportTable:
-    s = c.series
-    rows = tuple(
-        (
-            int(n),
-            exact(data.table1.deflection.value[i]),
-            exact(data.table1.force.value[i]),
-            f"{s.travel[i]:.1f}",
-            f"{s.nearest_step[i]:.0f}",
-            s.stiffness_at_full_travel[i],
-        )
-        for i, n in enumerate(c.element)
-    )
+    t, s = data.table1, c.series
     return table(
         "table1 series",
-        (
-            ("element", ""),
-            ("deflection printed", "µm"),
-            ("force printed", "N"),
-            (f"d + F/{data.figure['load_cell_stiffness']:g}", "µm"),
-            ("nearest step", "µm"),
-            (f"series stiffness for {data.figure['calibration_travel']:g} µm", "N/mm"),
-        ),
-        rows,
+        *(c.element, t.deflection.value, t.force.value, s.travel, s.nearest_step, s.stiffness_at_full_travel),
+        figure=data.figure,
     )
 
 

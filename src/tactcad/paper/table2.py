@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
 from tactcad.paper.published import Published
 from tactcad.report import plots as d
-from tactcad.report.figures import interval, listed, percent, sig, signed_percent
-from tactcad.report.report import Marked, Picture, ReportSection, ReportTable
+from tactcad.report.figures import interval, sig, signed_percent
+from tactcad.report.report import Picture, ReportSection, ReportTable
 
-from .prose import drawn, section, table
+from .prose import drawn, grid, marked, saying, section, table
 from .reference_element import ReferenceElement
 from .reference_stiffness import UNITS, Fit, Table2Study
 from .residuals import EDGE, Residuals
@@ -61,203 +62,148 @@ def witnesses(s: Table2Study, r: Residuals, e: ReferenceElement) -> tuple[Witnes
     return tuple(collected)
 
 
-def findings(s: Table2Study, data: Published, who: tuple[Witness, ...]) -> tuple[str, ...]:
-    return (
-        _implied(s),
-        _equation(s),
-        *supported(s),
-        _alternatives(s),
-        _left_over(s),
-        other_witnesses(s, who),
-        *_consequences(s, data),
-    )
-
-
-def _implied(s: Table2Study) -> str:
-    off = s.object_implied / s.object_printed - 1
-    beyond = np.abs(off) > s.implied_rounding
-    if not beyond.any():
-        return "The printed K_m/K_obj and the header's K_obj agree within rounding."
-    return (
-        f"The printed K_m/K_obj imply another K_obj than the header for {beyond.sum()} of {len(off)} "
-        "samples, in every row alike: "
-        + listed(
-            f"{sig(a)} instead of {b:g}" for a, b in zip(s.object_implied[beyond], s.object_printed[beyond])
-        )
-        + f" N/mm (at most {percent(np.abs(off).max())}: too little to matter below)."
-    )
-
-
-def _equation(s: Table2Study) -> str:
-    f = s.fit("as printed")
-    ratio = np.exp(-f.bias)
-    if abs(f.bias) < 0.1:
-        return (
-            "Equation (2) with the printed stiffnesses agrees with the measured R: mean "
-            f"{signed_percent(np.exp(f.bias) - 1)}, scatter {percent(f.rms)}."
-        )
-    way = "too large" if ratio > 1 else "too small"
-    return (
-        f"Equation (2) with the printed stiffnesses gives an R that is {way} by a factor "
-        f"{sig(max(ratio, 1 / ratio))} on average (from {sig((s.ratio_printed_model / s.ratio).min())} to "
-        f"{sig((s.ratio_printed_model / s.ratio).max())} times the measured one)."
-    )
-
-
-def supported(s: Table2Study) -> list[str]:
-    f, rest = s.supported, next(x for x in s.without_stiffest if x.model == "K_r free")
-    K, printed = f.value[0], s.reference_printed
-    outside = not f.low[0] <= printed <= f.high[0]
-    head = (
-        f"With only K_r free, Table 2 supports K_r = {sig(K)} N/mm (95 % {interval(f.low[0], f.high[0])}), "
-        + (
-            f"{sig(max(printed / K, K / printed))} times {'below' if K < printed else 'above'} the "
-            f"printed {printed:g}, which lies far outside the interval"
-            if outside
-            else f"which agrees with the printed {printed:g}"
-        )
-        + f"; ln R then scatters by {percent(f.rms)} instead of {percent(s.fit('as printed').rms)}. Without "
-        f"the stiffest pair: {sig(rest.value[0])} ({interval(rest.low[0], rest.high[0])})."
-    )
-    stiffest = int(np.argmax(s.measuring))
-    R = s.ratio[stiffest]
-    near = np.abs(np.log(R)) < np.log(1.25)
-    if outside and K < printed and near.sum() >= len(R) / 2:
-        return [
-            head,
-            f"The plainest sign is in the first row: against K_m = {s.measuring[stiffest]:g} N/mm, R "
-            f"is near 1 for {near.sum()} of {len(R)} samples ({interval(R.min(), R.max())}). R near 1 "
-            "means equal stiffness, whatever the object.",
-        ]
-    return [head]
-
-
-def _alternatives(s: Table2Study) -> str:
-    base = s.supported
-    one = [f for f in s.fits if len(f.names) == 1 and f.model != base.model]
-    alike = [f for f in one if f.rms <= base.rms * (1 + ALIKE)]
-    worse = [f for f in one if f not in alike]
-    text = ""
-    if alike:
-        text = (
-            f"{listed(f'{_fit_text(f)} (scatter {percent(f.rms)})' for f in alike)} fits as well as a K_r of "
-            f"{sig(base.value[0])} ({percent(base.rms)}): Table 2 alone cannot tell a softer reference "
-            "element from a wrong scale of its deflection. "
-        )
-    if worse:
-        text += f"{listed(f'{_fit_text(f)} (scatter {percent(f.rms)})' for f in worse)} fits worse. "
-    both = next(f for f in s.fits if f.model == "K_r free, R times a factor")
-    wide = both.high[0] / both.low[0] > USABLE
-    text = text[:1].upper() + text[1:]
-    return text + (
-        "With K_r and a factor on R both free, neither is determined."
-        if wide
-        else f"With both free, K_r = {sig(both.value[0])} ({interval(both.low[0], both.high[0])}) N/mm."
-    )
-
-
-def _left_over(s: Table2Study) -> str:
-    """Whether the residuals of the best one-parameter stiffness depend on the sample."""
-    by_sample = np.exp(
-        np.log(
-            s.ratio / (s.supported.value[0] + s.object_printed) * (s.measuring[:, None] + s.object_printed)
-        ).mean(0)
-    )
-    soft, stiff = int(np.argmin(s.object_printed)), int(np.argmax(s.object_printed))
-    drift = by_sample[soft] / by_sample[stiff]
-    if abs(np.log(drift)) < s.supported.rms:
-        return "What is left over does not run with the sample's stiffness."
-    others = np.delete(by_sample, soft)
-    text = (
-        "What is left over runs with the sample: measured R over equation (2) goes from "
-        f"{sig(by_sample[stiff])} on the stiffest to {sig(by_sample[soft])} on the softest. "
-    )
-    if np.ptp(np.log(others)) >= s.supported.rms:
-        return text + "The lumped pair has no term for that."
-    return text + (
-        f"That trend is one sample, {s.object_printed[soft]:g} N/mm: without it the ratio lies within "
-        f"{interval(others.min(), others.max())}. Its face may be inclined (section 10)."
-    )
-
-
-def _fit_text(f: Fit) -> str:
-    name = {
-        "R times a factor": "a common factor of {} on R",
-        "K_obj times a factor": "K_obj {} times as large",
-    }[f.model]
-    return name.format(sig(f.value[0]))
-
-
-def other_witnesses(s: Table2Study, who: tuple[Witness, ...]) -> str:
-    K, printed = s.supported.value[0], s.reference_printed
-    for_supported: list[Witness] = []
-    for_printed: list[Witness] = []
-    silent: list[Witness] = []
-    for w in who[3:]:
-        if w.high > w.low * USABLE:
-            silent.append(w)
-            continue
-        # a band's end is uncertain by EDGE; a single printed value agrees if within a tenth
-        slack = EDGE if w.high > w.low else 0.1
-        low, high = w.low * (1 - slack), w.high * (1 + slack)
-        holds = [low <= v <= high for v in (K, printed)]
-        (silent if holds[0] == holds[1] else for_supported if holds[0] else for_printed).append(w)
-    say = lambda group: listed(f"{w.name} ({sig(w.value)})" for w in group)  # noqa: E731
-    parts = []
-    if for_supported:
-        parts.append(f"{sig(K)} N/mm agrees with {say(for_supported)}")
-    if for_printed:
-        parts.append(f"{printed:g} agrees with {say(for_printed)}")
-    if silent:
-        parts.append(f"not decided by {listed(w.name for w in silent)}")
-    return "Other witnesses: " + "; ".join(parts) + "."
-
-
-def _consequences(s: Table2Study, data: Published) -> list[str]:
-    f, proposed = s.supported, data.figure["proposed_ratio"]
-    if f.low[0] <= s.reference_printed <= f.high[0]:
-        return [
-            f"The paper's K_r/K_m stand, from {sig(s.reference_printed / s.measuring.max())} to "
-            f"{sig(s.reference_printed / s.measuring.min())}."
-        ]
-    own, printed = f.value[0] / s.measuring, s.reference_printed / s.measuring
-    nearest = int(np.argmin(np.abs(np.log(printed / proposed))))
-    top, top_high = own.max(), f.high[0] / s.measuring.min()
-    text = (
-        "What follows if the reference element is the cause: the paper's K_r/K_m of "
-        f"{interval(printed.min(), printed.max())} are really {interval(own.min(), own.max())}. "
-    )
-    text += (
-        f"The advice that K_r/K_m be about {proposed:g} rests on the pair printed as "
-        f"{sig(printed[nearest])}, which is {sig(own[nearest])}; "
-        + (
-            f"no pair reached {proposed:g} (at most {sig(top)}, by the interval {sig(top_high)}), so the "
-            "experiment says nothing about it."
-            if top_high < proposed
-            else f"the largest that was reached is {sig(top)}."
-        )
-    )
-    factor = s.fit("R times a factor")
-    other = (
-        "If instead the deflection scale of the reference element is the cause (R off by "
-        f"{sig(factor.value[0])}), the paper's K_r/K_m stand, but its R are not ratios of deflections, "
-        "and equation (3) needs R divided by that factor. Either way the printed R and the printed "
-        "stiffnesses do not belong together."
-    )
-    return [text, other]
-
-
 def page(s: Table2Study, data: Published, r: Residuals, e: ReferenceElement) -> ReportSection:
-    who = witnesses(s, r, e)
-    sentences = findings(s, data, who)
+    who, say = witnesses(s, r, e), _saying(s)
     return section(
         "table2",
-        sentences,
+        findings(s, data, who),
         (_objects(s), _models(s), _witnesses(s, who), _ratios(s), _readings(s)),
         (_ratio_plot(s), _forest(s, who)),
         {"study": s, "witnesses": who},
-        (supported(s)[0], other_witnesses(s, who)),
+        (_supported(s, say)[0], _other_witnesses(s, say, who)),
     )
+
+
+def _saying(s: Table2Study) -> Callable[..., str]:
+    return saying("table2", s=s, K=s.supported.value[0], fit=s.supported)
+
+
+def findings(s: Table2Study, data: Published, who: tuple[Witness, ...]) -> tuple[str, ...]:
+    say = _saying(s)
+    return (
+        _implied(s, say),
+        _equation(s, say),
+        *_supported(s, say),
+        _alternatives(s, say),
+        _left_over(s, say),
+        _other_witnesses(s, say, who),
+        *_consequences(s, say, data),
+    )
+
+
+def _implied(s: Table2Study, say: Callable[..., str]) -> str:
+    off = s.object_implied / s.object_printed - 1
+    beyond = np.abs(off) > s.implied_rounding
+    if not beyond.any():
+        return say("as header")
+    pairs = zip(s.object_implied[beyond], s.object_printed[beyond])
+    instead = [f"{sig(a)} instead of {b:g}" for a, b in pairs]
+    return say("implied", beyond=beyond.sum(), all=len(off), instead=instead, most=np.abs(off).max())
+
+
+def _equation(s: Table2Study, say: Callable[..., str]) -> str:
+    f = s.fit("as printed")
+    if abs(f.bias) < 0.1:
+        return say("equation agrees", mean=np.exp(f.bias) - 1, scatter=f.rms)
+    ratio, all_ = np.exp(-f.bias), s.ratio_printed_model / s.ratio
+    return say(
+        "equation",
+        way="too large" if ratio > 1 else "too small",
+        factor=max(ratio, 1 / ratio),
+        times=(all_.min(), all_.max()),
+    )
+
+
+def _supported(s: Table2Study, say: Callable[..., str]) -> list[str]:
+    f, rest = s.supported, next(x for x in s.without_stiffest if x.model == "K_r free")
+    K, printed = f.value[0], s.reference_printed
+    outside = not f.low[0] <= printed <= f.high[0]
+    beyond = say("far", times=max(printed / K, K / printed), way="below" if K < printed else "above")
+    stiffest = int(np.argmax(s.measuring))
+    R = s.ratio[stiffest]
+    near = np.abs(np.log(R)) < np.log(1.25)
+    head = say(
+        "supported",
+        fitted=(f.low[0], f.high[0]),
+        against=beyond if outside else say("agrees"),
+        instead=s.fit("as printed").rms,
+        rest=rest,
+        rest_span=(rest.low[0], rest.high[0]),
+    )
+    if outside and K < printed and near.sum() >= len(R) / 2:
+        first = say(
+            "first row", K_m=s.measuring[stiffest], near=near.sum(), all=len(R), span=(R.min(), R.max())
+        )
+        return [head, first]
+    return [head]
+
+
+def _alternatives(s: Table2Study, say: Callable[..., str]) -> str:
+    base, text = s.supported, ""
+    one = [f for f in s.fits if len(f.names) == 1 and f.model != base.model]
+    for name, alike in (("as well", True), ("worse", False)):
+        fits = [
+            say("scatters", what=say(f.model, value=f.value[0]), scatter=f.rms)
+            for f in one
+            if (f.rms <= base.rms * (1 + ALIKE)) == alike
+        ]
+        text += say(name, fits=fits) if fits else ""
+    both = next(f for f in s.fits if f.model == "K_r free, R times a factor")
+    wide = both.high[0] / both.low[0] > USABLE
+    free = say("neither") if wide else say("both", both=both, span=(both.low[0], both.high[0]))
+    return text[:1].upper() + text[1:] + free
+
+
+def _left_over(s: Table2Study, say: Callable[..., str]) -> str:
+    """Whether the residuals of the best one-parameter stiffness depend on the sample."""
+    expected = (s.supported.value[0] + s.object_printed) / (s.measuring[:, None] + s.object_printed)
+    by_sample = np.exp(np.log(s.ratio / expected).mean(0))
+    soft, stiff = int(np.argmin(s.object_printed)), int(np.argmax(s.object_printed))
+    if abs(np.log(by_sample[soft] / by_sample[stiff])) < s.supported.rms:
+        return say("nothing left")
+    others = np.delete(by_sample, soft)
+    one = np.ptp(np.log(others)) < s.supported.rms
+    span = (others.min(), others.max())
+    return say(
+        "left over",
+        stiff=by_sample[stiff],
+        soft=by_sample[soft],
+        trend=say("one sample", softest=s.object_printed[soft], span=span) if one else say("no term"),
+    )
+
+
+def _other_witnesses(s: Table2Study, say: Callable[..., str], who: tuple[Witness, ...]) -> str:
+    K, printed = s.supported.value[0], s.reference_printed
+    groups: dict[str, list[Witness]] = {"for supported": [], "for printed": [], "silent": []}
+    for w in who[3:]:
+        # a band's end is uncertain by EDGE; a single printed value agrees if within a tenth
+        slack = EDGE if w.high > w.low else 0.1
+        low, high = w.low * (1 - slack), w.high * (1 + slack)
+        own, other = (low <= v <= high for v in (K, printed))
+        undecided = w.high > w.low * USABLE or own == other
+        groups["silent" if undecided else "for supported" if own else "for printed"].append(w)
+    parts = [
+        say(name, names=[w.name for w in group], sized=[f"{w.name} ({sig(w.value)})" for w in group])
+        for name, group in groups.items()
+        if group
+    ]
+    return say("other witnesses", parts="; ".join(parts))
+
+
+def _consequences(s: Table2Study, say: Callable[..., str], data: Published) -> list[str]:
+    f, proposed = s.supported, data.figure["proposed_ratio"]
+    own, printed = f.value[0] / s.measuring, s.reference_printed / s.measuring
+    spans = {"printed": (printed.min(), printed.max()), "own": (own.min(), own.max())}
+    if f.low[0] <= s.reference_printed <= f.high[0]:
+        return [say("stand", **spans)]
+    nearest = int(np.argmin(np.abs(np.log(printed / proposed))))
+    at_most = {"top": own.max(), "top_high": f.high[0] / s.measuring.min(), "proposed": proposed}
+    pair = {"pair": printed[nearest], "really": own[nearest]}
+    reached = say("none reached" if at_most["top_high"] < proposed else "reached", **at_most)
+    return [
+        say("follows", reached=reached, proposed=proposed, **pair, **spans),
+        say("instead", factor=s.fit("R times a factor").value[0]),
+    ]
 
 
 def _objects(s: Table2Study) -> ReportTable:
@@ -266,77 +212,45 @@ def _objects(s: Table2Study) -> ReportTable:
         ("header", *(f"{v:g}" for v in s.object_printed)),
         ("implied by K_m/(printed ratio)", *(f"{v:.3f}" for v in s.object_implied)),
         ("range over the rows", *(f"{a:.3f}–{b:.3f}" for a, b in s.object_implied_range.T)),
-        (
-            "difference",
-            *(
-                Marked(signed_percent(v)) if abs(v) > lim else signed_percent(v)
-                for v, lim in zip(off, s.implied_rounding)
-            ),
-        ),
+        ("difference", *marked(map(signed_percent, off), np.abs(off) > s.implied_rounding)),
     )
-    return table("table2 objects", (("", ""), *((f"sample {j + 1}", "") for j in range(len(off)))), rows)
+    return grid("table2 objects", (("", ""), *((f"sample {j + 1}", "") for j in range(len(off)))), rows)
 
 
 def _models(s: Table2Study) -> ReportTable:
-    rows = []
-    for f, g in zip(s.fits, s.without_stiffest):
-        value = (
-            ", ".join(
-                f"{n} = {sig(v)} ({_range(a, b)}){' N/mm' if UNITS[n] != '1' else ''}"
-                for n, v, a, b in zip(f.names, f.value, f.low, f.high)
-            )
-            or "nothing free"
+    def values(f: Fit, named: bool) -> str:
+        return ", ".join(
+            f"{n} = {sig(v)} ({held}){' N/mm' if UNITS[n] != '1' else ''}" if named else f"{sig(v)} ({held})"
+            for n, v, a, b in zip(f.names, f.value, f.low, f.high)
+            for held in ("not determined" if b / a > USABLE**2 else interval(a, b),)
         )
-        again = ", ".join(f"{sig(v)} ({_range(a, b)})" for v, a, b in zip(g.value, g.low, g.high)) or "–"
-        rows.append((f.model, value, percent(f.rms), percent(f.left_out_rms), again, percent(g.rms)))
+
     return table(
         "table2 models",
-        (
-            ("model", ""),
-            ("parameters, 95 % intervals", "all pairs"),
-            ("scatter of ln R", ""),
-            ("at rows left out", ""),
-            ("parameters", "without the stiffest pair"),
-            ("scatter of ln R", ""),
-        ),
-        tuple(rows),
+        [f.model for f in s.fits],
+        [values(f, True) or "nothing free" for f in s.fits],
+        [f.rms for f in s.fits],
+        [f.left_out_rms for f in s.fits],
+        [values(f, False) or "–" for f in s.without_stiffest],
+        [f.rms for f in s.without_stiffest],
     )
-
-
-def _range(low: float, high: float) -> str:
-    return "not determined" if high / low > USABLE**2 else interval(low, high)
 
 
 def _witnesses(s: Table2Study, who: tuple[Witness, ...]) -> ReportTable:
-    rows = tuple(
-        (w.name, w.value, interval(w.low, w.high) if w.high > w.low else "one printed value") for w in who
-    )
-    return table(
-        "table2 witnesses",
-        (("source", ""), ("K_r", "N/mm"), ("95 % interval", "N/mm")),
-        rows,
-        reference_printed=s.reference_printed,
-    )
+    spans = [interval(w.low, w.high) if w.high > w.low else "one printed value" for w in who]
+    return table("table2 witnesses", [w.name for w in who], [w.value for w in who], spans, s=s)
 
 
 def _ratios(s: Table2Study) -> ReportTable:
-    K = s.supported
-    rows = tuple(
-        (f"{k:g}", s.reference_printed / k, K.value[0] / k, interval(K.low[0] / k, K.high[0] / k))
-        for k in s.measuring
-    )
-    return table(
-        "table2 ratios",
-        (("K_m, N/mm", ""), ("printed", ""), ("supported by Table 2", ""), ("95 % interval", "")),
-        rows,
-    )
+    f, k = s.supported, s.measuring
+    spans = zip(f.low[0] / k, f.high[0] / k)
+    return table("table2 ratios", k, s.reference_printed / k, f.value[0] / k, spans)
 
 
 def _readings(s: Table2Study) -> ReportTable:
-    rows = tuple((f"{k:g}", *row) for k, row in zip(s.measuring, s.reference_by_reading))
-    return table(
-        "table2 readings", (("K_m", "N/mm"), *((f"K_obj = {x:g}", "") for x in s.object_printed)), rows
-    )
+    rows = ((f"{k:g}", *row) for k, row in zip(s.measuring, s.reference_by_reading))
+    columns = (("K_m", "N/mm"), *((f"K_obj = {x:g}", "") for x in s.object_printed))
+    return grid("table2 readings", columns, rows)
 
 
 def _ratio_plot(s: Table2Study) -> Picture:

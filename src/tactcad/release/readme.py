@@ -5,9 +5,11 @@ Plain ASCII apart from the design's own texts, 96 columns.
 
 from __future__ import annotations
 
+import tomllib
 from collections import defaultdict
 from collections.abc import Mapping, Sequence
 from itertools import zip_longest
+from pathlib import Path
 from textwrap import wrap
 
 from tactcad import __version__
@@ -17,7 +19,6 @@ from tactcad.design.materials import ELECTROLYSIS, family
 from tactcad.drawing.engine.boxes import part_box
 from tactcad.drawing.engine.paper import GENERAL_TOLERANCES
 from tactcad.export import inspection
-from tactcad.export import strength_table as strength
 from tactcad.export.formats import part_formats
 from tactcad.parts.array.hinge_section import thickness_elasticity
 from tactcad.parts.array.layout import Layout
@@ -27,28 +28,23 @@ from tactcad.parts.language.finding import grouped
 from tactcad.scenes.rig import ARRAY
 
 from .archive import MANIFEST
-from .packages import ETCHING, MACHINING, ORDER, PART_INSPECTION, SHEET, WIRE, Packed, table_rows
+from .packages import ETCHING, MACHINING, ORDER, SHEET, WIRE, Packed, table_rows
 from .release_contents import PROCESSES, SETS, SPARES, ReleaseContents
 
 MARK = "PRELIMINARY"
-DRAFT = f"{MARK}: for discussion only. Do not make anything from these files."
-SAMPLE = "SAMPLE, NOT FOR ORDER: nobody has asked for these parts, and nobody answers for them."
+_WORDS = tomllib.loads(Path(__file__).with_suffix(".toml").read_text("utf-8"))
 FOLDERS = {
     **{f.folder: f.released for f in sorted(part_formats(), key=lambda f: -f.ordered) if f.released},
-    "nest/": "what is cut from one sheet, side by side, with start holes and tabs: DXF and picture for each "
-    "material and thickness",
-    "circuit/": "the circuit that reads the array as a table and as a SPICE deck, the list of leads to cut, "
-    "the harness; in boards/ the boards: KiCad, Gerber, drills, bill, places",
-    "pdf/": "a drawing sheet for every part made, and an assembly sheet with parts list for every scene",
-    "guide/": "how each scene is put together, step by step: open guide/SCENE.html in a browser",
-    "bom": "bills of materials: bom.csv of the array, bom-SCENE.csv of the other scenes",
-    inspection.NAME: "what to measure on every numbered element: fill in `measured` (and `uncertainty_k2`, "
-    "expanded, k = 2, if you state it) and send it back. Decimal points, mm.",
-    "inspection-parts.csv": "what to measure on other parts, what matters most to the assembled sensor first",
-    "stack.csv": "how the limits of the parts add up; for information",
-    strength.NAME: "what every element is rated for; for information",
-    MANIFEST: f"SHA-256 of every file; `sha256sum -c {MANIFEST}` checks them",
+    **_WORDS["folders"],
 }
+
+
+def say(name: str, **blanks: object) -> str:
+    """Words of readme.toml."""
+    return _WORDS["say"][name].format(**blanks)
+
+
+SAMPLE, DRAFT = say("sample"), say("draft")
 
 
 def readme_bytes(contents: ReleaseContents, paths: Sequence[str]) -> bytes:
@@ -61,8 +57,8 @@ def readme_bytes(contents: ReleaseContents, paths: Sequence[str]) -> bytes:
         ("WHAT TO MAKE", _to_make(contents)),
         ("KEY CHARACTERISTICS", keys(contents, made)),
         ("HOW TO MAKE IT", how(contents, made)),
-        ("WHICH FILE IS WHAT", _files(paths, FOLDERS) + paragraph(AGREE)),
-        ("WITH YOUR QUOTATION PLEASE TELL US", numbered([*wire_questions(contents), *QUOTE])),
+        ("WHICH FILE IS WHAT", _files(paths, FOLDERS) + paragraph(say("agree"))),
+        ("WITH YOUR QUOTATION PLEASE TELL US", numbered(wire_questions(contents))),
         ("WHAT OUR CHECKS OF CUTTING AND MACHINING FLAGGED", flagged),
         ("CONTACT", contact(contents)),
     ):
@@ -81,20 +77,15 @@ def first_lines(contents: ReleaseContents, title: str) -> list[str]:
         if contents.failures:
             lines += ["It could not be released because:", *numbered(contents.failures)]
     people = ", ".join(dict.fromkeys(p for p in (identity.author, identity.organisation) if p))
-    return lines + paragraph(
-        f"Issued {identity.date}{f' by {people}' if people else ''}. Made with tactcad {__version__}. "
-        f"This is revision {identity.revision} as a whole; the tables name each part's own (rev): one that "
-        "has not changed since an earlier revision keeps that letter. Do not use a file with any other "
-        "letter."
-    )
+    by, version = f" by {people}" if people else "", __version__
+    issued = say("issued", date=identity.date, by=by, version=version, revision=identity.revision)
+    return lines + paragraph(issued)
 
 
 def contact(contents: ReleaseContents) -> list[str]:
     identity = contents.design.design
     people = ", ".join(dict.fromkeys(p for p in (identity.organisation, identity.contact) if p))
-    return paragraph(
-        f"{people}. Please ask before you change anything." if people else "None: this is a sample."
-    )
+    return paragraph(say("contact", people=people) if people else say("no contact"))
 
 
 def _what(contents: ReleaseContents) -> list[str]:
@@ -103,7 +94,7 @@ def _what(contents: ReleaseContents) -> list[str]:
     text = family.about(family.layout(design))
     others = [scene.name for scene in contents.scenes if scene.name != ARRAY]
     if others:
-        text += f" The set-ups that it is used in are here too: {', '.join(others)}."
+        text += say("set-ups", names=", ".join(others))
     return paragraph(text)
 
 
@@ -112,24 +103,21 @@ def facing_rows(layout: Layout) -> str:
     design, count = layout.design, len(layout.elements)
     thinnest = min(layout.elements, key=lambda place: place.hinge.t)
     per_hundredth = thickness_elasticity(layout, thinnest) * 0.01 / thinnest.hinge.t
-    return (
-        f"A tactile sensor array of {count} sensing element{'s' if count > 1 else ''}, wire-cut from "
-        f"{design.sheet.thickness:g} mm {design.material.alloy} sheet. Each has a hinge "
-        f"{thinnest.hinge.t:g} mm thin, whose thickness decides its stiffness: one hundredth of a millimetre "
-        f"more or less is {100 * per_hundredth:.0f} % more or less stiffness. Everything else is "
-        "ordinary plate work."
+    return say(
+        "facing rows",
+        elements=f"{count} sensing element{'s' if count > 1 else ''}",
+        sheet=design.sheet.thickness,
+        alloy=design.material.alloy,
+        hinge=thinnest.hinge.t,
+        percent=100 * per_hundredth,
     )
 
 
 def _to_make(contents: ReleaseContents) -> list[str]:
-    lines = parts_table(contents, contents.made)
-    lines += paragraph(f"Quantities are for {SETS[contents.sets]}.")
-    lines += paragraph(SPARES)
-    return lines + paragraph(
-        "Bought parts (screws, pins, bearings, gauges) are in the bills of materials with make_buy = buy; "
-        "they need no quotation unless we ask for one. The other zips split the same order by "
-        "process, each with only its own files."
-    )
+    quantities = say("quantities", sets=SETS[contents.sets])
+    return parts_table(contents, contents.made) + [
+        line for text in (quantities, SPARES, say("bought")) for line in paragraph(text)
+    ]
 
 
 def parts_table(contents: ReleaseContents, parts: Sequence[Part]) -> list[str]:
@@ -166,11 +154,9 @@ def keys(contents: ReleaseContents, parts: Sequence[Part]) -> list[str]:
     for c, numbers in groups.items():
         lines.append(f"  {c.name}: {c.nominal:g} mm, {round(c.lower, 6):g} to {round(c.upper, 6):g}")
         lines += paragraph(_short(contents, numbers), "      ")[:-1]
-    return lines and [*lines, ""] + paragraph(
-        f"Part numbers here and below without {contents.design.name}-. Measure these on every element and "
-        f"record them in {inspection.NAME}, by the element's number (E1, E2, ...: mark the "
-        f"boxes, not the parts). Every other dimension: {' '.join(GENERAL_TOLERANCES).replace('±', '+-')}."
-    )
+    general = " ".join(GENERAL_TOLERANCES).replace("±", "+-")
+    measured = say("keys", design=contents.design.name, sheet=inspection.NAME, general=general)
+    return lines and [*lines, ""] + paragraph(measured)
 
 
 def how(contents: ReleaseContents, parts: Sequence[Part]) -> list[str]:
@@ -199,76 +185,24 @@ def _files(paths: Sequence[str], known: Mapping[str, str]) -> list[str]:
     return [*lines, ""]
 
 
-AGREE = (
-    "A part's files carry its part number and its revision. Drawing and STEP file agree; where you find "
-    "that they do not, the drawing holds and we want to know."
-)
-QUOTE = ("Price and delivery for the quantities above, and for twice the elements.",)
-# Filled in by who orders: the design's date is its drawings'.
-DATES = "Order no. ____________  of ____________ (date)   delivery wanted by ____________"
-PAPERS = (
-    "With the delivery: a certificate of the material, EN 10204 3.1, with its heat number, for every line "
-    f"whose `certificate` in {ORDER} says so."
-)
-PACKING = (
-    "Packing: elements bend at hinges that are tenths of a millimetre thin. Each lies by its clamped end in "
-    "its own compartment of a box or in foam, its arm free of everything, the box marked with its number; "
-    "none lies loose in a bag, and none is tumbled or picked up by its arm. All other parts dry, wrapped one "
-    "by one."
-)
-
-
 def wire_questions(contents: ReleaseContents) -> list[str]:
     """Questions to a wire-cutting shop."""
     material = contents.design.material
     harm = ELECTROLYSIS.get(family(material.density), "")
-    supply = f"Whether your machine has an anti-electrolysis supply: {material.alloy} {harm} without it."
-    return [
-        "Wire diameter, and how many passes you give the hinge; the surface (Ra) and recast layer that "
-        "they leave.",
-        "Whether you hold the hinge thickness as toleranced, and with what you measure it.",
-        "The order of cuts, and how the hinge is kept from bending when the slug drops "
-        "(tab, adhesive, order).",
-        "How the holes of the elements are made: wire-cut from a start hole (as drawn), or reamed.",
-        *([supply] if harm else []),
-    ]
-
-
-PACKAGE_FOLDERS = {
-    ORDER: "what is ordered, a line each, with the files that it is made from and their SHA-256",
-    "dxf/": "cut files, exact nominal contours, millimetres, one part a file; tool compensation is yours",
-    "nest/": "a sheet's parts side by side: DXF (layers CUT, START: start holes, TAB: cut last, SHEET) and "
-    "picture, as a proposal; nest as your machine likes",
-    "pdf/": "drawing sheets",
-    "circuit/": "the boards: gerber/ for the bare board; KiCad's board and netlist, bill and places of each "
-    "as it is fitted",
-    "step/": "solids (AP214, millimetres); NAME-ap242.step with limits and datums on the faces (AP242)",
-    "inspection.csv": "what to measure on every numbered element: fill in `measured` and send it back",
-    PART_INSPECTION: "what to measure on the other parts",
-    MANIFEST: f"SHA-256 of every file; `sha256sum -c {MANIFEST}` checks them",
-}
-
-
-BOARDS = (
-    "All bare boards are alike: make them by the files in gerber/ (Gerber X2, drills in millimetres; "
-    "layers by their file function) and outline.dxf; 4 layers, FR-4 as thick as ordered, copper 35 um, "
-    "tracks and gaps of 0.2 mm or more, vias of 0.3 mm. To fit them, NAME-bill.csv says which part "
-    "goes where, and what is left off; NAME-places.csv has the places of what a machine fits. NAME.kicad_pcb "
-    "is the same board for KiCad 6, NAME.step its solid."
-)
+    named = {"alloy": material.alloy, "harm": harm}
+    asked = [text.format(**named) for name, text in _WORDS["wire"].items() if harm or name != "supply"]
+    return [*asked, say("price")]
 
 
 def package_readme(contents: ReleaseContents, one: Packed, whole: str, shop: Shop) -> bytes:
     """The text. `contents`, `one`: the release, and the package; `whole`: name of the whole zip, with its
     SHA-256; `shop`: the shop whose feed gave the wire's time."""
     lines = first_lines(contents, one.package.title)
-    lines += paragraph(
-        f"Taken from {whole}. What this order does not need is left out; ask for the rest if you miss it."
-    )
+    lines += paragraph(say("taken from", whole=whole))
     for head, body in (
         ("WHAT IS ORDERED", _to_order(contents, one)),
         *_sections(contents, one, shop),
-        ("WHICH FILE IS WHAT", _files([*one.files], PACKAGE_FOLDERS)),
+        ("WHICH FILE IS WHAT", _files([*one.files], _WORDS["package_folders"])),
         ("CONTACT", contact(contents)),
     ):
         if body:
@@ -291,35 +225,32 @@ def _to_order(contents: ReleaseContents, one: Packed) -> list[str]:
             for r in one.lines
         ]
         lines = table(("order", "of these spares", "designation"), [("", rows)])
-    return lines + paragraph(f"Quantities are for {SETS[contents.sets]}.") + paragraph(SPARES)
+    return lines + paragraph(say("quantities", sets=SETS[contents.sets])) + paragraph(SPARES)
 
 
 def _sections(contents: ReleaseContents, one: Packed, shop: Shop) -> Sequence[tuple[str, list[str]]]:
     parts = _parts(one)
     if any(line.row.part_no == BOARD for line in one.lines):
         of = contents.design.design.of_board
-        return (("CIRCUIT BOARD", paragraph(f"{of.board_no}, revision {of.revision}. {BOARDS}")),)
+        return (("CIRCUIT BOARD", paragraph(say("boards", board_no=of.board_no, revision=of.revision))),)
     if one.package is WIRE:
         return (
             ("TIME ON THE MACHINE", _wire_time(one, shop)),
-            ("DELIVERY", [DATES, "", *paragraph(PAPERS), *paragraph(PACKING)]),
+            ("DELIVERY", [say("dates"), "", *paragraph(say("papers")), *paragraph(say("packing"))]),
             ("KEY CHARACTERISTICS", keys(contents, parts)),
             ("HOW TO MAKE IT", how(contents, parts)),
-            ("WITH YOUR QUOTATION PLEASE TELL US", numbered([*wire_questions(contents), *QUOTE])),
+            ("WITH YOUR QUOTATION PLEASE TELL US", numbered(wire_questions(contents))),
         )
     if one.package is MACHINING:
         return (
-            ("DELIVERY", [DATES, ""]),
+            ("DELIVERY", [say("dates"), ""]),
             ("KEY CHARACTERISTICS", keys(contents, parts)),
             ("HOW TO MAKE IT", how(contents, parts)),
-            (
-                "WITH YOUR QUOTATION PLEASE TELL US",
-                numbered(["Price and delivery for the quantities above."]),
-            ),
+            ("WITH YOUR QUOTATION PLEASE TELL US", numbered([say("price of these")])),
         )
     if one.package in (SHEET, ETCHING):
-        return (("DELIVERY", [DATES, "", *paragraph(PAPERS)]),)
-    return (("DELIVERY", [DATES, ""]),)
+        return (("DELIVERY", [say("dates"), "", *paragraph(say("papers"))]),)
+    return (("DELIVERY", [say("dates"), ""]),)
 
 
 def _wire_time(one: Packed, shop: Shop) -> list[str]:
@@ -327,15 +258,17 @@ def _wire_time(one: Packed, shop: Shop) -> list[str]:
     minutes = sum(float(row["minutes"]) for row in rows)
     length = sum(float(row["cut_length_mm"]) * float(row["order"]) for row in rows)
     heights = sorted({float(row["height_mm"]) for row in rows})
-    feed, source = shop.feed, shop.feed_source
     return paragraph(
-        f"About {minutes / 60:.1f} h for {length / 1000:.2f} m of contour, heights "
-        f"{', '.join(f'{h:g}' for h in heights)} mm; parts whose limits one pass holds are cut in packs, "
-        f"all others one at a time; {ORDER} has it by part. Estimated "
-        f"with a main cut of {feed.area:g} mm2/min ({source['area']}), at most {feed.most:g} mm/min "
-        f"({source['most']}), every further pass {feed.skim:g} mm/min ({source['skim']}), and "
-        f"{feed.threading:g} min for each contour's start ({source['threading']}). Limits of {shop.name}; "
-        "your own figures hold."
+        say(
+            "wire time",
+            hours=minutes / 60,
+            length=length / 1000,
+            heights=", ".join(f"{h:g}" for h in heights),
+            order=ORDER,
+            feed=shop.feed,
+            source=shop.feed_source,
+            shop=shop.name,
+        )
     )
 
 
@@ -359,12 +292,7 @@ def _sheet_table(one: Packed) -> list[str]:
         (f"{title} ({area[title] / 100:.0f} cm2 net{sheets[title]})", rows) for title, rows in groups.items()
     ]
     lines = table(("for part", "rev", "pieces", "at least, mm", "how"), titled)
-    return lines + paragraph(
-        "Thickness is that of the stock as sold, with its limits; for closer limits, pick rolled sheet that "
-        "measures within them. Sizes of blanks include what is machined off each edge. Sheet for the wire "
-        "cutter is as large as its nest (nest/), or as its machine takes. The machining shop has its own "
-        "round and block stock."
-    )
+    return lines + paragraph(say("sheet"))
 
 
 def _blank_for(row: Mapping[str, str]) -> str:

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+import tomllib
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 from tactcad.contour import rectangle
@@ -35,6 +37,16 @@ POINTING: dict[Vector, Rotation] = {
 }
 
 AID = Material("steel", 7850)
+
+
+def telling(module: str) -> Callable[..., str]:
+    """A function from the name of a text of the guide, in the .toml beside that module, to its words."""
+    texts = tomllib.loads(Path(module).with_suffix(".toml").read_text("utf-8"))
+
+    def said(name: str, /, **blanks: object) -> str:
+        return texts[name].format(**blanks)
+
+    return said
 
 
 class Builder:

@@ -1,9 +1,9 @@
 """A rig: a scene with everything that depends on it, declared once, next to the function that makes it.
 
 A family of sensors names the folder or module of its rigs (facing rows: scenes/rigs). Every module there
-declares one, its `RIG`; nothing lists them. A module without, a declaration that lacks something, or two of
-one name are refused when they are imported. Its poses are those that are checked, and what an
-option asks for.
+declares one, its `RIG`, or several, `RIGS`; nothing lists them. A module without, a declaration that lacks
+something, or two of one name are refused when they are imported. Its poses are those that are checked, and
+what an option asks for.
 """
 
 from __future__ import annotations
@@ -93,9 +93,13 @@ def _rigs(name: str) -> dict[str, Rig]:
     folder = import_module(family.scenes)
     inside = pkgutil.iter_modules(getattr(folder, "__path__", ()))
     modules = [import_module(f"{folder.__name__}.{name}") for _, name, _ in inside] or [folder]
-    if without := [m.__name__ for m in modules if not isinstance(getattr(m, "RIG", None), Rig)]:
-        raise TypeError(f"no RIG is declared in {', '.join(without)}")
-    found, sections = [m.RIG for m in modules], [*family.tables]
+    found: list[Rig] = []
+    for module in modules:
+        declared: tuple[Any, ...] = getattr(module, "RIGS", (getattr(module, "RIG", None),))
+        if not all(isinstance(rig, Rig) for rig in declared):
+            raise TypeError(f"no RIG is declared in {module.__name__}")
+        found += declared
+    sections = [*family.tables]
     for rig in found:
         if wrong := [table for table in rig.tables if table not in sections]:
             raise TypeError(f"rig {rig.name}: a design has no table {', '.join(wrong)}")

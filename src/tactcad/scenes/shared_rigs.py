@@ -32,9 +32,11 @@ from tactcad.parts.rigs.frame import (
 )
 from tactcad.parts.rigs.stand import BASE_SCREW, BASE_UNDER_HEAD, POST_SCREWS, StandLayout
 
-from .builder import Builder
+from .builder import Builder, telling
 from .moves import APPROACH
 from .scene import AGAINST_Y, ALONG_Y, STILL, Move, Need
+
+said = telling(__file__)
 
 CORNERS = tuple((sx, sy) for sx in (-1, 1) for sy in (-1, 1))
 STAND = "BP1"  # the base plate
@@ -63,14 +65,7 @@ def place_stand(b: Builder, rig: StandLayout, stages: bool) -> str:
     for x, y in POST_SCREWS:
         at = (x, POST_Y + POST[1] / 2 + y, -BASE_UNDER_HEAD)
         b.screw("M5", BASE_SCREW, at, (0, 0, 1), base, post)
-    b.step(
-        "Stand",
-        (0, 0, 0) if stages else (0, 0, -60),
-        "Screw the post on the base plate from below, the plate over the bench's edge. Before the last turn, "
-        "check with a square on the upper face that the post's front stands square within 0.02 mm on "
-        "100 mm, both ways; where it does not, lay shim foil under its foot.",
-        tools=(SQUARE, SHIMS),
-    )
+    b.step("Stand", (0, 0, 0) if stages else (0, 0, -60), said("Stand"), tools=(SQUARE, SHIMS))
     return post
 
 
@@ -106,16 +101,7 @@ def place_cart(b: Builder, rig: CartLayout, roll: float) -> str:
             f"Wheels, {which}",
             (0, sy * 70, 25),
             "Put shim, bearing, shim on each axle and start its thread; polish a shank that the bearing "
-            "does not pass."
-            + (
-                " Then stand the cart on a surface plate, press lightly on its middle so that all four "
-                "wheels touch, and tighten the axles in that state, crosswise: the axles' play in the "
-                f"bores takes up the threads' error. No wheel may be loose over a {LOOSE_WHEEL:g} mm "
-                f"feeler gauge. Every outer ring must turn at a breath: it has {c.shim:g} mm of air to "
-                "plate and head."
-                if sy > 0
-                else ""
-            ),
+            "does not pass." + (said("all wheels", loose_wheel=LOOSE_WHEEL, c=c) if sy > 0 else ""),
             order=order,
             sets=WHEELS_TIGHT if sy > 0 else WHEELS_LOOSE,
             leaves=WHEELS_TURN if sy > 0 else WHEELS_RISE,
@@ -158,16 +144,7 @@ def place_cart(b: Builder, rig: CartLayout, roll: float) -> str:
     for sx, sy in CORNERS:
         at = (roll + sx * h, sy * h, top + under)
         b.screw("M3", length, at, (0, 0, -1), lid, plate)
-    b.step(
-        "Holder's lid",
-        (0, 0, 95),
-        "Lid on, four screws through lid and body into the cart, crosswise. Close the holes with tape: with "
-        "the pump shut off, the vacuum must not fall by more than a tenth in a minute. The hose hangs slack "
-        "in a loop: it may not pull the cart.",
-        fan=1,
-        bench=True,
-        at=BESIDE,
-    )
+    b.step("Holder's lid", (0, 0, 95), said("Holder's lid"), fan=1, bench=True, at=BESIDE)
     b.supplies += supplies("vacuum", {}, vacuum=rig.holder.vacuum)
     b.group(None)
     return lid
@@ -231,10 +208,7 @@ def boards_on_bench(b: Builder, rig: StandLayout, bench: Bench, turned: float = 
     b.step(
         "Boards on the bench",
         (0, 0, 0),
-        f"Lay the boards on their plates (guide wiring) on {on}, {BOARDS_OFF:g} mm off the ends of the base "
-        "plate, row 1's at +x, lead clamps towards the array. Clamp each bundle as there, then, supplies "
-        "off, plug its socket. The leads reach wherever the array is moved: they hang loose and pull at "
-        "nothing.",
+        said("Boards on the bench", on=on, boards_off=BOARDS_OFF),
         order=order,
         leaves=("boards: along x and y, by the leads' slack", "sockets: up, by hand"),
         needs=(Need(("CA1", STAND), "its leads reach boards beside the base plate"),),
@@ -273,10 +247,7 @@ def place_force_axis(
     b.step(
         "Vertical stage",
         (0, -40, AXIS_LIFT),
-        "Turn the moving half up by its micrometer until the two lower holes are free, fix the fixed half on "
-        f"the post's rows at z = {zs - STAGE_HOLE:g} and {zs + STAGE_HOLE:g} mm, then drive it down and fix "
-        "it by the upper two. It must run square to the base plate: 0.01 mm on the whole travel against a "
-        "square; where it does not, lay shim foil between post and fixed half.",
+        said("Vertical stage", below=zs - STAGE_HOLE, above=zs + STAGE_HOLE),
         order=[(fixed, moving, head), *driven((moving,), fixings, (0.0, 0.0, 1.0), aside, z - height - zs)],
         tools=(SQUARE, SHIMS, "lever indicator, 1 um, on a stand"),
     )

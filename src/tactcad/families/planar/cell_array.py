@@ -14,7 +14,7 @@ from tactcad.parts.language.description import Part
 from tactcad.parts.language.limits import Characteristic
 from tactcad.parts.language.stock import PLACE
 from tactcad.scenes import scene_names
-from tactcad.scenes.builder import Builder
+from tactcad.scenes.builder import Builder, telling
 from tactcad.scenes.moves import PRESS
 from tactcad.scenes.requirement import LEAST_PRESS, Deviations, DimensionLimits, Requirement, summed, variable
 from tactcad.scenes.rig import ARRAY, plain_rig, rig_of
@@ -24,6 +24,8 @@ from . import cell_board, parts
 from .cell_layout import Kind, PlanarLayout
 from .cell_tables import PlanarDesign
 from .sensor import rows, stop_stress
+
+said = telling(__file__)
 
 
 def scene(design: PlanarDesign, _pose: object = None) -> Scene:
@@ -38,11 +40,7 @@ def scene(design: PlanarDesign, _pose: object = None) -> Scene:
         b.place("U", chips[order], (e.x, e.y, layout.board_z), on=board)
     soldered = "The board comes from its maker with the chips soldered."
     if not cell_board.why_none(layout):
-        soldered = (
-            "Have the board fitted by its bill and places (circuit/boards). Chips of different order codes "
-            "look alike and have different addresses: put each at its own designator. Solder the connector "
-            "J1 on the tongue."
-        )
+        soldered = said("board")
     b.step("Chips", (0, 0, -35), soldered, sets=("chips on the board: all, by solder",))
     frame = b.place("FR", parts.frame(layout), (0, 0, layout.board_z), on=board)
     b.step("Frame", (0, 0, -25), "Lay the frame on the board, around the chips.")
@@ -106,15 +104,7 @@ def scene(design: PlanarDesign, _pose: object = None) -> Scene:
         length = parts.screw_length(layout) or 0.0
         for x, y in parts.screw_places(layout):
             b.screw(parts.SCREW, length, (x, y, layout.board_z - design.hall.board), (0, 0, 1), board, cover)
-        b.step(
-            "Screws",
-            (0, 0, -45),
-            "Press board and cover together by a hand clamp with soft jaws on their borders, and stand them "
-            "on edge: nothing may lie on the posts. Turn the screws in from the board's side. Tighten them "
-            "crosswise, in three rounds: they clamp board, base, spacers and foil against the cover. Take "
-            "the clamp off.",
-            tools=("hand clamp, soft jaws",),
-        )
+        b.step("Screws", (0, 0, -45), said("Screws"), tools=("hand clamp, soft jaws",))
     else:
         b.supplies += bill_lines("cells adhesive", {})
     b.supplies += cell_board.supplies(layout)

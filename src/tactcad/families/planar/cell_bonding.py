@@ -20,7 +20,7 @@ from tactcad.parts.language.description import Extrusion, Hole, Part, Vector
 from tactcad.parts.language.finding import Finding
 from tactcad.parts.language.limits import Characteristic
 from tactcad.parts.rules.rule import fits
-from tactcad.scenes.builder import Builder
+from tactcad.scenes.builder import Builder, telling
 from tactcad.scenes.moves import PRESS, TWEEZED
 from tactcad.scenes.requirement import Built, DimensionLimits, Requirement, variable
 from tactcad.scenes.rig import plain_rig
@@ -32,6 +32,8 @@ from .cell_layout import PlanarLayout
 from .cell_tables import PlanarDesign
 from .parts import DOWEL, MAGNET_LIMIT, PAD_FIELD, PLATE_ZONE, REAMED, bored, foil_zone, milled
 from .rules import no_less, no_more
+
+said = telling(__file__)
 
 NAME = "bonding"
 BESIDE = 4.0  # mm of bed beyond the foil, all round; chosen: room for the pins
@@ -115,23 +117,13 @@ def scene(design: PlanarDesign, _pose: object = None) -> Scene:
     under = b.place("BJ", bed(layout), (0, 0, low))
     for x, y in pins(layout):
         b.meet(b.place("DP", dowel(DOWEL, pin_length(layout) or 0.0), (x, y, low)), under, "press")
-    b.step(
-        "Bed",
-        (0, 0, -20),
-        "Press the three pins in, flush with the bed's lower face. Wax bed, pins, guide and bores thinly, "
-        "and polish: what squeezes out must not stick. Lay the bed on the sheet of steel, which holds the "
-        "magnets down. Degrease foil, foot plates, posts and magnets, and touch them with tweezers only.",
-        tools=(*TOOLS, PRESS, "a flat plate under the bed as stop"),
-    )
+    b.step("Bed", (0, 0, -20), said("Bed"), tools=(*TOOLS, PRESS, "a flat plate under the bed as stop"))
     below = -design.magnet.height - FILM
     magnets = [b.place("M", parts.magnet(layout), (x, y, below), on=under) for x, y in layout.places]
     b.step(
         "Magnets",
         (0, 0, 12),
-        "Let all magnets cling to a rod of one another: their north poles then point the same way. Find that "
-        "end by a compass, whose south-seeking end it draws, and mark the upper face of each magnet before "
-        "it leaves the rod. Slide one into every bore, mark up, to the floor. Check: a spare magnet held "
-        f"with its mark down is pushed away over every one of the {n}; where it is drawn, turn that magnet.",
+        said("Magnets", n=n),
         by=TWEEZED,
         sets=("magnets in their bores: along x and y; along z, by the steel",),
         leaves=("magnets: turn about z",),
@@ -141,9 +133,7 @@ def scene(design: PlanarDesign, _pose: object = None) -> Scene:
     b.step(
         "Foil",
         (0, 0, 20),
-        "Put a thin drop of adhesive on every magnet, less than its face holds: it is to fill "
-        f"{FILM:g} mm. Lower the foil flat beside the pins, cell 1 at the corner between them, and push it "
-        "against the two, then along them against the third.",
+        said("Foil", film=FILM),
         order=[Move((foil,), (SLID, SLID, 20.0), (aside, (0.0, 0.0, 0.0)))],
         sets=(f"{foil} on {under}: along z", f"{foil} against DP1 DP2 DP3: along x and y, turn about z"),
         leaves=(f"{foil}: away from the pins, until the spacer lies on it",),
@@ -186,10 +176,7 @@ def scene(design: PlanarDesign, _pose: object = None) -> Scene:
     b.step(
         "Guide and weight",
         (0, 0, 60),
-        "Lower the guide over the posts on the spacer; it floats, and must go down by its own weight. No "
-        f"post leans by more than {leans(layout):.0f} mrad in it; its shoulder, pressed on the foot plate, "
-        f"sets it square. Lay {FOAM:g} mm of soft foam and {WEIGHT * n:g} g of brass, no larger than "
-        f"the foil, on the posts, which stand {SHORT:g} mm over the guide.",
+        said("Guide and weight", leans=leans(layout), foam=FOAM, weight=WEIGHT * n, short=SHORT),
         tools=(f"soft foam, {FOAM:g} mm", f"flat weight of brass, {WEIGHT * n:g} g"),
         order=[(floating,), Move((weight,), OVER, (STILL,))],
         sets=("posts in the guide: turn about x and y", "all in the jig: along z, by the weight"),
@@ -204,11 +191,7 @@ def scene(design: PlanarDesign, _pose: object = None) -> Scene:
     b.step(
         "Out of the jig",
         (0, 0, 0),
-        "Lift weight and guide straight up, then the spacer. Slide the bed off the steel, over two blocks. "
-        f"With a rod of plastic, {PUSH * design.magnet.diameter - 0.1:.1g} mm thick, push every magnet up "
-        "by a hair through its hole, from the middle outwards, and go round until all are free; never peel "
-        "the foil by its edge. Check the poles again with the spare magnet. Push at each post with a "
-        "fingernail, sideways: a bond that gives is to be done anew.",
+        said("Out of the jig", push=PUSH * design.magnet.diameter - 0.1),
         order=[
             Move((weight,), STILL, (OVER, ASIDE)),
             *(Move((name,), STILL, (OVER, ASIDE)) for name in (floating, upper)),

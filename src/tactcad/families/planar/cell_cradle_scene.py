@@ -12,7 +12,7 @@ from tactcad.parts.bought.standard_parts import dowel
 from tactcad.parts.language.description import Vector, vector
 from tactcad.parts.language.metric import METRIC
 from tactcad.parts.rigs.frame import STANDARD_GRAVITY
-from tactcad.scenes.builder import Builder
+from tactcad.scenes.builder import Builder, telling
 from tactcad.scenes.moves import APPROACH, PRESS, TWEEZED
 from tactcad.scenes.rig import Rig, plain_rig, require_element
 from tactcad.scenes.scene import AGAINST_Y, DOWN, HAND, REST, STILL, UPRIGHT, Move, Pose, Rotation, Scene
@@ -23,6 +23,8 @@ from .cell_cradle import CradleLayout
 from .cell_layout import CellPlace, PlanarLayout
 from .cell_loads import FITS, OFF_AXIS, OFF_LEVEL, OFF_MIDDLE, STEPS, loads, requirements
 from .cell_tables import PlanarDesign
+
+said = telling(__file__)
 
 Axis = Literal["z", "x", "y"]
 # From the array's axes to the scene's, whose z points up: the load's axis downwards, pads to the front.
@@ -66,9 +68,7 @@ def _mounted(rig: CradleLayout) -> Builder:
     b.step(
         "Array in the cradle",
         (0, 0, 30),
-        "Wipe seat and board clean. Lay the finished array down, cell 1 at the clamp's end and away from "
-        "the two pins. Push it against these, then along them against the third. Its cable hangs in a loop "
-        "and pulls at nothing.",
+        said("Array in the cradle"),
         order=[tuple(own)],
         sets=("AR1 on CR1: along z", "AR1 against DP1 DP2 DP3: along x and y, turn about z"),
         leaves=("AR1: away from the pins, until it is clamped",),
@@ -180,9 +180,7 @@ def _every_cell(
     b.step(
         "Every cell",
         (0, 0, 0),
-        f"Take the pan off and the {name} out, {how}. Pull the cap off, read the next cell's chip, its pad "
-        f"bare, and push the cap on that pad. Hang {name} and pan in and load the cell. Do so with every "
-        "cell; at last the cap is on the first pad again.",
+        said("Every cell", name=name, how=how),
         order=order,
         sets=(f"{cap} on each pad in turn: along z; along x and y, turn about x and y by its bore",),
     )
@@ -196,12 +194,7 @@ def _weights(rig: CradleLayout, along: Axis) -> str:
         f"of cap and {hung} included {load.most:.2g} N, and they bear {load.heaviest:.2g} N)"
         for load in loads(rig, along)
     )
-    return (
-        f"Weigh cap, {hung} and pan together to 1 mg: they are the first load. Then lay weights into the "
-        f"pan, {kinds}. Cell 1, at the least x and y, is a {rig.layout.design.planar.first} cell, and kinds "
-        "alternate. Wait until all hangs still, and read the chip; read again while you take the weights "
-        "off in steps."
-    )
+    return said("weights", hung=hung, kinds=kinds, rig=rig)
 
 
 def _readings(rig: CradleLayout, along: Axis) -> str:
@@ -212,15 +205,15 @@ def _readings(rig: CradleLayout, along: Axis) -> str:
     else:
         off, other = OFF_LEVEL, "more or less"
         what = f"a groove {off:g} mm from the pad's level is like"
-    return (
-        "Then set the cradle down and level anew, and with the cap half a turn on by its mark load every "
-        "cell again: that is another run. Write a row of the table for each reading: "
-        "element; run, a number of its own for every time that the cradle was set down; fx, fy, fz in N, "
-        f"which is {STANDARD_GRAVITY * 1e-3:.8g} times the grams in f{along} and 0 in the others, all 0 on "
-        "the bare pad; bx, by, bz in mT. With a column sink, mm, stiffness comes too. Once all three axes "
-        f"are in the table, tactcad calibrate takes it. What the rig adds at most: {what} "
-        f"{100 * off / rig.layout.pad_height:.1f} % of it {other}; feet, pins and level turn a load by "
-        f"{OFF_AXIS:g} mrad, {OFF_AXIS / 10:g} % of it across; weights err by 1 mg, from 1 g on by 0.1 %."
+    return said(
+        "readings",
+        newton=STANDARD_GRAVITY * 1e-3,
+        along=along,
+        what=what,
+        share=100 * off / rig.layout.pad_height,
+        other=other,
+        off_axis=OFF_AXIS,
+        turned=OFF_AXIS / 10,
     )
 
 

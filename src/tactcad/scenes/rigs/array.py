@@ -36,10 +36,12 @@ from tactcad.parts.rules.bonding_rules import FITS as BONDING_FITS
 from tactcad.parts.rules.calibration_rules import FITS as CALIBRATION_FITS
 from tactcad.parts.rules.rule import misfit
 
-from ..builder import Builder
+from ..builder import Builder, telling
 from ..moves import FINGERTIP, PRESS, TWEEZED
 from ..rig import ARRAY, Rig, none
 from ..scene import AGAINST_Y, ALONG_Y, DOWN, UPRIGHT, Held, Placement, Scene, Step
+
+said = telling(__file__)
 
 # Local contour plane (x, y) laid into the scene's (x, z) plane, thickness along y: row one's arms
 # run along +x, row two is row one turned by half a turn about z.
@@ -294,35 +296,25 @@ def _gauges(layout: Layout) -> str:
         f"Bond a gauge on {face} in the bonding fixture and check it, both by the guide of scene bonding. "
         "Its leads lie in the wire recess and are bonded at the rear end."
         if bonded
-        else f"Bond a gauge on {face}, its grid centred on the hinge within 0.1 mm, carrier trimmed to "
-        f"{d.gauge.carrier_arm_side + d.gauge.carrier_body_side:g} mm; cure, coat, solder its leads. "
-        f"{laying_leads(layout)}"
+        else said(
+            "gauges without fixture",
+            face=face,
+            carrier=d.gauge.carrier_arm_side + d.gauge.carrier_body_side,
+            laying_leads=laying_leads(layout),
+        )
     )
-    return (
-        f"Hold and lift an element by its rear body only, never by its arm: the hinge is {thinnest:g} mm "
-        "thick. Store each by itself, held at its rear body, its arm free. Measure and record the hinge "
-        "thickness of every element, and mark its rear body with its number: elements of one drawing differ. "
-        f"{how}"
-    )
+    return said("gauges", thinnest=thinnest, how=how)
 
 
 def laying_leads(layout: Layout) -> str:
     """How an element's leads are cut, and laid in its wire recess with their strain relief."""
-    return (
-        "Cut the leads as long as the wiring list in circuit/ says and number both ends. Lay them in the "
-        "recess to the rear end and bond them there with the gauges' adhesive, over its last "
-        f"{layout.design.wiring.bonded:g} mm: no pull reaches the terminals."
-    )
+    return said("laying leads", layout=layout)
 
 
 def _first_plate(layout: Layout, c: Clamping, plate: Placement) -> str:
     deep = dowel_depth(layout)
     out = round(c.dowel - deep, 9)
-    return (
-        f"Press the dowels square into {plate.designator} ({plate.part.name.lower()}) from the stack's side, "
-        f"{deep:g} mm deep: {out:g} mm stand out. Lay the plate on its outer face, dowels up, the edge with "
-        "the carrier's threads away from you. Leave it so until the stack is closed."
-    )
+    return said("first plate", plate=plate, name=plate.part.name.lower(), deep=deep, out=out)
 
 
 def _stacking(layout: Layout, stacked: Sequence[Placement]) -> str:
@@ -333,14 +325,13 @@ def _stacking(layout: Layout, stacked: Sequence[Placement]) -> str:
         side = "right (+x)" if sign > 0 else "left (-x)"
         order = ", ".join(p.designator + arms.get(p.designator, "") for p in own)
         rows.append(f"Row {row}, on the {side}: {order}.")
-    return (
-        "Slide the parts onto the dowels in this order, pads towards you and arms to the middle. "
-        f"{' '.join(rows)} Nothing is tight yet. Press elements and spacers together by hand and measure "
-        f"both rows: each is {layout.stack:g} mm long within {STACK_TOLERANCE:g}, and the two lengths agree "
-        f"within {rows_alike(layout):g} mm, or EP1 leans on its dowels. If a length is off, measure the "
-        f"spacers: each is {layout.design.array.pitch:g} mm less what the elements' sheet measures, "
-        f"+-{SPACER_TOLERANCE:g}, as their drawing says. If only the rows differ, exchange spacers between "
-        "them."
+    return said(
+        "stacking",
+        rows=" ".join(rows),
+        layout=layout,
+        stack_tolerance=STACK_TOLERANCE,
+        alike=rows_alike(layout),
+        spacer_tolerance=SPACER_TOLERANCE,
     )
 
 
@@ -395,16 +386,14 @@ def setting_words(layout: Layout) -> str:
         else ""
     )
     strip = " and every blank on the strip" if layout.blanks() else ""
-    return (
-        "For two: one presses, the other tightens. Press both end plates down on the fixture's steps, and "
-        "with a bar of rubber on each row's ledges, between pads and dowels, every pad down on the fixture's "
-        f"floor{strip}; pressing behind the dowels lifts the pads. Hold them so. "
-        f"{tight} crosswise, in three rounds: to a third, two thirds and all of the torque. An element can "
-        f"still turn about its dowel ({wedge(layout)}); pressed on its ledge, it lies at one end of this "
-        f"play. {gap}No {2 * tolerance * 1e3:g} um feeler may pass under a pad. Then lay the array on its "
-        "back on a surface plate (grade 1 or better) and read each pad with a lever indicator: all agree "
-        f"within {2 * tolerance * 1e3:g} um{same}. Record them. If one is off, loosen and repeat; repeat all "
-        "of this whenever the clamping has been loosened."
+    return said(
+        "setting",
+        strip=strip,
+        tight=tight,
+        wedge=wedge(layout),
+        gap=gap,
+        feeler=2 * tolerance * 1e3,
+        same=same,
     )
 
 
@@ -438,12 +427,7 @@ def narrow(layout: Layout) -> bool:
 
 
 def _laying_stop_plate(layout: Layout) -> str:
-    calibrated = (
-        "If the array is still to be calibrated, first fit its carrier, wire it (scene wiring) and calibrate "
-        "it (scene calibration) without stop plate and set screws: the stops would close before the end of "
-        "the travel. Then take the carrier off again and read the pads' heights on the surface plate as "
-        "before; if a pad has moved, make the pads coplanar and calibrate again. "
-    )
+    calibrated = said("laying stop plate")
     return (
         (calibrated if is_calibrated(layout) else "")
         + "Wipe ledges and plate. Lay the stop plate on the ledges"
@@ -460,12 +444,12 @@ def _hold_down(layout: Layout) -> str:
     gaps = sorted({(p.arm, stop_gap(layout, p)) for p in layout.elements}, key=lambda pair: pair[0])
     tolerance = layout.design.stop.tolerance
     wider = floor(1e3 * (tolerance + seat(layout)) + 1e-6) / 1e3  # a micrometre is what the indicator shows
-    return (
-        f"Turn the set screws in, crosswise, {seating.words(layout)}, locked with a drop of thread lacquer. "
-        "Read the pads' heights once more. Check each stop: push every pad with a plastic rod, the "
-        "lever indicator at the tip. The pad must give way and stop after "
-        f"{', '.join(f'{gap:g} mm at arm {arm:g}' for arm, gap in gaps)} (to {tolerance:g} mm less, or "
-        f"{wider:g} mm more, since one plate lies on all ledges). Scene wiring adds leads and boards."
+    return said(
+        "hold down",
+        tight=seating.words(layout),
+        gaps=", ".join(f"{gap:g} mm at arm {arm:g}" for arm, gap in gaps),
+        tolerance=tolerance,
+        wider=wider,
     )
 
 

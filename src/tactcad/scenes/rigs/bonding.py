@@ -21,12 +21,14 @@ from tactcad.parts.rigs.frame import STANDARD_GRAVITY
 from tactcad.parts.rigs.stiffness import bonding_lines
 from tactcad.parts.rules.bonding_rules import FITS
 
-from ..builder import Builder
+from ..builder import Builder, telling
 from ..moves import PRESS
 from ..rig import Rig, none
 from ..rig_requirements import bonding_requirements
 from ..scene import AGAINST_Y, REST, STILL, UPRIGHT, Move, Placement, Pose, Rotation, Scene, Vector
 from .array import laying_leads
+
+said = telling(__file__)
 
 FACE_UP: Rotation = ((1, 0, 0), (0, 0, 1), (0, -1, 0))  # local y runs along -z, the thickness along +y
 BETWEEN = 20.0  # mm between the fixtures of several kinds of hinge; chosen: a hand's room
@@ -62,7 +64,7 @@ def bonding(design: Design, pose: Pose = REST) -> Scene:
     b.step(
         "Clamp bar",
         (0, 0, 2 * LIFTED),
-        clamp_bar(stations[0]),
+        said("clamp bar", rig=stations[0]),
         fan=len(stations),
         order=[m for pair in clamps for m in (Move(pair, OVER, (STILL,)), Move(pair, STILL, (OVER, ASIDE)))],
         tools=("balance, 1 g",),
@@ -76,7 +78,7 @@ def bonding(design: Design, pose: Pose = REST) -> Scene:
     b.step(
         "Element on the tongue",
         (0, 0, LIFTED),
-        element_in(stations[0]),
+        said("element in", rig=stations[0]),
         sets=tuple(f"{e} on its tongue: along z, turn about x and y; by pins along y" for e in elements),
         leaves=tuple(f"{e}: along x, by {rig.play:g} mm of play" for e, rig in zip(elements, stations)),
     )
@@ -103,7 +105,7 @@ def bonding(design: Design, pose: Pose = REST) -> Scene:
     b.step(
         "Trim and terminals",
         (0, 0, 0),
-        terminals(first),
+        said("terminals", rig=first, ahead_of_leads=AHEAD_OF_LEADS),
         tools=TRIM_TOOLS,
         order=[Move((e,), STILL, (OVER,)) for e in elements],
         apart=True,
@@ -156,44 +158,14 @@ def fixture(rigs: Sequence[BondingLayout]) -> str:
         if len(rigs) > 1
         else ""
     )
-    return (
-        f"Press the pins square into the nest from above, {rig.pin_depth:g} mm deep: "
-        f"{rig.pin_length - rig.pin_depth:g} mm stand out. Hold the nest in a vice by its foot, level. The "
-        "tongue's ends stand out at both sides of an element: they are the marks that the gauge is set by, "
-        f"so do not break their edges.{kinds}"
-    )
-
-
-def clamp_bar(rig: BondingLayout) -> str:
-    return (
-        "Stick the rubber under the clamp bar's nose, edges flush, with silicone adhesive; weigh the bar: "
-        f"{rig.bar_mass:.3g} g within 5 %, which press {rig.bar_pressure:.2g} MPa on the gauge. It must "
-        "slide down on the pins by its own weight, either way round. Take it off again."
-    )
+    return said("fixture", rig=rig, out=rig.pin_length - rig.pin_depth, kinds=kinds)
 
 
 def surface(rig: BondingLayout) -> str:
     d = rig.design
     face = "flat face" if d.element.sides == "one" else "floor of the slot on the pads' side"
     thinnest = min(place.hinge.t for place in rig.array.elements)
-    return (
-        f"Hold an element by its rear body only, never by its arm: the hinge is {thinnest:g} mm thick. "
-        f"Degrease all of it with solvent. Abrade the {face} over the gauge's length with P400 paper on a "
-        "flat stick, lightly, at 45 degrees and crosswise, no more than takes the gloss off: what is taken "
-        "off the hinge is lost to its stiffness. Wet with conditioner, wipe, wet with neutraliser, wipe "
-        "dry: each swab one stroke, one way, until none shows a trace. Water must then wet the face without "
-        "drawing back. Bond within 30 minutes, before the metal has its oxide again."
-    )
-
-
-def element_in(rig: BondingLayout) -> str:
-    return (
-        "Lay the element on its back into the nest, between the pins, its slot over the tongue, the rear "
-        f"body down on its rest, which is {rig.drop:g} mm low: the leaf lies on the tongue, and the rear end "
-        "on the rest. Tap the rear body with a plastic rod: it must lie still. Along the tongue the element "
-        f"has {rig.play:g} mm of play, or what its slot is longer than drawn; leave it where it lies from "
-        "now on."
-    )
+    return said("surface", thinnest=thinnest, face=face)
 
 
 def gauge(rigs: Sequence[BondingLayout]) -> str:
@@ -203,30 +175,13 @@ def gauge(rigs: Sequence[BondingLayout]) -> str:
     rig = rigs[0]
     d, table = rig.design, rig.table
     allowed = float(allowed_places(rig.array).min())
-    return (
-        f"Trim the gauge's carrier to {d.gauge.carrier_arm_side:g} mm before its grid's middle and "
-        f"{d.gauge.carrier_body_side:g} mm behind it, {d.gauge.carrier_width:g} mm wide, solder tabs to the "
-        "rear. Pick it up with tape and set it on the face under the microscope, the marks of its grid's "
-        "middle halfway between the tongue's two edges, which stand out at both sides of the element, "
-        f"within {table.sight:g} mm, and in the middle of its width. The grid must lie on the hinge's middle "
-        f"within {floor(1e3 * allowed) / 1e3:g} mm, the tongue's play included: further off the shortest "
-        f"arm's signal is more than {100 * table.signal_share:g} % wrong. Stick the tape down behind the "
-        "gauge, then lift it from the arm's side with the gauge on it. Put one thin drop of adhesive on the "
-        "face, lay gauge and tape down again from the rear with one stroke of a finger on release film, and "
-        "let go."
-    )
+    return said("gauge", d=d, table=table, within=floor(1e3 * allowed) / 1e3, share=100 * table.signal_share)
 
 
 def clamp(rigs: Sequence[BondingLayout]) -> str:
     """Instructions for clamping: weight, time, and the leaf's load."""
     rig = rigs[0]
-    return (
-        "Lay release film on the gauge and at once lower the clamp bar on the pins, rubber on the gauge. "
-        f"Leave it for {rig.table.cure:g} min, or as long as the adhesive's own sheet asks, at 20 to 30 "
-        "degrees C and 30 to 65 % relative humidity for cyanoacrylates. It presses "
-        f"{rig.bar_pressure:.2g} MPa; {_bears(rigs)} Lift the bar straight up, off the pins; peel film and "
-        "tape back over themselves."
-    )
+    return said("clamp", rig=rig, bears=_bears(rigs))
 
 
 def _bears(rigs: Sequence[BondingLayout]) -> str:
@@ -271,17 +226,6 @@ def _stress(
     return clamped(HingeSection(*map(np.asarray, section)), rubber, width, grid, tongue).stress
 
 
-def terminals(rig: BondingLayout) -> str:
-    return (
-        "Lift the element out by its rear body. Cut away adhesive that came out beside the leaf, with the "
-        "scalpel along the face, never across the hinge: both slots must be free. "
-        f"Bond the solder terminals, {rig.table.terminal_length:g} x "
-        f"{rig.terminal_width:g} mm, on the floor of the wire recess, their front end {AHEAD_OF_LEADS:g} mm "
-        "behind its wall: there nothing bends, and leads and solder stay "
-        f"{rig.design.element.recess_depth:g} mm below the face."
-    )
-
-
 def solder(rig: BondingLayout) -> str:
     to_terminals = "one lead to each terminal. "
     if leads(rig.array) == 3:
@@ -289,12 +233,7 @@ def solder(rig: BondingLayout) -> str:
             "three leads to the terminals, two on one of them: the third takes the leads' own resistance out "
             "of the bridge. "
         )
-    return (
-        "Tin tabs and terminals, then join each tab to its terminal with one insulated strand, bare at "
-        "its ends, in a loose arc, so "
-        f"that no lead pulls on the gauge. Solder {to_terminals}{laying_leads(rig.array)} "
-        "Each joint within 2 s; clean off all flux."
-    )
+    return said("solder", to_terminals=to_terminals, laying_leads=laying_leads(rig.array))
 
 
 def resistance(rig: BondingLayout) -> str:
@@ -302,13 +241,8 @@ def resistance(rig: BondingLayout) -> str:
 
     c = gauge_checks(rig.array)
     low, high = c.resistance
-    return (
-        "Measure both on every element before it is coated, and record them. Resistance at the terminals: "
-        f"{low:g} to {high:g} ohm, which is the gauge's own within {100 * c.hurt:g} %; more means a damaged "
-        f"grid. Insulation from grid to element: at least {c.insulation / 1e9:g} Gohm, the least that gauge "
-        "makers accept in a laboratory; flux or moisture lowers it. Never use an element below "
-        f"{c.leak / 1e6:.2g} Mohm: such a leak, which comes and goes, reads as much as all drift by warm "
-        "leads."
+    return said(
+        "resistance", low=low, high=high, hurt=100 * c.hurt, insulation=c.insulation / 1e9, leak=c.leak / 1e6
     )
 
 
@@ -334,25 +268,19 @@ def zero(rig: BondingLayout) -> str:
         f"{1e3 * rise:.2g} permille ({_millivolts(volts(rig.array, rise))}) at arm {arm:g}"
         for arm, rise in c.rise
     )
-    return (
-        f"Zero: the unloaded bridge is within {100 * c.zero:.2g} % of dR/R, or the amplifier or converter is "
-        "full before the pad bears rating.force. Sign: hold the rear body, pad up, and set a weight of "
-        f"{1e3 * c.push / STANDARD_GRAVITY:.2g} g ({c.push:g} N) on the pad, which is how the object pushes. "
-        f"The resistance must rise, by about {arms}. If it falls, the gauge is not on the "
-        "pads' side; if only the read-out falls, two leads are exchanged."
-    )
+    return said("zero", zero=100 * c.zero, grams=1e3 * c.push / STANDARD_GRAVITY, c=c, arms=arms)
 
 
 def creep(rig: BondingLayout) -> str:
     from tactcad.parts.array.measurements import CREEP_FROM, CREEP_TO, gauge_checks
 
     c, d = gauge_checks(rig.array), rig.design
-    return (
-        "Not before the adhesive has cured for 24 h. Hold the rated force on the pad: between "
-        f"{CREEP_FROM:g} and {CREEP_TO:g} min the signal may change by {100 * c.creep:.2g} % of itself at "
-        f"most (tolerance.creep, {100 * d.tolerance.creep:g} %, for each decade of time); unloaded, the zero "
-        "must return within the same. If a gauge fails here or before, take it off with solvent, bond a "
-        "spare, and measure the hinge's thickness again."
+    return said(
+        "creep",
+        creep_from=CREEP_FROM,
+        creep_to=CREEP_TO,
+        creep=100 * c.creep,
+        a_decade=100 * d.tolerance.creep,
     )
 
 

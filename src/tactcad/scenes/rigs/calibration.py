@@ -22,7 +22,7 @@ from tactcad.parts.rigs.stand import StandLayout, calibration_bench
 from tactcad.parts.rigs.stiffness import calibration_lines, calibration_loads, series_give
 from tactcad.parts.rules.calibration_rules import FITS
 
-from ..builder import Builder
+from ..builder import Builder, telling
 from ..moves import APPROACH, driver
 from ..rig import Rig, require_element
 from ..rig_requirements import roller
@@ -60,6 +60,8 @@ from ..shared_rigs import (
 )
 from .array import array, carrier_tools, flatness_tools
 
+said = telling(__file__)
+
 BACK_DOWN: Rotation = DOWN  # half a turn about x: pads up
 FRONT = -250.0  # mm along y, where the mount is assembled
 IN_FRONT: Vector = (0.0, FRONT, RAISED / 2)  # from its final place
@@ -92,10 +94,7 @@ def calibration(design: Design, pose: Pose = REST) -> Scene:
     b.step(
         "Roller tip",
         (0, -130, AXIS_LIFT - 40),
-        "Bond the roller in the tip's seat, in the middle of its width and of its length within 0.15 mm. "
-        f"Screw the tip on the gauge's shaft, roller along y. Drive the axis up by {RAISED:g} mm, set a "
-        f"steel block of {tall:g} mm (gauge blocks) on the upper stage, and drive the roller down on it: "
-        "it must show an even line of light. Tighten the jam nut against the tip; that holds it so.",
+        said("Roller tip", raised=RAISED, tall=tall),
         order=[
             *tip,
             raised(b),
@@ -110,9 +109,12 @@ def calibration(design: Design, pose: Pose = REST) -> Scene:
     b.step(
         "Stiffness of gauge and stand",
         (0, 0, 0),
-        f"Measure the gauge in its stand on the block under the roller, in steps of the micrometer up to "
-        f"{ROLLED * c.load_cell_range:.3g} N and no further: the block does not give way. {_series(design)} "
-        f"Drive the roller up by {RAISED:g} mm and take the block away.",
+        said(
+            "Stiffness of gauge and stand",
+            most=ROLLED * c.load_cell_range,
+            series=_series(design),
+            raised=RAISED,
+        ),
         order=[raised(b), Move((block,), STILL, ((0.0, 0.0, RAISED / 2), (0.0, -150.0, RAISED / 2)))],
         needs=(
             Need((contact, under), "the roller presses a block on the upper stage"),
@@ -133,11 +135,7 @@ def calibration(design: Design, pose: Pose = REST) -> Scene:
     b.step(
         "Take the array off, then fit the stop plate",
         (0, 0, 0),
-        f"Drive the roller up by {RAISED:g} mm, pull the sockets off, free the leads, take the mount off the "
-        "stages and the array off the mount. Set it in the setting fixture as in the step Coplanar pads of "
-        "the array's own guide, still clamped, and take the carrier off it there (hex key of its screws). "
-        "Read the pads' heights on the surface plate again and go on in that guide with the step Stop plate. "
-        "Zero every signal anew.",
+        said("Take the array off, then fit the stop plate", raised=RAISED),
         tools=(*flatness_tools(rig.array), *carrier_tools(design)),
         order=[raised(b), *_off(b.placements, mounted)],
         apart=True,
@@ -194,11 +192,7 @@ def _stages(b: Builder, rig: StandLayout, dx: float, dy: float) -> str:
     b.step(
         "Stage along y on stage along x",
         (0, 0, 55),
-        "On the bench: set the y stage on the x stage, a quarter turn off, so that its micrometer points to "
-        "the front where the other's points to the left. The square pattern of threads fits each way: look "
-        "at the micrometers. Drive the y stage to one end until two holes are free, fix it there; drive it "
-        "to the other end and fix the other two, square to the x stage within 0.02 mm on 20 mm. Then drive "
-        "it to the middle of its travel.",
+        said("Stage along y on stage along x"),
         bench=True,
         at=BESIDE,
         later=on_base,
@@ -212,9 +206,7 @@ def _stages(b: Builder, rig: StandLayout, dx: float, dy: float) -> str:
     b.step(
         "Stages on the base plate",
         (0, 0, 30),
-        "Set both on the base plate, the lower micrometer to the left (-x), the upper one to the front, away "
-        "from the post. Drive the x stage to one end until two holes are free, fix it there; drive it to "
-        "the other end and fix the other two. Then drive it to the middle of its travel.",
+        said("Stages on the base plate"),
         order=[
             Move((x_fixed, x_moving, x_micrometer, *upper, *on_x), BESIDE, (OVER, STILL)),
             *driven((x_moving, *upper, *on_x), fixings[0], (1.0, 0.0, 0.0), stage.travel, dx),
@@ -249,16 +241,7 @@ def _mounted_array(
         at = (dx + x, dy + y, z + PLATE - under_carrier_screw(rig.design))
         thread, length = rig.design.clamp.mount_thread, carrier_screw_length(rig.design)
         screws.append(b.screw(thread, length, at, (0, 0, 1), mount, "CA1"))
-    b.step(
-        "Array on its mount",
-        (0, 0, 120),
-        "On the bench: lay the array on the mount with its carrier down, its rows across the mount's longer "
-        "side and row 1 at the end marked x, and fix it by four screws from below. The array is assembled by "
-        "its own guide, but without stop plate and set screws (the stops would close before the end of the "
-        "travel), its leads on their sockets (guide wiring). Leads leave along x, sockets unplugged.",
-        bench=True,
-        at=IN_FRONT,
-    )
+    b.step("Array on its mount", (0, 0, 120), said("Array on its mount"), bench=True, at=IN_FRONT)
     fixings = []
     for sx, sy in CORNERS:
         at = (dx + sx * rig.stage.hole, dy + sy * rig.stage.hole, z + UNDER)
@@ -267,10 +250,7 @@ def _mounted_array(
     b.step(
         "Mount on the stages",
         (0, 0, 145),
-        "Bring the mount in from the front under the raised roller and fix it on the upper stage, its longer "
-        "side along x and its mark at +x: the rows then run along y. The stage's four threads fit a quarter "
-        "turn off too: look at the mark. A pad's edge must stay under the roller within 0.02 mm over the "
-        "whole y travel; turn the mount in its holes' play before the last turn of its screws.",
+        said("Mount on the stages"),
         order=[Move((*ready, mount, *screws), IN_FRONT, (high, STILL))],
         needs=(Need((roller,), "a pad's edge is aligned with it"),),
         leaves=("AM1 on SM2: turn about z, to its holes' play, until its screws are tight",),
@@ -309,12 +289,7 @@ def _series(design: Design) -> str:
     if stiffest is not None:
         softer = give / (give + stiffest.deflection / stiffest.force)
         seems = f": an arm of {stiffest.place.arm:g} mm would seem {softer * 100:.2g} % softer"
-    return (
-        f"Stand and mount give way by {give * 1e3:.2g} um/N in series with the gauge's "
-        f"{1e3 / cell:.3g}{seems}. Use the newtons per millimetre of the micrometer that "
-        "you measure here for calibration.load_cell_stiffness and for --load-cell of tactcad calibrate, not "
-        "the gauge's data sheet."
-    )
+    return said("series", give=give * 1e3, cell=1e3 / cell, seems=seems)
 
 
 def _limits(design: Design) -> str:

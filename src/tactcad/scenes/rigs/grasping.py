@@ -64,7 +64,7 @@ from tactcad.parts.rigs.stiffness import grasping_lines
 from tactcad.parts.rules.grasping_rules import FITS
 from tactcad.parts.rules.rule import fits, wrong
 
-from ..builder import Builder
+from ..builder import Builder, telling
 from ..moves import PRESS
 from ..rig import Rig, none
 from ..rig_requirements import LEVELLED, LEVELLING_PLATE, SAMPLE, parallel, wheels
@@ -93,6 +93,8 @@ from ..shared_rigs import (
     place_stand,
 )
 from .array import array, without_gaps
+
+said = telling(__file__)
 
 # Relative difference allowed between the parts' weight and the design's: the ballast is turned to weight
 # anyway.
@@ -126,12 +128,12 @@ def grasping(design: Design, pose: Pose = REST) -> Scene:
     b.step(
         "Pads level with the lid",
         (0, 0, 0),
-        "Lay the flat plate on the lid, in the sample's place. Hold the bar, pull the latch out by its front "
-        "end, put it in its outer hole, and lower the array by hand on the plate: every pad must touch. "
-        f"Signals over K_v are the elements' sinks; {_levelled(rig.array)}. If not, shim under the foot. "
-        "Then lift it, set the latch under the carriage again, and take the plate away. The array is then "
-        f"parallel to the sample within {design.tolerance.tilt:g} degree if the sample's edges are equally "
-        f"thick within {1e3 * tan(radians(SAMPLE * design.tolerance.tilt)) * rig.cart.sample.side:.0f} um.",
+        said(
+            "Pads level with the lid",
+            levelled=_levelled(rig.array),
+            design=design,
+            difference=1e3 * tan(radians(SAMPLE * design.tolerance.tilt)) * rig.cart.sample.side,
+        ),
         tools=(f"flat plate, as thick as the sample, parallel within {LEVELLING_PLATE * 1e3:g} um", SHIMS),
         order=[
             Move((flat,), in_front, (over, STILL)),
@@ -235,9 +237,7 @@ def _guide(b: Builder, rig: GuideLayout, post: str, latched: bool) -> str:
     b.step(
         "Riser",
         (0, -50, 110),
-        f"Screw the riser on the post's rows at z = {z - RISER_PITCH:g} and {z + RISER_PITCH:g} mm over "
-        "the base plate, its front upright within 0.01 mm on 100 mm against a square on the base plate: "
-        "lay shim foil between post and riser at its upper or its lower screws until it is.",
+        said("Riser", below=z - RISER_PITCH, above=z + RISER_PITCH),
         tools=(SQUARE, SHIMS),
     )
     rail = b.place("RL", rigs.rail(length), (0, front, z), AGAINST_Y)
@@ -254,9 +254,7 @@ def _guide(b: Builder, rig: GuideLayout, post: str, latched: bool) -> str:
     b.step(
         "Guide rail",
         (0, -85, 110),
-        "Lay the rail against a parallel set upright on the base plate; tighten its screws from the "
-        "middle outwards. Put the latch, the pin that slides, by hand in the outer of the two holes "
-        "beside the rail, where it is out of the way; in the inner one it holds the lifted carriage up.",
+        said("Guide rail"),
         tools=("parallel, as long as the rail",),
         order=[
             (rail,),
@@ -334,10 +332,7 @@ def place_axis(b: Builder, rig: GuideLayout, rail: str, lift: float) -> tuple[st
         b.step(
             "Ballast",
             (0, 0, 305),
-            "Lay the ballast on the platform. Weigh the bar with all it carries, leads held up, and the four "
-            "screws of the next step. With the carriage, weighed before, they must be "
-            f"{rig.grasping.moving_weight:g} N, {rig.grasping.moving_weight / NEWTON:.1f} g. Turn the "
-            "ballast thinner until they are.",
+            said("Ballast", rig=rig, grams=rig.grasping.moving_weight / NEWTON),
             tools=("balance, 0.1 g",),
             bench=True,
             sets=(f"{below} on {platform}: along z", f"{below}: along x and y, by the pin"),
@@ -352,9 +347,7 @@ def place_axis(b: Builder, rig: GuideLayout, rail: str, lift: float) -> tuple[st
     b.step(
         "Bar on the carriage",
         (0, -160, 0),
-        "Lift the carriage and set the latch under it, in the inner of its holes. Bring the bar over the "
-        "latch, which passes its hole, and screw it on the carriage. It stays on the latch until the "
-        "pads are levelled.",
+        said("Bar on the carriage"),
         order=[Move((carriage,), _fallen(rig), (up,)), *_latched(True), ()],
         at=up,
     )
@@ -437,9 +430,7 @@ def _place_carried(
     b.step(
         "Carriage",
         (0, -85, 200),
-        "Weigh the carriage on its transport rail. Slide it on the guide, from above, seals taken off, one "
-        "drop of thin oil, and let it down on the end stop. Weigh the empty transport rail: the difference "
-        "is the carriage.",
+        said("Carriage"),
         order=[Move((carriage,), (0.0, 0.0, 2 * rig.grasping.rail_length), (fallen,))],
         at=fallen,
         leaves=(f"{carriage} on {rail}: slides along z",),

@@ -9,7 +9,7 @@ from tactcad.parts.rigs.stand import StandLayout
 from tactcad.parts.rigs.stiffness import sample_lines
 from tactcad.parts.rules.grasping_rules import SAMPLE_FITS
 
-from ..builder import Builder
+from ..builder import Builder, telling
 from ..rig import Rig, none
 from ..rig_requirements import wheels
 from ..scene import REST, STILL, Motion, Move, Need, Pose, Scene
@@ -24,6 +24,8 @@ from ..shared_rigs import (
     place_stand,
     raised,
 )
+
+said = telling(__file__)
 
 
 def sample_stiffness(design: Design, pose: Pose = REST) -> Scene:
@@ -53,9 +55,7 @@ def sample_stiffness(design: Design, pose: Pose = REST) -> Scene:
     b.step(
         "Press",
         (0, 0, 0),
-        f"Lower the tip until the gauge reads 0.01 N: that is zero. Then {s.step * 1e3:g} um steps to "
-        f"{s.travel * 1e3:g} um, three times; from each sink subtract the gauge's own, "
-        f"{1e3 / gauge.load_cell_stiffness:.3g} um a newton.",
+        said("Press", step=s.step * 1e3, travel=s.travel * 1e3, give=1e3 / gauge.load_cell_stiffness),
         order=[raised(b, down=True), raised(b), raised(b, down=True)],
         needs=(Need((sample, contact), "the tip presses the sample"),),
     )

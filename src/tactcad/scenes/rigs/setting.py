@@ -10,11 +10,13 @@ from tactcad.parts.array.supplies import supplies
 from tactcad.parts.bought.standard_parts import dowel
 from tactcad.parts.rigs.setting_fixture import BASE, PIN_OUT, SettingLayout
 
-from ..builder import Builder
+from ..builder import Builder, telling
 from ..moves import PRESS, TWEEZED
 from ..rig import plain_rig
 from ..scene import REST, STILL, UPRIGHT, Contact, Held, Move, Pose, Rotation, Scene
 from .array import COPLANAR, STACKED, array, flatness_tools, narrow, setting_words, wedge
+
+said = telling(__file__)
 
 ALONG_X: Rotation = ((0, 0, 1), (1, 0, 0), (0, 1, 0))  # local x runs along y, y along z, z along x
 
@@ -76,9 +78,7 @@ def setting(design: Design, pose: Pose = REST) -> Scene:
     b.step(
         "Loose stack in the fixture",
         (0, 0, 60),
-        "Lower the loose stack, as it is after the step Other end plate of the array's guide, into the "
-        "fixture, pads down: the pads rest on the floor, both end plates' lower edges on the steps. "
-        "Turn it against both pins, one at the left edge of each plate.",
+        said("Loose stack in the fixture"),
         order=[Move(tuple(p.designator for p in loose.placements), (0.0, 0.0, 60.0), (STILL,))],
         held=(
             Held((("EP1", "EP2"),), (fixture,), ("z", "rx", "ry")),

@@ -33,11 +33,13 @@ from tactcad.parts.language.description import Vector, vector
 from tactcad.parts.rules.bonding_rules import FITS as BONDING_FITS
 from tactcad.parts.rules.rule import misfit
 
-from ..builder import Builder
+from ..builder import Builder, telling
 from ..moves import APPROACH
 from ..rig import plain_rig
 from ..scene import DOWN, REST, STILL, Move, Need, Pose, Rotation, Scene
 from .array import array, is_calibrated
+
+said = telling(__file__)
 
 # A board's frame, and its clamp's: the edge with the leads towards the array.
 BOARD: dict[float, Rotation] = {
@@ -104,13 +106,7 @@ def wiring(design: Design, pose: Pose = REST) -> Scene:
         b.meet(names[stand], name)
         under = vector((*where[:2], level + outline.thickness))
         b.screw(THREAD, BOARD_SCREW, under, (0, 0, -1), names[stand], name)
-    b.step(
-        "Boards",
-        (0, 0, 60),
-        "Lay each board, its parts soldered and its flux washed off, on its stand-offs, J2 towards the "
-        f"array's place, and screw it down crosswise.{_fitted(layout)} Plug the cable to card or controller "
-        "on its J1, the other end still free.",
-    )
+    b.step("Boards", (0, 0, 60), said("Boards", fitted=_fitted(layout)))
     uncalibrated = (
         "An array still to be calibrated has no stop plate and set screws yet. "
         if is_calibrated(layout)
@@ -133,16 +129,7 @@ def wiring(design: Design, pose: Pose = REST) -> Scene:
     b.step(
         "Leads to their socket",
         (0, 0, 90),
-        "Each board has a wire from the array's metal: fix its end, 5 mm bare, with silver-filled adhesive "
-        "on the scraped floor of the wire recess of one of the board's elements, clear of the terminals. "
-        "(Screw heads are sunk in anodised plates; spacers and dowels connect the elements.) "
-        "Push the braid over each board's leads up to the rear ends and tie both, "
-        f"{design.wiring.gather:g} mm behind these. Lay the board's socket on its plate before the board, "
-        "tails towards the array, a sleeve on every lead. Solder each lead to the tail that the harness "
-        "file in circuit/ gives it, the braid and the wire from the array's metal to the last two, and "
-        "shrink the sleeves over the joints. Measure at the socket: a gauge between red and black, an "
-        "open circuit between black and the array's metal, and below 1 ohm between that wire and each "
-        "element's rear body.",
+        said("Leads to their socket", design=design),
         order=[Move((name,), vector((*parked[s][:2], LIFTED)), (parked[s],)) for s, name in sockets.items()],
         tools=(
             SOLDERING,
@@ -166,10 +153,7 @@ def wiring(design: Design, pose: Pose = REST) -> Scene:
     b.step(
         "Lead clamps",
         (0, 0, 60),
-        "Shrink a sleeve over each bundle where it is clamped, lay it on the plate between the two threads, "
-        "and screw the clamp over it, its groove on the sleeve. Leave the slack between clamp and socket, in "
-        "a loop that lets the socket be lifted off. Pull at the bundle with two fingers: nothing may move "
-        "behind the clamp.",
+        said("Lead clamps"),
         needs=(Need(tuple(sockets.values()), "joints are soldered before the bundle is held"),),
     )
     plugging: list[Move | tuple[str, ...]] = []
@@ -183,9 +167,7 @@ def wiring(design: Design, pose: Pose = REST) -> Scene:
     b.step(
         "Plug the leads",
         (0, 0, 0),
-        "Last of all, supplies off: plug each socket on its board's J2, first pin to first pin; pull it off "
-        "and plug it again, which shows that the loop is long enough. To unplug the array: supplies off, "
-        f"the socket straight up by both ends, {UNPLUGGED:g} mm, then the two screws of the lead clamp.",
+        said("Plug the leads", unplugged=UNPLUGGED),
         order=plugging,
         sets=("sockets on J2: all, by the header's pins",),
         leaves=("sockets: up, by hand",),

@@ -1,3 +1,0 @@
-"""The array of cells: the sensor itself."""
-
-from ..cell_array import RIG as RIG
