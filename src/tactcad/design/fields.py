@@ -286,7 +286,12 @@ def with_value(tables: T, path: str, value: Any) -> T:
 
 def present(value: T | None) -> T:
     """An optional table or value of a design that earlier code has ensured to be there: for the type checker,
-    not for input. Raises TypeError if it is not there."""
+    not for input.
+
+    Raises
+    ------
+    TypeError : it is not there.
+    """
     if value is None:
         raise TypeError("the design lacks a value that is needed here")
     return value

@@ -48,9 +48,21 @@ def stiffness_matrix(basis: Basis, lam: float, mu: float) -> csc_matrix:
 def solve(A: csc_matrix, f: Array, fixed: Array) -> Array:
     """Displacements with some unknowns fixed at zero; A symmetric and positive definite, by SuperLU.
 
-    `A`: shape (n, n); stiffness, N/mm. `f`: shape (n,); load, N. `fixed`: indices of the fixed unknowns.
-    Raises CheckFailure if one step of iterative refinement changes the compliance by more than MOST_ROUNDING:
-    for a leaf hundreds of times longer than thick double precision is not enough."""
+    Parameters
+    ----------
+    A : sparse matrix, shape (n, n)
+        Stiffness, N/mm.
+    f : ndarray, shape (n,)
+        Load, N.
+    fixed
+        Indices of the fixed unknowns.
+
+    Raises
+    ------
+    CheckFailure
+        If one step of iterative refinement changes the compliance by more than MOST_ROUNDING: for a leaf
+        hundreds of times longer than thick double precision is not enough.
+    """
     free = np.setdiff1d(np.arange(len(f)), fixed)
     u = np.zeros_like(f)
     u[free], rounding = refined(A[free][:, free].tocsc(), f[free])

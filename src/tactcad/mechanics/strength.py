@@ -128,10 +128,21 @@ def largest_closing_force(
 
     F + share (overload - F) = limit.
 
-    `s`, `stiffness`, `arm`, `give`: as above; `overload`: force at the load line, N; `limit`: force at a free
-    arm's load line that gives the hinge's largest allowed angle and stress, N. Returns N, at most `limit`; 0
-    or less if a stop closed from the start would not protect the hinge: its share of the overload alone
-    exceeds the limit, or bends the hinge back too far."""
+    Parameters
+    ----------
+    s, stiffness, arm, give
+        As above.
+    overload : float
+        Force at the load line, N.
+    limit : array
+        Force at a free arm's load line that gives the hinge's largest allowed angle and stress, N.
+
+    Returns
+    -------
+    array
+        N, at most `limit`. 0 or less if a stop closed from the start would not protect the hinge: its share
+        of the overload alone exceeds the limit, or bends the hinge back too far.
+    """
     share = _share(s, stiffness, arm, give)
     closing = limit - share / (1.0 - share) * np.maximum(overload - limit, 0.0)
     back = back_share(s, stiffness, arm, give) * overload > limit

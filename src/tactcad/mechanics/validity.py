@@ -223,8 +223,13 @@ def rules(rung: str) -> tuple[RangeRule, ...]:
 
 
 def broken_rules(s: HingeSection, rung: str) -> dict[str, np.ndarray]:
-    """The rung's rules that any design breaks: by the rule's name, the mask of the designs that break it, of
-    the section's shape."""
+    """The rung's rules that any design breaks.
+
+    Returns
+    -------
+    dict of str to ndarray of bool
+        By the rule's name, the mask of the designs that break it, of the section's shape.
+    """
     known = s.__dict__.setdefault("broken_rules", {})  # used by every formula of the section
     if rung not in known:
         with np.errstate(all="ignore"):

@@ -283,8 +283,15 @@ def check_packages(
 ) -> list[str]:
     """Faults of the written packages.
 
-    `paths`, `packages`: the written zips, and what they are to hold, in the same order; `every`: the whole
-    zip's files, found right; `contents`: what the release is about."""
+    Parameters
+    ----------
+    paths, packages
+        The written zips, and what they are to hold, in the same order.
+    every
+        The whole zip's files, found right.
+    contents
+        What the release is about.
+    """
     wrong, orders = [], []
     for path, one in zip(paths, packages, strict=True):
         files, faults = read_back(path)

@@ -354,10 +354,19 @@ BLOCK = 2000  # rows of one program: below that a call's own cost, above it the 
 def resting_plane(points: Array, heights: Array) -> Array:
     """The plane that rests on points, pressed down in their middle.
 
-    `points`: (n, 2) places of the points, mm; the pressing force goes through their origin. `heights`:
-    (arrays, n) heights of the points, mm. Returns (arrays, 3): height at the origin and slopes along both
-    axes, so that the plane is below no point and as low at the origin as possible; of planes that rock over
-    two points, the one closest to all."""
+    Parameters
+    ----------
+    points
+        (n, 2) places of the points, mm; the pressing force goes through their origin.
+    heights
+        (arrays, n) heights of the points, mm.
+
+    Returns
+    -------
+    Array
+        (arrays, 3): height at the origin and slopes along both axes, so that the plane is below no point and
+        as low at the origin as possible; of planes that rock over two points, the one closest to all.
+    """
     return _resting(np.asarray(points, float).tobytes(), np.asarray(heights, float).tobytes())
 
 

@@ -190,8 +190,13 @@ def study_text() -> str:
 
 
 def read_study(path: str | Path) -> Study:
-    """A study file, field by field. Raises InputError if the file is missing or no study, a value is not
-    legal, or two contradict each other."""
+    """A study file, field by field.
+
+    Raises
+    ------
+    InputError
+        The file is missing or no study, a value is not legal, or two contradict each other.
+    """
     table = _plain_toml(path, "a study file (TOML)")
     for name, value in table.items():
         if name not in TABLES:

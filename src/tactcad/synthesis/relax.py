@@ -132,9 +132,21 @@ def eased(target: Target, by: float = 1.0 + STEP) -> Iterator[tuple[str, Target]
 def least_change(target: Target, name: str, possible: Callable[[Target], bool]) -> tuple[Any, Target] | None:
     """The value nearest to the present one with which a target is possible, found by halving.
 
-    `target`: an impossible one; `name`: the field, of EASES; `possible`: called for each value tried. Returns
-    the value and the target with it, for which `possible` holds, but not for one nearer by CLOSE; None if
-    FURTHEST times the value does not suffice."""
+    Parameters
+    ----------
+    target
+        An impossible target.
+    name
+        The field, of EASES.
+    possible
+        Whether a target is possible; called for each value tried.
+
+    Returns
+    -------
+    tuple or None
+        The value and the target with it, for which `possible` holds, but not for one nearer by CLOSE; None if
+        FURTHEST times the value does not suffice.
+    """
     low, high = 1.0, FURTHEST
     furthest = EASES[name](target, high)
     if furthest is None or furthest == target or not possible(furthest):

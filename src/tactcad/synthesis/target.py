@@ -305,8 +305,13 @@ def target_text() -> str:
 
 
 def read_target(path: str | Path) -> Target:
-    """A target file, field by field. Raises InputError if the file is missing or no target, a value is not
-    legal, or two contradict each other."""
+    """A target file, field by field.
+
+    Raises
+    ------
+    InputError
+        The file is missing or no target, a value is not legal, or two contradict each other.
+    """
     return parse_target(read_text(path, MOST_BYTES, "a target file (TOML)"), str(path), Path(path).parent)
 
 

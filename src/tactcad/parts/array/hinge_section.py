@@ -29,8 +29,20 @@ T = TypeVar("T")
 
 
 def hinge_section(layout: Layout, places: Sequence[ElementPlace]) -> HingeSection:
-    """Section parameters of elements of the array, mm and MPa. Of shape (len(places),), or of many designs at
-    once (..., len(places))."""
+    """Section parameters of elements of the array, mm and MPa.
+
+    Parameters
+    ----------
+    layout
+        The array.
+    places
+        The elements.
+
+    Returns
+    -------
+    HingeSection
+        Of shape (len(places),), or of many designs at once (..., len(places)).
+    """
     own = [own_parameters(p.hinge, p.load_arm, p.body_length) for p in places]
     stacked = {n: np.stack(np.broadcast_arrays(*(each[n] for each in own)), axis=-1) for n in own[0]}
     return HingeSection.of(**stacked, **shared_parameters(layout.design))
