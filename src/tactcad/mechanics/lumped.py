@@ -285,3 +285,26 @@ def coupling(
     deflection = force / K
     ratio = (deflection / deflection[reference]) / (alone / alone[reference])
     return Coupling(float(force.sum() / (K * alone).sum()), ratio)
+
+
+def pad_stiffness(modulus: float, length: float, width: float, thickness: float, poisson: float) -> float:
+    """Force on one pad over its mean displacement on an elastic layer, N/mm: K_obj of a modulus.
+
+    The pressure is even; a rigid pad of 2 x 3 mm is 8.8 % stiffer on a half-space, 10.3 % on a layer of
+    10 mm, 11.4 % on 6 mm and 13.1 % on 3 mm (finer patches than contact.press, nu 0.49).
+
+    Parameters
+    ----------
+    modulus
+        E of the layer, MPa.
+    length, width
+        Of the pad, mm.
+    thickness
+        Of the layer, bonded to a rigid base, mm; inf for a half-space.
+    poisson
+        Of the layer.
+    """
+    k = (np.arange(WAVES) + 0.5) * LARGEST / (length * width) ** 0.5 / WAVES
+    weight, _, _ = _waves(k, length, width, thickness, poisson)
+    area = (k[1] - k[0]) * (np.pi / 2 / ANGLES)
+    return float(np.pi**2 * modulus / (2 * (1 - poisson**2)) / (weight.sum() * area))
