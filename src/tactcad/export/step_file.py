@@ -10,7 +10,6 @@ from dataclasses import dataclass
 from io import BytesIO
 from math import isclose
 
-from OCP.BRepCheck import BRepCheck_Analyzer
 from OCP.IFSelect import IFSelect_RetDone
 from OCP.Quantity import Quantity_Color, Quantity_ColorRGBA, Quantity_TOC_sRGB
 from OCP.STEPCAFControl import STEPCAFControl_Reader, STEPCAFControl_Writer
@@ -30,7 +29,8 @@ from tactcad.profiling import under_way
 from tactcad.scenes.scene import Placement, Scene
 from tactcad.solids.measure import volume
 from tactcad.solids.occt import TDF_LabelSequence, location
-from tactcad.solids.step import set_up_writer, silence
+from tactcad.solids.step import leave_unmended, set_up_writer, silence
+from tactcad.solids.valid import is_clear_prism, is_valid
 
 from .step_text import AP214, AP242, Header, canonical
 
@@ -194,7 +194,9 @@ def read_document(data: bytes) -> TDocStd_Document:
     reader = STEPCAFControl_Reader()
     reader.SetNameMode(True)
     reader.SetGDTMode(True)
-    if reader.ReadStream("written.step", BytesIO(data)) != IFSelect_RetDone or not reader.Transfer(document):
+    read = reader.ReadStream("written.step", BytesIO(data)) == IFSelect_RetDone
+    leave_unmended(reader)
+    if not read or not reader.Transfer(document):
         raise CheckFailure("the written STEP file cannot be read back")
     return document
 
@@ -227,7 +229,7 @@ def assembly_in(document: TDocStd_Document) -> Assembly:
         tuple(instances),
         shapes,
         {name: tuple(map(volume, _solids(shape))) for name, shape in shapes.items()},
-        all(BRepCheck_Analyzer(shape).IsValid() for shape in shapes.values()),
+        all(is_valid(shape, is_clear_prism(shape)) for shape in shapes.values()),
     )
 
 

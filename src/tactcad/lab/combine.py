@@ -101,18 +101,19 @@ def combine(slopes: Slopes, level: float, members: list[int] | None = None) -> t
     widened : float
         Factor on the standard error for the elements' disagreement; 1 if they agree.
     """
-    return combine_each([slopes], level, members)[0]
+    return combine_each([(slopes, members)], level)[0]
 
 
 def combine_each(
-    cases: Sequence[Slopes], level: float, members: list[int] | None = None
+    cases: Sequence[tuple[Slopes, list[int] | None]], level: float
 ) -> list[tuple[Interval, float, float]]:
-    """`combine` of each of several slopes of the same elements: searched together they take half of the
-    time."""
-    m = list(range(len(cases[0].s))) if members is None else members
+    """`combine` of several slopes, each with its members, as many of each: searched together they take half
+    of the time."""
+    of = [(at, list(range(len(at.s))) if m is None else m) for at, m in cases]
+    extra = len(of[0][1]) - 2
     # without noise in K and K_v, f + x s of an element has no variance at x = -K: keep it above zero there
-    f, s = (np.array([values[m] for values in of]) for of in ([at.f for at in cases], [at.s for at in cases]))
-    c = np.array([at.from_signal[m] + _moderated(at, m) if len(m) > 2 else at.covariance[m] for at in cases])
+    f, s = np.array([at.f[m] for at, m in of]), np.array([at.s[m] for at, m in of])
+    c = np.array([at.from_signal[m] + _moderated(at, m) if extra > 0 else at.covariance[m] for at, m in of])
     scale = np.median(np.abs(f / s), axis=1)
     smallest = np.maximum(1e-14 * c[..., 0, 0], NO_VARIANCE)
     c_ff, c_fs, c_ss = (np.ascontiguousarray(c[:, None, :, i, j]) for i, j in ((0, 0), (0, 1), (1, 1)))
@@ -128,8 +129,8 @@ def combine_each(
     best = _minimum(misfit, len(cases))
     least = misfit(best[:, None])[:, 0].tolist()
     limits, said = [], []
-    for at, angle, own, size, low in zip(cases, best, c, scale, least):
-        x, extra = float(size) * tan(angle), len(m) - 2
+    for (at, m), angle, own, size, low in zip(of, best, c, scale, least):
+        x = float(size) * tan(angle)
         inflation, dof = scatter(at, m, own, x)
         expected, of_misfit = expected_misfit(at, m, own, x)
         # the variances are estimated too, hence F and not chi-squared
@@ -258,7 +259,7 @@ def _edges(misfit: Misfit, best: np.ndarray, limit: np.ndarray) -> np.ndarray:
         return misfit(angle.reshape(len(best), -1)).reshape(angle.shape) > limit[:, None, None]
 
     def at(offset: np.ndarray, index: np.ndarray) -> np.ndarray:
-        return np.take_along_axis(offset, index[..., None], axis=2)[..., 0]
+        return offset.reshape(index.size, -1)[np.arange(index.size), index.ravel()].reshape(index.shape)
 
     fine = np.broadcast_to(np.linspace(0.0, pi, 2 * ANGLES), (len(best), 2, 2 * ANGLES))
     outside = beyond(fine)

@@ -181,12 +181,14 @@ def evaluate(
     others = [i for i in np.argsort(-slopes.f / slopes.s, kind="stable") if i != r]
     limits = _limits(readings.element, signal, calibration, slopes, coupling, terms)
     everywhere = [at for group in limits.values() for at in group]
-    pairs = tuple(_pair(slopes, everywhere, int(m), r, level) for m in others)
+    cases = [slopes, *everywhere]
+    found = iter(combine_each([(at, [int(m), r]) for m in others for at in cases], level))
+    pairs = tuple(_pair(slopes, [next(found)[0] for _ in cases], int(m), r, level) for m in others)
     combined, p, widened = combine(slopes, level)
     if widened > EXCHANGED and len(readings.element) >= FEW:
         _refuse_exchanged(readings, signal, calibration, terms, level)
     by_limits = tuple(
-        (name, hull(combined, [i for i, _, _ in combine_each(group, level)]))
+        (name, hull(combined, [i for i, _, _ in combine_each([(at, None) for at in group], level)]))
         for name, group in limits.items()
     )
     dropped = int((~touching).sum())
@@ -603,8 +605,9 @@ def _wrong_forces(
     return notes, float(rise.sum())
 
 
-def _pair(slopes: Slopes, limits: list[Slopes], m: int, r: int, level: float) -> Pair:
-    object_, *others = (found for found, _, _ in combine_each([slopes, *limits], level, [m, r]))
+def _pair(slopes: Slopes, found: list[Interval], m: int, r: int, level: float) -> Pair:
+    """`found`: K_obj by the two, of the slopes as they are and at their limits."""
+    object_, *others = found
     everywhere = hull(object_, others)
     ratio = slopes.s[m] / slopes.s[r]
     k_m, k_r = slopes.f[m] / slopes.s[m], slopes.f[r] / slopes.s[r]
