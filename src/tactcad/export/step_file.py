@@ -42,9 +42,25 @@ PLACE_AGREES = 1e-7
 def part_step(part: Part, shape: TopoDS_Shape, header: Header) -> bytes:
     """A part alone as a STEP file: one PRODUCT, no assembly.
 
-    `part`: what the file is compared with; `shape`: its solid in its own frame, mm; `header`: entries of the
-    file's header. Returns the file in canonical form. Raises CheckFailure if it differs when read back:
-    product, validity, or the volume by more than a share of 1e-6."""
+    Parameters
+    ----------
+    part
+        What the file is compared with.
+    shape
+        Its solid in its own frame, mm.
+    header
+        Entries of the file's header.
+
+    Returns
+    -------
+    bytes
+        The file in canonical form.
+
+    Raises
+    ------
+    CheckFailure
+        If it differs when read back: product, validity, or the volume by more than a share of 1e-6.
+    """
     document, shape_tool = new_document()
     add_prototype(document, shape_tool, part, shape)
     data = written(document, header)
@@ -55,10 +71,25 @@ def part_step(part: Part, shape: TopoDS_Shape, header: Header) -> bytes:
 def scene_step(scene: Scene, shapes: Mapping[str, TopoDS_Shape], header: Header) -> bytes:
     """A scene as a STEP assembly named after the header.
 
-    `scene`: its placements become instances, named by designator, of one product a part; `shapes`: solids by
-    part number, each in its own frame, mm; `header`: entries of the file's header. Returns the file in
-    canonical form. Raises CheckFailure if it does not read back to the same names, places (1e-7 mm) and
-    volumes."""
+    Parameters
+    ----------
+    scene
+        Its placements become instances, named by designator, of one product a part.
+    shapes
+        Solids by part number, each in its own frame, mm.
+    header
+        Entries of the file's header.
+
+    Returns
+    -------
+    bytes
+        The file in canonical form.
+
+    Raises
+    ------
+    CheckFailure
+        If it does not read back to the same names, places (1e-7 mm) and volumes.
+    """
     document = scene_document(scene, shapes, header.name)
     under_way("writing")
     data = written(document, header)

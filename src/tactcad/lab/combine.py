@@ -85,9 +85,22 @@ def combine(slopes: Slopes, level: float, members: list[int] | None = None) -> t
     With two elements the interval is Fieller's. The search runs over an angle, x = scale tan(angle), so that
     an interval that runs through infinity is treated like any other.
 
-    `level`: confidence level of the interval; `members`: indices of the elements, by default all. Returns
-    disagreement_p: probability that noise alone makes the elements disagree this much; 1 with two elements;
-    widened: factor on the standard error for the elements' disagreement; 1 if they agree."""
+    Parameters
+    ----------
+    slopes : Slopes
+    level : float
+        Confidence level of the interval.
+    members : list of int, optional
+        Indices of the elements, by default all.
+
+    Returns
+    -------
+    interval : Interval
+    disagreement_p : float
+        Probability that noise alone makes the elements disagree this much; 1 with two elements.
+    widened : float
+        Factor on the standard error for the elements' disagreement; 1 if they agree.
+    """
     return combine_each([(slopes, members)], level)[0]
 
 
@@ -156,9 +169,23 @@ def _moderated(slopes: Slopes, m: list[int]) -> np.ndarray:
 def scatter(slopes: Slopes, m: list[int], c: np.ndarray, x: float) -> tuple[float, float]:
     """Factor by which weights from c understate the variance of x, and that variance's degrees of freedom.
 
-    `m`: indices of the elements; `c`: covariances of (f, s) from which the weights are made; `x`: K_obj,
-    N/mm, at which f + x s is most equal. Returns inflation: variance of x by the elements' own covariances,
-    over the one by `c`; dof: Welch and Satterthwaite's."""
+    Parameters
+    ----------
+    slopes : Slopes
+    m : list of int
+        Indices of the elements.
+    c : array, [element, 2, 2]
+        Covariances of (f, s) from which the weights are made.
+    x : float
+        K_obj, N/mm, at which f + x s is most equal.
+
+    Returns
+    -------
+    inflation : float
+        Variance of x by the elements' own covariances, over the one by `c`.
+    dof : float
+        Welch and Satterthwaite's.
+    """
     along, share, s, heaviest = _weighed(slopes, m, c, x)
     pull = share * (s - (share * s).sum() / share.sum())  # relative, of each element's f + x s on x
     signal, calibration = _own(slopes, m, along, pull**2)
