@@ -3,9 +3,9 @@
 The golden file of hardware/NAME.toml is exports/golden/<design>.json beside that hardware/; a design
 elsewhere has none. A file's form is checked first on reading: sections, kinds of values, contours that close.
 
-A part that has not changed since an earlier revision keeps that one's letter and date; the design's file says
-which ([design.unchanged]). Golden files know since when a part is as it is, and so refuse a letter that is not
-true. The circuit boards, which are equal, have one letter, as a part has.
+A part that has not changed since an earlier revision keeps that one's letter and date; the design's file
+says which ([design.unchanged]). Golden files know since when a part is as it is, and so refuse a letter that
+is not true. The circuit boards, which are equal, have one letter, as a part has.
 """
 
 from __future__ import annotations
