@@ -18,6 +18,7 @@ from tactcad.parts.array.element import least_passes
 from tactcad.parts.bought.electronic_parts import BARE_BOARD, BOARD, ELECTRONIC, MECHANICAL
 from tactcad.parts.language.description import Part
 from tactcad.parts.language.stock import cut_section, own_thickness, stock_of
+from tactcad.report.figures import as_csv
 from tactcad.scenes.bom import read_in_sheet
 
 from .nest import Nest, nest_dxf, nest_svg, nests
@@ -263,11 +264,8 @@ PACKAGES = (
 
 def table_bytes(rows: Sequence[Mapping[str, object]]) -> bytes:
     """The rows as CSV (RFC 4180, UTF-8), their columns in order of first appearance."""
-    text = io.StringIO(newline="")
-    writer = csv.DictWriter(text, list(dict.fromkeys(name for row in rows for name in row)), restval="")
-    writer.writeheader()
-    writer.writerows(rows)
-    return text.getvalue().encode()
+    names = list(dict.fromkeys(name for row in rows for name in row))
+    return as_csv([names, *([row.get(name, "") for name in names] for row in rows)])
 
 
 def table_rows(data: bytes) -> list[dict[str, str]]:

@@ -19,6 +19,7 @@ from tactcad.design.tree import Identity
 from tactcad.parts.bought.electronic_parts import Supply
 from tactcad.parts.bought.standard_parts import example
 from tactcad.parts.language.description import Part, Purchase
+from tactcad.report.figures import as_csv
 from tactcad.scenes.scene import Scene
 
 SCHEMA = "tactcad-bom-1"
@@ -122,12 +123,8 @@ def _filled(*records: object, **told: object) -> BomRow:
 def csv_bytes(rows: Sequence[BomRow]) -> bytes:
     """The rows as CSV (RFC 4180, UTF-8), numbers by repr, truth values as true and false; what nobody read in
     a maker's own sheet as unread."""
-    text = io.StringIO(newline="")
-    writer = csv.writer(text)
-    writer.writerow(COLUMNS)
     told = (asdict(row) | {"source_verified": read_in_sheet(row)} for row in rows)
-    writer.writerows([_cell(value) for value in row.values()] for row in told)
-    return text.getvalue().encode()
+    return as_csv([COLUMNS, *(map(_cell, row.values()) for row in told)])
 
 
 def read_in_sheet(row: BomRow) -> bool | str:
