@@ -430,7 +430,10 @@ def _card(sheet: Routing, board: dict[str, Component], middle: float, y: float) 
         sheet.columns.append(BusColumn(net, x + PIN / 2, end[1]))
 
 
-SELECTING = ("U2", "U3", "C3", "C4", "C5")
+# Of both strips in turn: parts of two pins, and circuits with the capacitors beside them. A card's amplifier
+# may need no gain resistor R1.
+CARD_STRIPS = "U2+C3+C4 U3+C5", "R4 C9 R3 U1+C1+C2 R1 U4+C6 C7 D1 R2 C8"
+CONVERTER_STRIPS = "U1+C1+C2+C3+C4", "U4+C7 R2 C5 C8 D1 U5+C10 R3 C6 C9"
 
 
 def lay_out(circuit: Netlist, outline: BoardOutline) -> BoardCopper:
@@ -444,8 +447,7 @@ def lay_out(circuit: Netlist, outline: BoardOutline) -> BoardCopper:
         _cell(whole, board, c, x0 + (c - 1) * CELL, [pins[str(3 * c - 2 + i)] for i in range(3)])
     card = Routing()
     _card(card, board, width / 2, 0.0)
-    strips = _strips if "U2" in board else _converters_strips
-    selecting, reading, passing = strips(board, width, whole.columns, card.columns)
+    selecting, reading, passing = _strips(board, width, whole.columns, card.columns)
 
     upper_rows = _rows([*whole.columns, *selecting.columns, *passing])
     first = whole.extent()[1] + ROW / 2
@@ -474,52 +476,30 @@ def lay_out(circuit: Netlist, outline: BoardOutline) -> BoardCopper:
 def _strips(
     board: dict[str, Component], width: float, cells: list[BusColumn], card: list[BusColumn]
 ) -> tuple[Routing, Routing, list[BusColumn]]:
-    """Multiplexer and decoder; amplifier and the bridges' supply; columns through both buses. All by their
-    middles, the second yet to be turned."""
+    """Multiplexer and decoder, or the converter; amplifier and supplies; columns through both buses. All by
+    their middles, the second yet to be turned."""
+    strips = CARD_STRIPS if "U2" in board else CONVERTER_STRIPS
+    chosen, read = ([part.split("+") for part in strip.split()] for strip in strips)
     through = Strip(board, [(c.x, c.net) for c in (*cells, *card)], LEFT, 0.0)
-    through.through(_nets_of_both(board))
+    through.through(_nets_of_both(board, sum(chosen, [])))
     passing = through.sheet.columns
     selecting = Strip(board, [(c.x, c.net) for c in (*cells, *passing)], through.x, 0.0)
-    selecting.fan("U2", ("C3", "C4"))
-    selecting.fan("U3", ("C5",))
+    for name, *beside in chosen:
+        place = selecting.fan if strips is CARD_STRIPS else selecting.around
+        place(name, beside)
     reading = Strip(board, [(width - c.x, c.net) for c in (*card, *passing)], LEFT, 0.0)
-    for name in ("R4", "C9", "R3"):
-        reading.two(name)
-    reading.fan("U1", ("C1", "C2"))
-    if "R1" in board:
-        reading.two("R1")
-    reading.fan("U4", ("C6",))
-    for name in ("C7", "D1", "R2", "C8"):
-        reading.two(name)
+    for name, *beside in read:
+        if beside:
+            reading.fan(name, beside)
+        elif name in board:
+            reading.two(name)
     for strip, most in ((selecting, width - LEFT), (reading, width - through.x)):
         if strip.x > most:
             raise CheckFailure(f"circuit board: too narrow by {strip.x - most:.1f} mm")
     return selecting.sheet, reading.sheet, passing
 
 
-def _converters_strips(
-    board: dict[str, Component], width: float, cells: list[BusColumn], card: list[BusColumn]
-) -> tuple[Routing, Routing, list[BusColumn]]:
-    """The converter; both supplies; columns through both buses. As above."""
-    through = Strip(board, [(c.x, c.net) for c in (*cells, *card)], LEFT, 0.0)
-    through.through(_nets_of_both(board, ("U1", "C1", "C2", "C3", "C4")))
-    passing = through.sheet.columns
-    selecting = Strip(board, [(c.x, c.net) for c in (*cells, *passing)], through.x, 0.0)
-    selecting.around("U1", ("C1", "C2", "C3", "C4"))
-    reading = Strip(board, [(width - c.x, c.net) for c in (*card, *passing)], LEFT, 0.0)
-    reading.fan("U4", ("C7",))
-    for name in ("R2", "C5", "C8", "D1"):
-        reading.two(name)
-    reading.fan("U5", ("C10",))
-    for name in ("R3", "C6", "C9"):
-        reading.two(name)
-    for strip, most in ((selecting, width - LEFT), (reading, width - through.x)):
-        if strip.x > most:
-            raise CheckFailure(f"circuit board: too narrow by {strip.x - most:.1f} mm")
-    return selecting.sheet, reading.sheet, passing
-
-
-def _nets_of_both(board: dict[str, Component], selecting: Sequence[str] = SELECTING) -> list[str]:
+def _nets_of_both(board: dict[str, Component], selecting: Sequence[str]) -> list[str]:
     upper = {p.net for n in selecting for p in board[n].pins}
     upper |= {p.net for c in board.values() if c.kind == "switch" for p in c.pins}
     lower = {

@@ -36,12 +36,10 @@ from tactcad.parts.bought.electronic_parts import (
     SET_AMPERE,
     SET_RESISTOR,
     SUPPLY_RESISTOR,
-    TO_CARD,
-    TO_LEADS,
 )
 
 from .netlist import GROUND, Component, Kind, Netlist, Pin
-from .read_board import EXCITATION, OUTSIDE, POSITIVE, REFERENCE_PINS, bridge_arms, two
+from .read_board import EXCITATION, OUTSIDE, POSITIVE, REFERENCE_PINS, bridge_arms, headers, two
 
 SUPPLY = "V33"  # of the converter
 LINES = ("ON", "SCLK", "DIN", "CS")
@@ -123,9 +121,4 @@ def _connectors(converter: Converter) -> Iterator[Component]:
         for c in range(1, converter.inputs + 1)
         for end in ("RED", "PLUS", "FOOT")
     ]
-    array = [*ends, (GROUND, "SHIELD"), (GROUND, "ARRAY")]
-    for name, part_no, nets in (("J1", TO_CARD, [(net, net) for net in controller]), ("J2", TO_LEADS, array)):
-        pins = tuple(Pin(str(i), f"{i} {role}", net) for i, (net, role) in enumerate(nets, start=1))
-        yield Component(
-            name, "connector", f"{len(pins)} pins", part_no, pins, footprint=f"pin-header-{len(pins)}"
-        )
+    yield from headers(controller, ends)

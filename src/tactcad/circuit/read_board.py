@@ -133,11 +133,9 @@ def _channel(design: Design, c: int, used: bool, wires: int) -> Iterator[Compone
 
 
 def _amplifier(design: Design) -> Iterator[Component]:
-    amplifier, resistance, gain = (
-        AMPLIFIERS[design.readout.amplifier],
-        gain_resistance(design),
-        set_gain(design),
-    )
+    amplifier = AMPLIFIERS[design.readout.amplifier]
+    resistance = gain_resistance(design)
+    gain = set_gain(design)
     strapped = amplifier.gains and design.readout.gain == max(amplifier.gains)
     first = "GAIN" if resistance or strapped else ""
     second = "GAIN_B" if resistance else first
@@ -232,10 +230,15 @@ def _around(design: Design, part: Multiplexer) -> Iterator[Component]:
 def _connectors(part: Multiplexer) -> Iterator[Component]:
     card = [EXCITATION, GROUND, POSITIVE, NEGATIVE, LOGIC]
     card += [*(line + OUTSIDE for line in lines(part)), "OUT", GROUND]
-    ends = [(f"CH{c}_{end}", "") for c in range(1, part.channels + 1) for end in ("RED", "PLUS", "FOOT")]
+    ends = [f"CH{c}_{end}" for c in range(1, part.channels + 1) for end in ("RED", "PLUS", "FOOT")]
+    yield from headers(card, [(net, net) for net in ends])
+
+
+def headers(card: list[str], ends: list[tuple[str, str]]) -> Iterator[Component]:
+    """The connectors, to card or controller and to the leads, each a net and what its pin is called."""
     leads = [*ends, (GROUND, "SHIELD"), (GROUND, "ARRAY")]
-    for name, part_no, nets in (("J1", TO_CARD, [(net, "") for net in card]), ("J2", TO_LEADS, leads)):
-        pins = tuple(Pin(str(i), f"{i} {role or net}", net) for i, (net, role) in enumerate(nets, start=1))
+    for name, part_no, nets in (("J1", TO_CARD, [(net, net) for net in card]), ("J2", TO_LEADS, leads)):
+        pins = tuple(Pin(str(i), f"{i} {role}", net) for i, (net, role) in enumerate(nets, start=1))
         yield Component(
             name, "connector", f"{len(pins)} pins", part_no, pins, footprint=f"pin-header-{len(pins)}"
         )

@@ -27,16 +27,21 @@ Rectangles = tuple[np.ndarray, ...]  # x, y, a, b: centres and sides, mm
 
 DEEP = 40.0  # c from which on phi is 1 to the last digit
 WAVES = 1200  # Gauss points up to DEEP: G to 1e-12 up to q = 20, where the face no longer feels the load
-FAR = (
-    20.0  # layer thicknesses beyond which a layer's face does not move; it would by 1e-9 of the half-space's
-)
+# layer thicknesses beyond which a layer's face does not move; it would by 1e-9 of the half-space's
+FAR = 20.0
 GRID = 2001  # of q in the table of G: 1e-9 against the integral
 
 
 @dataclass(frozen=True)
 class Body:
     """The object: Young's modulus (MPa), Poisson's ratio, thickness (mm; inf for a half-space), and whether
-    its base is bonded or slips without friction. Raises InputError for a value out of range."""
+    its base is bonded or slips without friction.
+
+    Raises
+    ------
+    InputError
+        A value out of range.
+    """
 
     modulus: float
     poisson: float
@@ -117,8 +122,20 @@ def influence(
 ) -> np.ndarray:
     """Mean displacement of every rectangle of the face under 1 N spread evenly on every other one.
 
-    `body`: what is pressed. `first`, `second`: centres and sides of the rectangles, mm; second: those that
-    are loaded, by default the first. `mean`: their `mean_inverse`, if it is known. Returns mm/N."""
+    Parameters
+    ----------
+    body
+        What is pressed.
+    first, second : four arrays (x, y, a, b) each, [n] and [m]
+        Centres and sides of the rectangles, mm; second: those that are loaded, by default the first.
+    mean
+        Their `mean_inverse`, if it is known.
+
+    Returns
+    -------
+    ndarray, [n, m]
+        mm/N.
+    """
     second = first if second is None else second
     mean = mean_inverse(first, second) if mean is None else mean
     if not isinf(body.thickness):

@@ -56,10 +56,8 @@ class _Rings:
     def lay(self, body: Body, mesh: MeshQuad, turned: bool) -> None:
         """Set up the elements of a section: turned about z, or endless and strained in its plane alone."""
         basis = self.basis = Basis(mesh, ElementQuad2(), intorder=5)
-        self.mu, self.kappa = (
-            body.modulus / (2 * (1 + body.poisson)),
-            body.modulus / (3 * (1 - 2 * body.poisson)),
-        )
+        self.mu = body.modulus / (2 * (1 + body.poisson))
+        self.kappa = body.modulus / (3 * (1 - 2 * body.poisson))
         at = np.asarray(basis.global_coordinates())
         self.volume = 2 * pi * at[0] * basis.dx if turned else np.array(basis.dx)
         middle = (at.max(2) + at.min(2))[:, :, None] / 2
@@ -130,9 +128,22 @@ def punch(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Force of a rigid round punch, under which the face does not slide, over its depth.
 
-    `body`: layer on a base, nu at most LARGEST_POISSON; `radius`: of the punch, mm; `depth`: down to which,
-    mm; `wall`: as of `_Rings`. Returns depths, mm, and forces, N, from 0 up; they end before `depth` where an
-    element would turn inside out."""
+    Parameters
+    ----------
+    body
+        Layer on a base, nu at most LARGEST_POISSON.
+    radius
+        Of the punch, mm.
+    depth
+        Down to which, mm.
+    wall
+        As of `_Rings`.
+
+    Returns
+    -------
+    depths, forces
+        mm, N, from 0 up; they end before `depth` where an element would turn inside out.
+    """
     rings = _Rings(body, radius, wall)
     fixed = np.concatenate([rings.held, 2 * rings.punched, 2 * rings.punched + 1])
     steps = int(np.ceil(depth / (STEP * min(radius, body.thickness))))
@@ -161,7 +172,12 @@ def initial_stiffness(body: Body, radius: float, wall: float | None = None) -> f
 
 def hardening(body: Body, radius: float) -> tuple[np.ndarray, np.ndarray]:
     """Force over that of linear theory, by depth (mm) up to REACH of the lesser of radius and thickness.
-    Raises InputError for nu above LARGEST_POISSON and a layer thinner than THINNEST radii."""
+
+    Raises
+    ------
+    InputError
+        nu above LARGEST_POISSON, a layer thinner than THINNEST radii.
+    """
     if body.poisson > LARGEST_POISSON:
         legal = f"at most {LARGEST_POISSON:g} by rung large; --rung layer reaches 0.5"
         raise InputError("object nu", "out of range", value=body.poisson, legal=legal)
@@ -175,8 +191,13 @@ def hardening(body: Body, radius: float) -> tuple[np.ndarray, np.ndarray]:
 
 def press(contact: PadsOnBody, load: float, angle: tuple[float, float]) -> Pressed:
     """Pads pressed by a total load (N), each pad's force corrected by that of a round pad of its area, which
-    alone and level would be pressed as deep. Raises InputError for a body or a load that this rung does not
-    reach."""
+    alone and level would be pressed as deep.
+
+    Raises
+    ------
+    InputError
+        A body or a load that this rung does not reach.
+    """
     pads, body = contact.pads, contact.body
     depths, factor = hardening(body, pad_radius(pads))
     alone = pad_stiffness(body, pads.length, pads.width, pads.disc)

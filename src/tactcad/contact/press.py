@@ -92,8 +92,13 @@ def patches(length: float, width: float, disc: bool, number: int = PATCHES) -> n
 
 
 class PadsOnBody:
-    """The pads on one body, set up once: then `press` as often as wanted. Raises InputError for a body that
-    the rung does not reach."""
+    """The pads on one body, set up once: then `press` as often as wanted.
+
+    Raises
+    ------
+    InputError
+        A body that the rung does not reach.
+    """
 
     def __init__(self, pads: Pads, body: Body, rung: str = "layer") -> None:
         """`rung`: "layer", or "fem-object", where solid elements give the body's influence."""
@@ -111,9 +116,8 @@ class PadsOnBody:
         self.face = blocks[which.ravel()].reshape(n, n, m, m).swapaxes(1, 2).reshape(n * m, n * m)
         if rung == "fem-object":
             self.face = (self.face + self.face.T) / 2  # elements that differ from pad to pad
-        self.modes = np.stack(
-            [np.ones(m), one[0], one[1]]
-        )  # sink and slopes to displacement of a patch, [3, patch]
+        # sink and slopes to displacement of a patch, [3, patch]
+        self.modes = np.stack([np.ones(m), one[0], one[1]])
 
     def press(
         self,
@@ -125,10 +129,22 @@ class PadsOnBody:
     ) -> Pressed:
         """Press by a total force (N) or by an approach (mm).
 
-        `load`, `approach`: one of them. `angle`: inclination of the face along x and along y, degrees:
-        positive where it falls away toward +x, +y. `modulus`: of the body, MPa, instead of its own.
-        `hardened`: force on each pad over what a linear body would bear at the same depth, [pad]; 1 by
-        default. Raises InputError without a load or approach above zero."""
+        Parameters
+        ----------
+        load, approach
+            One of them.
+        angle
+            Inclination of the face along x and along y, degrees: positive where it falls away toward +x, +y.
+        modulus
+            Of the body, MPa, instead of its own.
+        hardened
+            Force on each pad over what a linear body would bear at the same depth, [pad]; 1 by default.
+
+        Raises
+        ------
+        InputError
+            No load or approach above zero.
+        """
         given = approach if load is None else load
         if given is None or not 0 < given < inf:
             what = "approach" if load is None else "load"

@@ -79,8 +79,17 @@ class PadLaw:
         return found[..., :3], found[..., SECOND, 3:]
 
     def __call__(self, r: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Force (N) and moments (N mm) for each MPa, and their derivatives. `r`: depth of the pad's middle in
-        the face, mm, and by how much the depth grows along x and y."""
+        """Force (N) and moments (N mm) for each MPa, and their derivatives.
+
+        Parameters
+        ----------
+        r : ndarray, [..., 3]
+            Depth of the pad's middle in the face, mm, and by how much the depth grows along x and y.
+
+        Returns
+        -------
+        ndarray, [..., 3], and ndarray, [..., 3, 3]
+        """
         size, ratio, sign, touches = self._place(r)
         cell, place = _cell(ratio)
         u, v = np.moveaxis(place, -1, 0)
@@ -257,8 +266,17 @@ class ManyPresses:
     def system(
         self, modulus: np.ndarray, stiffness: np.ndarray, lifted: np.ndarray | None = None
     ) -> np.ndarray:
-        """Depth lost for each unit of the law's forces, [..., 3 pad, 3 pad]. `modulus`: MPa; `stiffness`: of
-        the springs, N/mm; `lifted`: as `lifted` tells of pads near those that are asked for."""
+        """Depth lost for each unit of the law's forces, [..., 3 pad, 3 pad].
+
+        Parameters
+        ----------
+        modulus : ndarray, [...]
+            MPa.
+        stiffness : ndarray, [..., pad]
+            Of the springs, N/mm.
+        lifted : ndarray, [..., 3 pad, 3 pad]
+            As `lifted` tells of pads near those that are asked for.
+        """
         n = len(self.x)
         own = self.move[:, :, None] * self.move[:, None, :]
         spring = (modulus[..., None] / stiffness)[..., None, None] * own

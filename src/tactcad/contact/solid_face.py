@@ -89,8 +89,13 @@ def _dissected(place: np.ndarray, nodes: np.ndarray) -> np.ndarray:
 
 
 class SolidFace:
-    """Influence of a pad's patches on those of any pad of its shape. Raises InputError for a body that these
-    elements do not reach."""
+    """Influence of a pad's patches on those of any pad of its shape.
+
+    Raises
+    ------
+    InputError
+        A body that these elements do not reach.
+    """
 
     def __init__(
         self,

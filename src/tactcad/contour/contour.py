@@ -220,9 +220,21 @@ def rounded_polygon(corners: list[Corner]) -> Contour:
     Where two fillets use up a whole edge the edge vanishes and the arcs meet; two that then share their
     centre (a full round) become one arc.
 
-    `corners`: in their order, mm; a radius of 0 is a sharp corner. Returns lines and tangent arcs, in the
-    corners' order. Raises ValueError if fillets do not fit an edge, two corners coincide, or the edges at a
-    rounded corner are parallel."""
+    Parameters
+    ----------
+    corners
+        In their order, mm; a radius of 0 is a sharp corner.
+
+    Returns
+    -------
+    Contour
+        Lines and tangent arcs, in the corners' order.
+
+    Raises
+    ------
+    ValueError
+        If fillets do not fit an edge, two corners coincide, or the edges at a rounded corner are parallel.
+    """
     count = len(corners)
     arcs = [_fillet(corners[i - 1].at, corners[i], corners[(i + 1) % count].at) for i in range(count)]
     pieces: list[Segment] = []

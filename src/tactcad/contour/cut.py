@@ -16,9 +16,22 @@ def cut(
 ) -> tuple[Contour, ...]:
     """The parts of the enclosed area on one side of a line parallel to an axis.
 
-    `contour`: outline to cut; `axis`, `at`: the line x = at or y = at, mm; `keep`: which side is kept;
-    `name`: of the lines that then lie along the cut. Returns counter-clockwise contours; none if the whole
-    contour lies on the other side."""
+    Parameters
+    ----------
+    contour
+        Outline to cut.
+    axis, at
+        The line x = at or y = at, mm.
+    keep
+        Which side is kept.
+    name
+        Of the lines that then lie along the cut.
+
+    Returns
+    -------
+    tuple of Contour
+        Counter-clockwise; none if the whole contour lies on the other side.
+    """
     i = 0 if axis == "x" else 1
     side = -1.0 if keep == "below" else 1.0
     outline = contour if contour.ccw else contour.reversed()
@@ -34,8 +47,20 @@ def cut(
 def between(contour: Contour, x0: float, x1: float, names: tuple[str, str] = ("cut", "cut")) -> Contour:
     """The part of a contour between two lines parallel to y, as one closed contour.
 
-    `contour`: outline to cut. `x0`, `x1`: the lines, mm; x0 < x1. `names`: of the lines that then lie along
-    the two cuts. Raises ValueError if that is not one piece."""
+    Parameters
+    ----------
+    contour
+        Outline to cut.
+    x0, x1
+        The lines, mm; x0 < x1.
+    names
+        Of the lines that then lie along the two cuts.
+
+    Raises
+    ------
+    ValueError
+        If that is not one piece.
+    """
     parts = [q for p in cut(contour, "x", x0, "above", names[0]) for q in cut(p, "x", x1, "below", names[1])]
     if len(parts) != 1:
         raise ValueError(f"between x = {x0:.6g} and {x1:.6g} the contour has {len(parts)} pieces")
@@ -45,8 +70,18 @@ def between(contour: Contour, x0: float, x1: float, names: tuple[str, str] = ("c
 def crossings(contour: Contour, axis: Literal["x", "y"], at: float) -> list[float]:
     """Crossings of a contour with a line parallel to an axis.
 
-    `contour`: a closed contour, mm; `axis`, `at`: the line x = at or y = at, mm. Returns the other
-    coordinates (mm), sorted; a vertex on the line counts once for each segment that ends there."""
+    Parameters
+    ----------
+    contour
+        A closed contour, mm.
+    axis, at
+        The line x = at or y = at, mm.
+
+    Returns
+    -------
+    list of float
+        The other coordinates (mm), sorted; a vertex on the line counts once for each segment that ends there.
+    """
     i = 0 if axis == "x" else 1
     crossed = [p[1 - i] for s in contour for p in _crossings(s, i, at)]
     crossed += [p[1 - i] for s in contour for p in (s.start, s.end) if p[i] == at]

@@ -38,8 +38,20 @@ def place_for_circle(contour: Contour, diameter: float, within: float = 1e-3) ->
     Squares are quartered, the most promising first: clearance changes at most by the distance moved, so a
     square of half side h holds nothing better than its centre's clearance + sqrt(2) h.
 
-    `contour`: a simple closed contour, mm; `diameter`: of the circle, mm; `within`: less than this to spare
-    (mm) may count as no place. Returns the centroid if the circle fits there; None if no place was found."""
+    Parameters
+    ----------
+    contour
+        A simple closed contour, mm.
+    diameter
+        Of the circle, mm.
+    within
+        Less than this to spare (mm) may count as no place.
+
+    Returns
+    -------
+    Point or None
+        The centroid if the circle fits there; None if no place was found.
+    """
     needed = diameter / 2 - ROUNDING_MM
     if clearance(contour, contour.centroid) >= needed:
         return contour.centroid

@@ -53,9 +53,18 @@ class _Piece:
 def necks(outer: Contour, openings: Sequence[Contour] = (), below: float = float("inf")) -> list[Neck]:
     """Narrow places of the material or of the space around it.
 
-    `outer`, `openings`: outline and openings of the part, mm; the direction in which they run does not
-    matter. `below`: only necks narrower than this, mm. Returns the narrowest first; where walls run side by
-    side, one for the pair."""
+    Parameters
+    ----------
+    outer, openings
+        Outline and openings of the part, mm; the direction in which they run does not matter.
+    below
+        Only necks narrower than this, mm.
+
+    Returns
+    -------
+    list of Neck
+        The narrowest first; where walls run side by side, one for the pair.
+    """
     contours = [outer if outer.ccw else outer.reversed()]
     contours += [c.reversed() if c.ccw else c for c in openings]
     pieces = [piece for contour in contours for piece in _pieces(contour)]

@@ -143,9 +143,18 @@ def _arrays(count: int) -> str:
 
 
 def rung_grades(s: HingeSection) -> list[Grade]:
-    """One candidate of `mechanics.accuracy` for all designs, each: the error of the worst one. `s`: one
-    design or many, all where errors were measured (`accuracy.require_measured`). In the order of work, for
-    `design.allowance.pick`."""
+    """One candidate of `mechanics.accuracy` for all designs, each: the error of the worst one.
+
+    Parameters
+    ----------
+    s
+        One design or many, all where errors were measured (`accuracy.require_measured`).
+
+    Returns
+    -------
+    list of Grade
+        In the order of work, for `design.allowance.pick`.
+    """
     count, each = int(np.prod(s.shape)), seconds_each(s)
     return [
         Grade(c.name, float(expected_error(s, c).max()), _by_elements(count * each[c] if c in each else 0.0))
@@ -157,8 +166,18 @@ def row_grades(s: HingeSection, within: float | None = None) -> list[Grade]:
     """A candidate for every design, its own: the one of least work that keeps an error, for every error that
     makes a difference.
 
-    `s`: many designs in a row; those without measured errors are left out. `within`: the error asked for;
-    designs without a candidate within it are also left out. Empty if all designs are."""
+    Parameters
+    ----------
+    s
+        Many designs in a row; those without measured errors are left out.
+    within
+        The error asked for; designs without a candidate within it are also left out.
+
+    Returns
+    -------
+    list of Grade
+        Empty if all designs are left out.
+    """
     inside = np.flatnonzero(reasons(s, MEASURED_FOR).ravel() == "")
     zone = zones(s).ravel()[inside]
     data = accuracy_data()["zones"]

@@ -91,9 +91,20 @@ def read_seconds(text: str, where: str) -> float:
 def pick(grades: Sequence[Grade], asked: Allowance, what: str) -> Picked:
     """The grade of least work that keeps the error asked for, or the one of least error in the time.
 
-    `grades`: in the order of their work, one or more. One that promises no less than one before is no step.
-    `asked`: error, time or both. `what`: the quantity with that error, as "K". Raises CheckFailure if no
-    grade keeps the request; the message names the best possible."""
+    Parameters
+    ----------
+    grades
+        In the order of their work, one or more. One that promises no less than one before is no step.
+    asked
+        Error, time or both.
+    what
+        The quantity with that error, as "K".
+
+    Raises
+    ------
+    CheckFailure
+        If no grade keeps the request; the message names the best possible.
+    """
     steps: list[Grade] = []
     for grade in grades:
         if not steps or grade.error < steps[-1].error:

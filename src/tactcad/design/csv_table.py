@@ -140,18 +140,48 @@ def half_step(text: str) -> float:
 
 
 def read(path: str | Path, fields: tuple[Field, ...], optional: tuple[Field, ...] = ()) -> Rows:
-    """Numeric columns of a CSV file. `fields`: columns that must be present; `optional`: columns that are
-    read if present. Raises InputError as `numeric`."""
+    """Numeric columns of a CSV file.
+
+    Parameters
+    ----------
+    path
+        The file, as the user named it.
+    fields
+        Columns that must be present.
+    optional
+        Columns that are read if present.
+
+    Raises
+    ------
+    InputError
+        As `numeric`.
+    """
     return numeric(read_table(path, "readings (CSV)"), fields, optional)
 
 
 def numeric(table: Table, fields: tuple[Field, ...], optional: tuple[Field, ...] = ()) -> Rows:
     """Numeric columns of a table.
 
-    `table`: as `read_table` gives it; `fields`: columns that have to be there; `optional`: columns that are
-    read where they are there. Returns each column as float64, shape (rows,), in the field's unit. Raises
-    InputError with line and column: a column missing or written otherwise, no row, text for a number, a
-    number outside its legal range."""
+    Parameters
+    ----------
+    table
+        As `read_table` gives it.
+    fields
+        Columns that have to be there.
+    optional
+        Columns that are read where they are there.
+
+    Returns
+    -------
+    Rows
+        Each column as float64, shape (rows,), in the field's unit.
+
+    Raises
+    ------
+    InputError
+        With line and column: a column missing or written otherwise, no row, text for a number, a number
+        outside its legal range.
+    """
     require_columns(table, [f.name for f in fields], [f.name for f in optional])
     chosen = fields + tuple(f for f in optional if f.name in table.header)
     rows = _at_once(table, chosen)
@@ -185,9 +215,22 @@ def _at_once(table: Table, chosen: tuple[Field, ...]) -> Rows | None:
 def read_table(path: str | Path, kind: str, most_bytes: int = LARGEST_FILE, comments: bool = True) -> Table:
     """A CSV file up to its header.
 
-    `kind`: what was expected, for messages: "readings (CSV)"; `most_bytes`: a larger file is refused unread;
-    `comments`: whether lines that start with # are left out. Raises InputError with line and column: file not
-    there, not text, no header, a column named twice."""
+    Parameters
+    ----------
+    path
+        The file, as the user named it.
+    kind
+        What was expected, for messages: "readings (CSV)".
+    most_bytes
+        A larger file is refused unread.
+    comments
+        Whether lines that start with # are left out.
+
+    Raises
+    ------
+    InputError
+        With line and column: file not there, not text, no header, a column named twice.
+    """
     shown, text = str(path), read_text(path, most_bytes, kind)
     hint = re.match(r"sep=.\r?\n", text)  # Excel's
     first, body = (2, text[hint.end() :]) if hint else (1, text)
@@ -234,8 +277,20 @@ def require_columns(table: Table, names: Sequence[str], optional: Sequence[str] 
 def refuse_duplicates(rows: Rows, names: tuple[str, ...], legal: str = "each once") -> None:
     """Refuse a row that repeats an earlier one's values in some columns.
 
-    `rows`: as `read` gives them; `names`: the columns that are compared; `legal`: what would be accepted, for
-    the message. Raises InputError with line and column of the second row."""
+    Parameters
+    ----------
+    rows
+        As `read` gives them.
+    names
+        The columns that are compared.
+    legal
+        What would be accepted, for the message.
+
+    Raises
+    ------
+    InputError
+        With line and column of the second row.
+    """
     columns = [rows.values(n) for n in names]
     order = np.lexsort(columns)  # stable: of equal rows the first stays first
     same = np.all([column[order[1:]] == column[order[:-1]] for column in columns], axis=0)

@@ -14,6 +14,7 @@ from pathlib import Path
 from textwrap import wrap
 from typing import Any
 
+from .fields import spec_of
 from .files import read_text
 from .load import MOST_BYTES, find, names, parse
 from .messages import InputError
@@ -22,8 +23,15 @@ from .tree import NO_TABLES, CommonTables, Identity, Issue
 
 
 def design_text(design: CommonTables, heading: str = "") -> str:
-    """TOML text of a design: every table with every value that is not derived, then their origins. `design`:
-    as read or made; `heading`: lines of comment before the first table."""
+    """TOML text of a design: every table with every value that is not derived, then their origins.
+
+    Parameters
+    ----------
+    design
+        As read or made.
+    heading
+        Lines of comment before the first table.
+    """
     lines = [f"# {line}".rstrip() for line in heading.splitlines()]
     for f in dataclasses.fields(design):
         table = getattr(design, f.name)
@@ -84,7 +92,7 @@ def name_of(path: Path) -> str:
         raise InputError(str(path), "is there already; nothing was changed", legal="the name of a new file")
     if path.suffix != ".toml":
         raise InputError(str(path), "not a design file's name", legal="NAME.toml")
-    name = Identity.__dataclass_fields__["name"].metadata["spec"].read(path.stem, str(path))
+    name = spec_of(Identity, "name").read(path.stem, str(path))
     if name in names():
         raise InputError(
             str(path),
@@ -99,9 +107,20 @@ def started(source: str, name: str, today: date) -> str:
     """The text of a design under another name, its comments and origins kept; its title is left out, so that
     it follows the array, which is about to be another.
 
-    `source`: the design to start from: a path, or a name in hardware/. `name`: of the new design. `today`:
-    its date; its revision is A. Raises InputError if the source is no design, or its [design] is not written
-    with one value a line."""
+    Parameters
+    ----------
+    source
+        The design to start from: a path, or a name in hardware/.
+    name
+        Of the new design.
+    today
+        Its date; its revision is A.
+
+    Raises
+    ------
+    InputError
+        If the source is no design, or its [design] is not written with one value a line.
+    """
     text = read_text(find(source), MOST_BYTES, "a design file (TOML)").replace("\r\n", "\n")
     old, revision = parse_toml(text, source), parse(text, source).design.revision
     values = {"name": name, "revision": "A", "date": today.isoformat()}

@@ -272,9 +272,26 @@ def given(spec: Spec, default: Any = REQUIRED, derived: str = "") -> Any:
     return dataclasses.field(default=default, metadata=metadata)
 
 
+def spec_of(kind: type, name: str) -> Any:
+    """The spec of a table's field of that name."""
+    return kind.__dataclass_fields__[name].metadata["spec"]  # type: ignore[attr-defined]
+
+
+def with_value(tables: T, path: str, value: Any) -> T:
+    """A copy of a file's tables with another value of one field, "grasp.force", unchecked."""
+    table, name = path.split(".")
+    changed = dataclasses.replace(getattr(tables, table), **{name: value})
+    return dataclasses.replace(tables, **{table: changed})  # type: ignore[type-var]
+
+
 def present(value: T | None) -> T:
     """An optional table or value of a design that earlier code has ensured to be there: for the type checker,
-    not for input. Raises TypeError if it is not there."""
+    not for input.
+
+    Raises
+    ------
+    TypeError : it is not there.
+    """
     if value is None:
         raise TypeError("the design lacks a value that is needed here")
     return value

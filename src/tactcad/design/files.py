@@ -49,9 +49,20 @@ REFUSED_BY_MACHINE = NO_ROOM | {
 def read_bytes(path: str | Path, most_bytes: int, kind: str) -> bytes:
     """All bytes of a regular file.
 
-    `most_bytes`: what is larger is refused unread; `kind`: what was expected, for messages: "a design file
-    (TOML)". Raises InputError if there is no such file, it is a folder, pipe or device, too large, or may not
-    be read."""
+    Parameters
+    ----------
+    path
+        The file, as the user named it.
+    most_bytes
+        What is larger is refused unread.
+    kind
+        What was expected, for messages: "a design file (TOML)".
+
+    Raises
+    ------
+    InputError
+        If there is no such file, it is a folder, pipe or device, too large, or may not be read.
+    """
     shown = str(path)
     if "\0" in shown:
         raise InputError(shown, "cannot be read: a NUL in its name", legal=kind)
@@ -81,8 +92,16 @@ def read_bytes(path: str | Path, most_bytes: int, kind: str) -> bytes:
 def read_text(path: str | Path, most_bytes: int, kind: str) -> str:
     """All of a regular file as UTF-8 text, without a byte order mark.
 
-    `path`, `most_bytes`, `kind`: as for `read_bytes`. Raises InputError as `read_bytes`; with line and column
-    (in bytes) if it is not UTF-8, or holds a NUL."""
+    Parameters
+    ----------
+    path, most_bytes, kind
+        As for `read_bytes`.
+
+    Raises
+    ------
+    InputError
+        As `read_bytes`; with line and column (in bytes) if it is not UTF-8, or holds a NUL.
+    """
     data = read_bytes(path, most_bytes, kind)
     try:
         text = data.decode("utf-8-sig")
@@ -103,9 +122,17 @@ def read_text(path: str | Path, most_bytes: int, kind: str) -> str:
 def read_json(path: str | Path, most_bytes: int, kind: str) -> Any:
     """The value of a JSON file.
 
-    `path`, `most_bytes`, `kind`: as for `read_bytes`. Raises InputError as `read_text`; with line and column
-    if it is not JSON, which has neither NaN nor infinities, if it is nested too deeply, or if a text holds
-    invisible characters."""
+    Parameters
+    ----------
+    path, most_bytes, kind
+        As for `read_bytes`.
+
+    Raises
+    ------
+    InputError
+        As `read_text`; with line and column if it is not JSON, which has neither NaN nor infinities, if it is
+        nested too deeply, or if a text holds invisible characters.
+    """
     text = read_text(path, most_bytes, f"{kind} (JSON)")
     try:
         value = json.loads(text, parse_constant=_no_number, parse_float=_finite, parse_int=_within_floats)
@@ -224,10 +251,21 @@ def scratch_folder(purpose: str) -> Iterator[Path]:
 def refuse_overwriting(out: str | Path, *inputs: str | Path | None, option: str = "--out") -> None:
     """Refuse, before any work, an output that would overwrite an input, and a file that is a link.
 
-    `out`: file or folder to be written. `inputs`: files and folders that are read; None and missing ones are
-    ignored. `option`: the option that names `out`, for the message. Raises InputError if `out` is one of the
-    inputs, under whatever name or link, lies in a folder that is one, or is a folder with one in it; or if it
-    is a link, but not to a folder."""
+    Parameters
+    ----------
+    out
+        File or folder to be written.
+    inputs
+        Files and folders that are read; None and missing ones are ignored.
+    option
+        The option that names `out`, for the message.
+
+    Raises
+    ------
+    InputError
+        If `out` is one of the inputs, under whatever name or link, lies in a folder that is one, or is a
+        folder with one in it; or if it is a link, but not to a folder.
+    """
     absolute(out)  # a folder to start from is there
     place, around = _identity(out), _folders(out)
     for source in inputs:

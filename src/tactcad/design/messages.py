@@ -39,7 +39,15 @@ def nearest(word: str, known: Iterable[str]) -> str:
 
 
 def one_of(word: object, known: Iterable[str]) -> str:
-    """The legal words, `known`, in place of a mistyped one: the whole list, and a suggestion."""
+    """The legal words in place of a mistyped one: the whole list, and a suggestion.
+
+    Parameters
+    ----------
+    word
+        What was typed.
+    known
+        The legal words.
+    """
     known = list(known)
     return "one of " + ", ".join(known) + in_brackets(did_you_mean(str(word), known))
 

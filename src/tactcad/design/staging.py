@@ -33,8 +33,13 @@ def staged_folder(parent: Path, stem: str, settle: Settle = lambda _: None) -> I
 
     What killed runs left there of the same stem is removed first.
 
-    `parent`, `stem`: its folder, and the beginning of its name; `settle`: called with each of these folders
-    before its removal, to save the user's files."""
+    Parameters
+    ----------
+    parent, stem
+        Its folder, and the beginning of its name.
+    settle
+        Called with each of these folders before its removal, to save the user's files.
+    """
 
     def removed(folder: Path) -> None:
         with suppress(OSError):  # another user's, or a killed run's helper still writes: the next run's

@@ -17,9 +17,8 @@ from typing import Any, TypeVar
 from .messages import InputError
 
 T = TypeVar("T")
-NINE_DIGITS = (
-    1e-8  # relative difference below which two numbers agree to nine digits, however the last was rounded
-)
+# relative difference below which two numbers agree to nine digits, however the last was rounded
+NINE_DIGITS = 1e-8
 _WHOLE = re.compile(r"[+-]?[0-9]+")
 _NUMBER = re.compile(r"[+-]?(([0-9]+\.?[0-9]*|\.[0-9]+)(e[+-]?[0-9]+)?|nan|inf(inity)?)", re.IGNORECASE)
 

@@ -12,9 +12,8 @@ from tactcad.design.messages import CheckFailure
 
 Array = NDArray[np.float64]
 
-MOST_ROUNDING = (
-    1e-4  # of the compliance; a leaf a hundred times longer than thick stays below 2e-6 (tests/extremes)
-)
+# of the compliance; a leaf a hundred times longer than thick stays below 2e-6 (tests/extremes)
+MOST_ROUNDING = 1e-4
 
 
 def lame(E: float, nu: float, plane_stress: bool = False) -> tuple[float, float]:
@@ -49,9 +48,21 @@ def stiffness_matrix(basis: Basis, lam: float, mu: float) -> csc_matrix:
 def solve(A: csc_matrix, f: Array, fixed: Array) -> Array:
     """Displacements with some unknowns fixed at zero; A symmetric and positive definite, by SuperLU.
 
-    `A`: shape (n, n); stiffness, N/mm. `f`: shape (n,); load, N. `fixed`: indices of the fixed unknowns.
-    Raises CheckFailure if one step of iterative refinement changes the compliance by more than MOST_ROUNDING:
-    for a leaf hundreds of times longer than thick double precision is not enough."""
+    Parameters
+    ----------
+    A : sparse matrix, shape (n, n)
+        Stiffness, N/mm.
+    f : ndarray, shape (n,)
+        Load, N.
+    fixed
+        Indices of the fixed unknowns.
+
+    Raises
+    ------
+    CheckFailure
+        If one step of iterative refinement changes the compliance by more than MOST_ROUNDING: for a leaf
+        hundreds of times longer than thick double precision is not enough.
+    """
     free = np.setdiff1d(np.arange(len(f)), fixed)
     u = np.zeros_like(f)
     u[free], rounding = refined(A[free][:, free].tocsc(), f[free])

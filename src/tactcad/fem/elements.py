@@ -149,10 +149,8 @@ def solve_solid(
     across = across or density
     with making("elements", f"solid, density {density} and {across} across, order {order}"):
         mesh = plane_mesh(shape, density, order=order)
-        space, sideways = (
-            PlaneSpace.of(mesh),
-            AcrossSpace.of(mesh, width / 2.0, across, order_across or order),
-        )
+        space = PlaneSpace.of(mesh)
+        sideways = AcrossSpace.of(mesh, width / 2.0, across, order_across or order)
         return _solved(mesh, space, sideways, E, nu, width)
 
 

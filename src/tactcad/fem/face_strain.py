@@ -96,8 +96,15 @@ class SurfaceReadings:
 
 
 def readings(solution: PlaneSolution | SolidSolution, grid_length: Array | float) -> SurfaceReadings:
-    """Strains and stresses per newton, read off a solution. `solution`: under a unit force. `grid_length`:
-    shape (n,); of the gauges' grids, mm."""
+    """Strains and stresses per newton, read off a solution.
+
+    Parameters
+    ----------
+    solution
+        Under a unit force.
+    grid_length : scalar or ndarray, shape (n,)
+        Of the gauges' grids, mm.
+    """
     slot, flat = face_strain(solution, "slot"), face_strain(solution, "flat")
     return SurfaceReadings(flat.mean(grid_length), flat.peak, flat.peak_stress, slot.peak, slot.peak_stress)
 
@@ -110,9 +117,16 @@ def solid_readings(
     They are the readings in plane stress, times the ratio of solid to plane stress with the same coarser
     elements, times the change by elements of a higher order across the width.
 
-    `plane`: in plane stress, on the finest mesh. `solids`: as in `convergence.Converged`: the finest in the
-    plane; then two coarser ones there, the first of a higher order across, the second of the finest's.
-    `grid_length`: shape (n,); of the gauges' grids, mm."""
+    Parameters
+    ----------
+    plane
+        In plane stress, on the finest mesh.
+    solids
+        As in `convergence.Converged`: the finest in the plane; then two coarser ones there, the first of a
+        higher order across, the second of the finest's.
+    grid_length : scalar or ndarray, shape (n,)
+        Of the gauges' grids, mm.
+    """
     fine, across, coarse = (readings(s, grid_length) for s in solids)
     flat = readings(solids[0].flat(), grid_length)
     return readings(plane, grid_length) * fine / flat * across / coarse
@@ -122,9 +136,14 @@ def face_strain(solution: PlaneSolution | SolidSolution, face: str) -> FaceStrai
     """Strain and stress along one face of the hinge, from wall to wall of the slot; on a flat face over its
     length.
 
-    `solution`: under a unit force; a solid is read on its mid-plane y = 0. `face`: "slot" (upper floor with
-    its fillets), or "flat" (below the hinge). A two-sided hinge has slots on both sides with opposite
-    strains; its "flat" face is the lower one."""
+    Parameters
+    ----------
+    solution
+        Under a unit force; a solid is read on its mid-plane y = 0.
+    face
+        "slot" (upper floor with its fillets), or "flat" (below the hinge). A two-sided hinge has slots on
+        both sides with opposite strains; its "flat" face is the lower one.
+    """
     space, shape = solution.space, solution.mesh.shape
     upper = face == "slot" or shape.two_sided
     walls = shape.arm.slot_corner(upper=True).wall, shape.body.slot_corner(upper=True).wall

@@ -67,9 +67,20 @@ class Converged:
 def stiffness(s: HingeSection, rung: str, mesh: int = SOLID_MESH) -> float:
     """Tip stiffness of one reference element by a finite-element rung, friction at the pad included, N/mm.
 
-    `s`: one design (scalars); `rung`: "fem-plane" or "fem-solid"; `mesh`: half the order of fem-solid's
-    finest elements in the plane. Raises CheckFailure if the design is impossible or the mesh cannot follow
-    it."""
+    Parameters
+    ----------
+    s
+        One design (scalars).
+    rung
+        "fem-plane" or "fem-solid".
+    mesh
+        Half the order of fem-solid's finest elements in the plane.
+
+    Raises
+    ------
+    CheckFailure
+        If the design is impossible or the mesh cannot follow it.
+    """
     return converged(s, rung, mesh=mesh).stiffness * float(friction_factor(s))
 
 
@@ -104,8 +115,17 @@ def solve(
 
 
 def richardson(compliance: tuple[float, float], densities: tuple[int, int], order: float) -> float:
-    """Limit of c(h) = c + k h^order from two meshes, mm/N. `compliance`: on the two meshes, mm/N;
-    `densities`: of the two meshes, inversely proportional to h; `order`: rate of convergence."""
+    """Limit of c(h) = c + k h^order from two meshes, mm/N.
+
+    Parameters
+    ----------
+    compliance
+        On the two meshes, mm/N.
+    densities
+        Of the two meshes, inversely proportional to h.
+    order
+        Rate of convergence.
+    """
     coarse, fine = compliance
     return fine + (fine - coarse) / ((densities[1] / densities[0]) ** order - 1.0)
 
@@ -115,9 +135,22 @@ def converged_plane(
 ) -> Converged:
     """Rung fem-plane: Richardson's limit of two meshes.
 
-    `shape`: of the element, mm; `E`, `nu`: Young's modulus, MPa, and Poisson's ratio; `width`: of the sheet,
-    mm; `plane_strain`: instead of plane stress. Its error is the difference between the limit and the finer
-    mesh."""
+    Parameters
+    ----------
+    shape
+        Of the element, mm.
+    E, nu
+        Young's modulus, MPa, and Poisson's ratio.
+    width
+        Of the sheet, mm.
+    plane_strain
+        Instead of plane stress.
+
+    Returns
+    -------
+    Converged
+        Its error is the difference between the limit and the finer mesh.
+    """
     pair = [
         solve_plane(shape, E, nu, width, density=d, order=ORDER, plane_strain=plane_strain)
         for d in PLANE_DENSITIES
@@ -138,8 +171,17 @@ def converged_solid(
     the plane, which is cheap; and the limits of plane stress and plane strain, between which chi
     interpolates.
 
-    `shape`: of the element, mm; `E`, `nu`: Young's modulus, MPa, and Poisson's ratio; `width`: of the sheet,
-    mm; `mesh`: half the order of the finest elements in the plane."""
+    Parameters
+    ----------
+    shape
+        Of the element, mm.
+    E, nu
+        Young's modulus, MPa, and Poisson's ratio.
+    width
+        Of the sheet, mm.
+    mesh
+        Half the order of the finest elements in the plane.
+    """
     stress, strain = (converged_plane(shape, E, nu, width, plane_strain=p) for p in (False, True))
 
     orders = (2 * mesh, ACROSS), (2, ACROSS * mesh), (2, ACROSS)  # in the plane, across

@@ -45,8 +45,20 @@ def triangle_mesh(
 ) -> MeshTri2:
     """Mesh of a contour with holes, finer at arcs.
 
-    `outer`, `holes`: simple closed contours, mm; `fine`: places that want smaller elements; `largest`:
-    largest element, mm. Raises CheckFailure if the triangles do not follow the boundary."""
+    Parameters
+    ----------
+    outer, holes
+        Simple closed contours, mm.
+    fine
+        Places that want smaller elements.
+    largest
+        Largest element, mm.
+
+    Raises
+    ------
+    CheckFailure
+        If the triangles do not follow the boundary.
+    """
     contours = (outer, *holes)
     size = _Size(_seeds(contours, fine), largest)
     loops = [_boundary(c, size) for c in contours]

@@ -71,10 +71,22 @@ class PlaneMesh:
 def plane_mesh(shape: ElementShape, density: int = 1, whole: bool = False, order: int = 2) -> PlaneMesh:
     """Mapped mesh of a hinge shape.
 
-    `shape`: symmetric two-sided shapes are meshed down to their mid-line only; `density`: 1, 2, 3...:
-    elements of every block each way, over those of the coarsest mesh; `whole`: mesh a symmetric shape on both
-    sides of its mid-line too; `order`: of the elements. Raises CheckFailure if slots from both faces differ
-    in length or radius."""
+    Parameters
+    ----------
+    shape
+        Symmetric two-sided shapes are meshed down to their mid-line only.
+    density
+        1, 2, 3...: elements of every block each way, over those of the coarsest mesh.
+    whole
+        Mesh a symmetric shape on both sides of its mid-line too.
+    order
+        Of the elements.
+
+    Raises
+    ------
+    CheckFailure
+        If slots from both faces differ in length or radius.
+    """
     shape = _without_slivers(shape)
     if not shape.two_sided:
         cells = _half(shape, shape.low, True, density, order)
@@ -99,8 +111,15 @@ def layers(half_width: float, thickness: float, density: int) -> Array:
     They get smaller towards the free side, where plane strain changes to plane stress within about a
     thickness.
 
-    `half_width`: half the sheet's thickness, mm; `thickness`: of the hinge, mm; `density`: as for
-    `plane_mesh`."""
+    Parameters
+    ----------
+    half_width
+        Half the sheet's thickness, mm.
+    thickness
+        Of the hinge, mm.
+    density
+        As for `plane_mesh`.
+    """
     return half_width * (1.0 - _graded(half_width, SIDE_LAYER * thickness, density)[::-1])
 
 

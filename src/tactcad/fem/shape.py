@@ -145,8 +145,18 @@ def cut_element(contour: Contour, clamp_x: float, load_x: float) -> ElementShape
 
     Pad, stop land and the rear body's corner fillet are left out, as in the reference designs.
 
-    `contour`: the part's, in the side plane, mm; `clamp_x`, `load_x`: where it is cut, mm. Raises
-    CheckFailure if the hinge model does not describe the part; with the reason."""
+    Parameters
+    ----------
+    contour
+        The part's, in the side plane, mm.
+    clamp_x, load_x
+        Where it is cut, mm.
+
+    Raises
+    ------
+    CheckFailure
+        If the hinge model does not describe the part; with the reason.
+    """
     try:
         piece = between(contour, min(clamp_x, load_x), max(clamp_x, load_x), ("end", "end"))
     except ValueError as error:

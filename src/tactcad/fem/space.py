@@ -56,9 +56,8 @@ class PlaneSpace:
         elements = index.reshape(count, side, side)
         corners = elements[:, [0, -1, -1, 0], [0, 0, -1, -1]]
         edges = np.sort(np.stack([corners, np.roll(corners, 1, axis=1)], axis=-1), axis=-1).reshape(-1, 2)
-        if (
-            len(np.unique(corners)) - len(np.unique(edges, axis=0)) + count != 1
-        ):  # Euler: a disc without holes
+        # Euler: a disc without holes
+        if len(np.unique(corners)) - len(np.unique(edges, axis=0)) + count != 1:
             raise RuntimeError("the mapped mesh is torn: blocks do not share their nodes")
         return cls(np.ascontiguousarray(points.T), elements)
 

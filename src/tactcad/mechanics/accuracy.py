@@ -103,8 +103,20 @@ def require_measured(s: HingeSection, names: Sequence[str] = ()) -> None:
 
 
 def choose_each(s: HingeSection, accuracy: float) -> list[Choice | str]:
-    """For every design its own choice, or the reason for having none. `accuracy`: largest relative error of K
-    that is accepted. Returns one entry a design, in the order of the flattened section."""
+    """For every design its own choice, or the reason for having none.
+
+    Parameters
+    ----------
+    s
+        One design or many.
+    accuracy
+        Largest relative error of K that is accepted.
+
+    Returns
+    -------
+    list of Choice or str
+        One entry a design, in the order of the flattened section.
+    """
     by_zone: dict[int, Choice | str] = {}
     zone = zones(s).ravel()
     for z in np.unique(zone):
@@ -126,13 +138,8 @@ def zones(s: HingeSection) -> np.ndarray:
 
 
 def in_zone(zone: dict, groups: dict[str, Array], two_sided: np.ndarray) -> np.ndarray:
-    """Mask of the designs in a zone: of its notch form, and with low <= group < high for each of its
-    bounds.
-    """
-    inside = two_sided == (zone["sides"] == "two")
-    for name, (low, high) in zone["bounds"].items():
-        inside = inside & (groups[name] >= low) & (groups[name] < (np.inf if high is None else high))
-    return inside
+    """Mask of the designs in a zone: of its notch form, and within its bounds."""
+    return (two_sided == (zone["sides"] == "two")) & validity.in_bounds(zone["bounds"], groups)
 
 
 def expected_error(s: HingeSection, candidate: Candidate) -> Array:
@@ -141,8 +148,22 @@ def expected_error(s: HingeSection, candidate: Candidate) -> Array:
 
 
 def expected_error_of(s: HingeSection, rung: str, mesh: int | None = None) -> Array:
-    """Promised largest relative error of a rung at every design, NaN outside the envelope. `mesh`: half the
-    order of fem-solid's elements in the plane, by default the rung's own."""
+    """Promised largest relative error of a rung at every design, NaN outside the envelope.
+
+    Parameters
+    ----------
+    s
+        One design or many.
+    rung
+        The rung's name.
+    mesh
+        Half the order of fem-solid's elements in the plane, by default the rung's own.
+
+    Returns
+    -------
+    Array
+        Of the section's shape.
+    """
     return expected_error(s, Candidate(rung, mesh or rungs()[rung].meshes[0]))
 
 

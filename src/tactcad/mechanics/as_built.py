@@ -47,8 +47,17 @@ def without_layer(s: HingeSection, layer: Array | float) -> HingeSection:
 
 
 def in_clamp(s: HingeSection, stiffness: Array, turn: Array | float) -> Array:
-    """Tip stiffness in a clamp that turns under the moment at its edge, N/mm. `stiffness`: tip stiffness in a
-    rigid clamp, N/mm; `turn`: rotation of the clamp per moment, rad/(N mm)."""
+    """Tip stiffness in a clamp that turns under the moment at its edge, N/mm.
+
+    Parameters
+    ----------
+    s
+        One design or many.
+    stiffness
+        Tip stiffness in a rigid clamp, N/mm.
+    turn
+        Rotation of the clamp per moment, rad/(N mm).
+    """
     lever = s.load_arm + s.hinge_length / 2.0 + s.body_length
     return stiffness / (1.0 + stiffness * turn * lever * lever)
 
@@ -56,9 +65,25 @@ def in_clamp(s: HingeSection, stiffness: Array, turn: Array | float) -> Array:
 def half_widths(s: HingeSection, tolerance: Tolerance, rung: str = ladder.DEFAULT_RUNG) -> dict[str, Array]:
     """Relative half-width of every design's tip stiffness, to first order.
 
-    `tolerance`: half-widths of the dimensions, mm; of Young's modulus, relative; of the clamp, rad/(N mm).
-    `rung`: the closed form that is differentiated. Returns them by field of [tolerance], each of the
-    section's shape. Raises CheckFailure if a design is out of the rung's range."""
+    Parameters
+    ----------
+    s
+        One design or many.
+    tolerance
+        Half-widths of the dimensions, mm; of Young's modulus, relative; of the clamp, rad/(N mm).
+    rung
+        The closed form that is differentiated.
+
+    Returns
+    -------
+    dict of str to Array
+        By field of [tolerance]; each of the section's shape.
+
+    Raises
+    ------
+    CheckFailure
+        If a design is out of the rung's range.
+    """
     names = dict.fromkeys((*DIMENSIONS.values(), *CUT_FACES))
     per_mm = {name: elasticity(s, name, rung) / getattr(s, name) for name in names}
     by_field = {field: getattr(tolerance, field) * per_mm[name] for field, name in DIMENSIONS.items()}
@@ -82,8 +107,14 @@ QUANTILES = (2.054, 2.047, 2.022, 1.968, 1.87, 1.791, 1.663)
 def together(limits: Iterable[Array], measured: Iterable[Array] = ()) -> Array:
     """Half-width for 95 % of what differs by all causes at once.
 
-    `limits`: half-width by each cause that is somewhere between limits. The largest counts as uniform, the
-    others together as normal. `measured`: half-width by each that was measured: two standard deviations."""
+    Parameters
+    ----------
+    limits
+        Half-width by each cause that is somewhere between limits. The largest counts as uniform, the others
+        together as normal.
+    measured
+        Half-width by each that was measured: two standard deviations.
+    """
     squares = [limit * limit / 3.0 for limit in limits]
     variance = sum(squares) + sum(half * half / 4.0 for half in measured)
     share = np.maximum.reduce(squares) / np.where(variance > 0.0, variance, 1.0)

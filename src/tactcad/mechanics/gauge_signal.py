@@ -100,8 +100,20 @@ def foil_strain_per_force(s: HingeSection, gauge: Gauge, rung: str = ladder.DEFA
 def foil_strain_per_deflection(s: HingeSection, gauge: Gauge, rung: str = ladder.DEFAULT_RUNG) -> Array:
     """Mean strain of the foil per millimetre of tip deflection, 1/mm.
 
-    `gauge`: its grid, foil and carrier, the same for every design. Raises CheckFailure if a design is out of
-    the rung's range, or a two-sided hinge's flat part is too short for the grid."""
+    Parameters
+    ----------
+    s
+        One design or many.
+    gauge
+        Its grid, foil and carrier, the same for every design.
+    rung
+        A closed-form rung.
+
+    Raises
+    ------
+    CheckFailure
+        If a design is out of the rung's range, or a two-sided hinge's flat part is too short for the grid.
+    """
     return foil_strain_per_force(s, gauge, rung) * stiffness(s, gauge, rung)
 
 
@@ -117,8 +129,18 @@ def reading(s: HingeSection, grid_length: Array | float, shift: Array | float) -
     mean = [(1 - x1/L) P(x1) - (1 - x0/L) P(x0) + int P dx/L]/grid. Within 0.7 % of plane elements 0.1 mm off
     the middle, and 0.4 % if the slot has a flat part (tests/mechanics/test_gauge_place.py).
 
-    `grid_length`, `shift`: mm. Raises CheckFailure if a two-sided hinge's flat part is too short for the grid
-    at that place."""
+    Parameters
+    ----------
+    s
+        One design or many.
+    grid_length, shift
+        mm.
+
+    Raises
+    ------
+    CheckFailure
+        If a two-sided hinge's flat part is too short for the grid at that place.
+    """
     grid, middle = np.asarray(grid_length, dtype=float), np.asarray(shift, dtype=float)
     L = s.load_arm
     points, weights = np.polynomial.legendre.leggauss(GAUSS)
@@ -190,16 +212,35 @@ class Heating:
 
 
 def continuous(excitation: float, gauge: Gauge, power: Power) -> Heating:
-    """Heating with power on all the time. `excitation`: of the bridge, V; `gauge`, `power`: the gauge, and
-    what heats it."""
+    """Heating with power on all the time.
+
+    Parameters
+    ----------
+    excitation
+        Of the bridge, V.
+    gauge, power
+        The gauge, and what heats it.
+    """
     watts = (excitation / 2) ** 2 / power.resistance
     return _heating(watts, watts * (thermal_resistance(gauge, power) + power.leaf_resistance), gauge, power)
 
 
 def switched(excitation: float, gauge: Gauge, power: Power) -> Heating:
     """Heating with power on for on_time in every period, at the end of a reading in the settled cycle, its
-    warmest moment. `excitation`: of the bridge, V; `power`: what heats the gauge. Raises InputError if
-    on_time is longer than the period."""
+    warmest moment.
+
+    Parameters
+    ----------
+    excitation
+        Of the bridge, V.
+    gauge, power
+        The gauge, and what heats it.
+
+    Raises
+    ------
+    InputError
+        If on_time is longer than the period.
+    """
     if power.on_time > power.period:
         legal = f"up to {power.period:g} s"
         raise InputError("readout.on_time", "longer than readout.period", value=power.on_time, legal=legal)
@@ -215,7 +256,17 @@ def switched(excitation: float, gauge: Gauge, power: Power) -> Heating:
 
 def warmth(excitation: float, gauge: Gauge, power: Power, after: float) -> float:
     """Rise of the grid over the body, K, `after` s from the moment that its power comes on in the settled
-    cycle. `excitation`: of the bridge, V; `power`: what heats the gauge; `after`: s, up to power.on_time."""
+    cycle.
+
+    Parameters
+    ----------
+    excitation
+        Of the bridge, V.
+    gauge, power
+        The gauge, and what heats it.
+    after
+        s, up to power.on_time.
+    """
     steady, tau = continuous(excitation, gauge, power), time_constant(gauge, power)
     if tau == 0.0:
         return steady.rise

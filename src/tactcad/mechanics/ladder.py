@@ -42,8 +42,20 @@ class Result:
 
 
 def evaluate(s: HingeSection, rung: str = DEFAULT_RUNG) -> Result:
-    """Tip stiffness of every design by a closed-form rung. `rung`: one of `CLOSED_FORMS`. Returns arrays of
-    the section's shape; out of the rung's range NaN and the first rule that is broken."""
+    """Tip stiffness of every design by a closed-form rung.
+
+    Parameters
+    ----------
+    s
+        One design or many.
+    rung
+        One of `CLOSED_FORMS`.
+
+    Returns
+    -------
+    Result
+        Arrays of the section's shape; out of the rung's range NaN and the first rule that is broken.
+    """
     broken = validity.first_broken(s, rung)
     valid = ~broken.astype(bool)
     stiffness = np.full(s.shape, np.nan)
@@ -53,8 +65,25 @@ def evaluate(s: HingeSection, rung: str = DEFAULT_RUNG) -> Result:
 
 
 def stiffness(s: HingeSection, rung: str = DEFAULT_RUNG) -> Array:
-    """Tip stiffness by a closed-form rung, friction at the pad included, N/mm. `rung`: one of `CLOSED_FORMS`.
-    Raises CheckFailure if any design is out of the rung's range; names the rule and the design."""
+    """Tip stiffness by a closed-form rung, friction at the pad included, N/mm.
+
+    Parameters
+    ----------
+    s
+        One design or many.
+    rung
+        One of `CLOSED_FORMS`.
+
+    Returns
+    -------
+    Array
+        Of the section's shape.
+
+    Raises
+    ------
+    CheckFailure
+        If any design is out of the rung's range; names the rule and the design.
+    """
     require_range(s, rung)
     return _stiffness(s, rung)
 
@@ -97,9 +126,25 @@ STEP = 1e-5  # relative; central differences then err by 1e-9 of the exponent
 def elasticity(s: HingeSection, parameter: str, rung: str = DEFAULT_RUNG) -> Array:
     """Relative change of stiffness per relative change of a parameter: dln K/dln p.
 
-    `parameter`: name of a field of `HingeSection`. Of the section's shape; 2.5 where 1 % more of the
-    parameter gives 2.5 % more K. Raises CheckFailure if a design is out of the rung's range; its neighbouring
-    steps may lie just outside."""
+    Parameters
+    ----------
+    s
+        One design or many.
+    parameter
+        Name of a field of `HingeSection`.
+    rung
+        A closed-form rung.
+
+    Returns
+    -------
+    Array
+        Of the section's shape; 2.5 where 1 % more of the parameter gives 2.5 % more K.
+
+    Raises
+    ------
+    CheckFailure
+        If a design is out of the rung's range; its neighbouring steps may lie just outside.
+    """
     require_range(s, rung)
     value = getattr(s, parameter)
     moved = (s.with_(**{parameter: value * (1.0 + sign * STEP)}) for sign in (1.0, -1.0))
@@ -116,9 +161,22 @@ def size(s: HingeSection, wanted: float, parameter: str, rung: str = DEFAULT_RUN
 
     Stiffness grows with thickness and falls with length, so there is at most one answer.
 
-    `s`: one design (scalars); its own value of the parameter is not used. `wanted`: stiffness at the tip,
-    N/mm. `parameter`: "hinge_thickness" or "hinge_length". Raises CheckFailure if the rung's range holds no
-    such design; with the stiffnesses that can be reached."""
+    Parameters
+    ----------
+    s
+        One design (scalars); its own value of the parameter is not used.
+    wanted
+        Stiffness at the tip, N/mm.
+    parameter
+        "hinge_thickness" or "hinge_length".
+    rung
+        A closed-form rung.
+
+    Raises
+    ------
+    CheckFailure
+        If the rung's range holds no such design; with the stiffnesses that can be reached.
+    """
     low, high = SEARCHED[parameter]
     values = np.geomspace(low, high, GRID)
     result = evaluate(s.with_(**{parameter: values}), rung)

@@ -79,8 +79,13 @@ def transmission(gauge: float, arm: float, lead: float, on: float, three_wires: 
 
         T = 4 R B/(A + B)^2 H/(H + on), H = (A + B) 2 C/(A + B + 2 C)
 
-    `gauge`, `arm`, `lead`, `on`: R, C, L and the closed switch, ohm; `three_wires`: whether each gauge has
-    three leads."""
+    Parameters
+    ----------
+    gauge, arm, lead, on
+        R, C, L and the closed switch, ohm.
+    three_wires
+        Whether each gauge has three leads.
+    """
     a, b = (gauge + lead, arm + lead) if three_wires else (gauge + 2 * lead, arm)
     halves = (a + b) * 2 * arm / (a + b + 2 * arm)
     return 4 * gauge * b / (a + b) ** 2 * halves / (halves + on)
@@ -113,8 +118,15 @@ def unlimited_output(strain: ArrayLike, factor: float, readout: ReadOut) -> Arra
 def volts_per_strain(factor: float, readout: ReadOut, strain: ArrayLike = 0.0) -> Array:
     """Sensitivity of the amplifier's output to strain at a foil strain, V: T U G GF 4/(4 + 2 x)^2.
 
-    `factor`: gauge factor GF. `readout`: supply U, gain G, transmission T and offset; x = GF strain + offset.
-    `strain`: foil strain at which the slope is taken."""
+    Parameters
+    ----------
+    factor
+        Gauge factor GF.
+    readout
+        Supply U, gain G, transmission T and offset; x = GF strain + offset.
+    strain
+        Foil strain at which the slope is taken.
+    """
     x = factor * np.asarray(strain, dtype=float) + readout.bridge_offset
     return readout.excitation * readout.gain * readout.transmission * factor * 4 / (4 + 2 * x) ** 2
 
@@ -126,9 +138,18 @@ ROOM = 300.15  # K
 def sample_noise(gain: float, density: float, bandwidth: float, resistance: float) -> float:
     """Rms of one sample at the amplifier's output, V.
 
-    `gain`: of the amplifier; `density`: its white noise referred to the input, V/rtHz; `bandwidth`: -3 dB,
-    Hz, of one pole; `resistance`: between its inputs, ohm: of a bridge of four equal arms R it is R, and two
-    switches of the multiplexer."""
+    Parameters
+    ----------
+    gain
+        Of the amplifier.
+    density
+        Its white noise referred to the input, V/rtHz.
+    bandwidth
+        -3 dB, Hz, of one pole.
+    resistance
+        Between its inputs, ohm: of a bridge of four equal arms R it is R, and two switches of the
+        multiplexer.
+    """
     return gain * sqrt((density**2 + 4 * BOLTZMANN * ROOM * resistance) * pi / 2 * bandwidth)
 
 
@@ -154,8 +175,22 @@ def predict(
 ) -> Signal:
     """Signals of all elements.
 
-    `gauge`, `electronics`: the same for all elements; `deflection`: of each element at its tip, mm. Raises
-    CheckFailure if an element is out of the rung's range."""
+    Parameters
+    ----------
+    s
+        The elements.
+    gauge, electronics
+        The same for all elements.
+    deflection
+        Of each element at its tip, mm.
+    rung
+        A closed-form rung.
+
+    Raises
+    ------
+    CheckFailure
+        If an element is out of the rung's range.
+    """
     gain = readout.volts_per_strain(gauge.factor, electronics)
     per_mm = gauge_signal.foil_strain_per_deflection(s, gauge, rung)
     per_newton = gauge_signal.foil_strain_per_force(s, gauge, rung)

@@ -83,7 +83,13 @@ def rod(length: float, diameter: float, youngs_modulus: float, poisson: float) -
 
     The rectangle is a third softer in shear than the round bar.
 
-    `length`, `diameter`: mm; `youngs_modulus`: MPa."""
+    Parameters
+    ----------
+    length, diameter
+        mm.
+    youngs_modulus, poisson
+        MPa; Poisson's ratio.
+    """
     return Beam(length, 3.0 * pi / 16.0 * diameter, diameter, youngs_modulus, poisson)
 
 
@@ -92,8 +98,18 @@ def round_plate(
 ) -> tuple[float, float]:
     """Deflection of the middle of a round plate supported on its rim.
 
-    `radius`, `thickness`: mm; `youngs_modulus`: MPa. Returns it under a force in the middle, mm/N, and under
-    pressure on the face, mm/MPa."""
+    Parameters
+    ----------
+    radius, thickness
+        mm.
+    youngs_modulus, poisson
+        MPa; Poisson's ratio.
+
+    Returns
+    -------
+    tuple of float
+        Under a force in the middle, mm/N, and under pressure on the face, mm/MPa.
+    """
     D = youngs_modulus * thickness**3 / (12.0 * (1.0 - poisson**2))
     nu = poisson
     force = (3.0 + nu) / (1.0 + nu) * radius**2 / (16.0 * pi * D)
@@ -124,17 +140,30 @@ def tipping_margin(contacts: Sequence[Point], half: float) -> float:
     A vertical load inside their polygon leaves every wheel pressed, however large it is; the cart's own
     weight only helps. The square's corners are the critical places.
 
-    `contacts`: contact points of the wheels, mm: a convex polygon, counter-clockwise; `half`: half the
-    square's side, mm."""
+    Parameters
+    ----------
+    contacts
+        Contact points of the wheels, mm: a convex polygon, counter-clockwise.
+    half
+        Half the square's side, mm.
+    """
     return min(inside_by(contacts, (sx * half, sy * half)) for sx in (-1, 1) for sy in (-1, 1))
 
 
 def tipping_pull(contacts: Sequence[Point], height: float, weight: float, load: float, at: Point) -> float:
     """Horizontal force that would lift a wheel, N; inf if `height` is 0.
 
-    `contacts`: contact points of the wheels, mm: a convex polygon, counter-clockwise; `height`: of the
-    horizontal force over the contacts, mm; `weight`: the cart's own, in its middle, N; `load`, `at`: vertical
-    load, N, and its point of action, mm."""
+    Parameters
+    ----------
+    contacts
+        Contact points of the wheels, mm: a convex polygon, counter-clockwise.
+    height
+        Of the horizontal force over the contacts, mm.
+    weight
+        The cart's own, in its middle, N.
+    load, at
+        Vertical load, N, and its point of action, mm.
+    """
     if height == 0:
         return inf
     arms = zip(_inside_sides(contacts, at), _inside_sides(contacts, (0.0, 0.0)))

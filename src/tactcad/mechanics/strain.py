@@ -45,9 +45,24 @@ def gauge(
     the pad takes of the bending moment. (`peak` and the stresses are those without friction, which may be
     less than stated.)
 
-    `force`: at the load line, N; `grid_length`: of the gauge's grid, mm; `data`: as data/strain.json, by
-    default the shipped one. Raises CheckFailure if a design is out of the rung's range, or a two-sided
-    hinge's flat part is too short for the grid."""
+    Parameters
+    ----------
+    s
+        One design or many.
+    force
+        At the load line, N.
+    grid_length
+        Of the gauge's grid, mm.
+    rung
+        A closed-form rung.
+    data
+        As data/strain.json, by default the shipped one.
+
+    Raises
+    ------
+    CheckFailure
+        If a design is out of the rung's range, or a two-sided hinge's flat part is too short for the grid.
+    """
     ladder.require_range(s, rung)
     bent = nominal(s, force) / friction_factor(s)
     return bent * grid_factor(s, grid_length, rung) * width_reduction(s, rung, "grid", grid_length, data)
@@ -61,8 +76,22 @@ def peak(
     The rungs short, beam and section do not model the fillet: theirs is the nominal strain at the slot's end
     (short: at its centre).
 
-    `force`: at the load line, N; `data`: as data/strain.json, by default the shipped one. Raises CheckFailure
-    if a design is out of the rung's range."""
+    Parameters
+    ----------
+    s
+        One design or many.
+    force
+        At the load line, N.
+    rung
+        A closed-form rung.
+    data
+        As data/strain.json, by default the shipped one.
+
+    Raises
+    ------
+    CheckFailure
+        If a design is out of the rung's range.
+    """
     ladder.require_range(s, rung)
     if rung in ladder.FITTED:
         factor: Array | float = fillet_factor(s)
@@ -109,7 +138,13 @@ def mid_width_share(s: HingeSection, data: dict | None = None) -> Array:
     1 + nu^2 P, where P is a polynomial of second degree in l/b, t/b, nu and ln(r/t), each clipped to the
     range that was sampled, times `narrow`. The error of the closed form is fitted with it.
 
-    `data`: as data/strain.json, by default the shipped one."""
+    Parameters
+    ----------
+    s
+        One design or many.
+    data
+        As data/strain.json, by default the shipped one.
+    """
     data = data or strain_data()
     return (1.0 + s.poisson**2 * _polynomial(s, features(s), data["mid-width share"])) * narrow(
         s, "stress", data=data
@@ -123,8 +158,17 @@ def narrow(s: HingeSection, at: str, grid_length: Array | float = 0.0, data: dic
     1 + nu^2 P (l/b - 1/NARROW), and 1 if b is NARROW l or more. P as for `mid_width_share`, under a grid
     with grid/l besides.
 
-    `at`: "grid", "fillet" or "stress"; `grid_length`: of the gauge's grid, mm; `data`: as data/strain.json,
-    by default the shipped one."""
+    Parameters
+    ----------
+    s
+        One design or many.
+    at
+        "grid", "fillet" or "stress".
+    grid_length
+        Of the gauge's grid, mm.
+    data
+        As data/strain.json, by default the shipped one.
+    """
     slender = np.maximum(s.hinge_length / s.width - 1.0 / NARROW, 0.0)
     if not slender.any():
         return np.ones(s.shape)
@@ -261,7 +305,17 @@ def one_sided_grid(s: HingeSection, grid: Array, k: Constants, root: Array) -> A
     f(u, v; z) = ln(1 + exp(u (z - v)))/u. g is the mean root length in t: beyond the end of the slot the
     strain fades, partly at once, partly in the block.
 
-    `grid`: its length, mm; `k`: constants of the fit; `root`: g."""
+    Parameters
+    ----------
+    s
+        One design or many.
+    grid
+        Length of the gauge's grid, mm.
+    k
+        Constants of the fit.
+    root
+        g.
+    """
     g, middle, step = root, *_reach(s, grid)
     near = _softplus_rise(k["u"] * (middle / g - k["v"]), k["u"] * step / g) / k["u"]
     far = _softplus_rise(k["x"] * (middle / g - k["y"]), k["x"] * step / g) / k["x"]
@@ -329,8 +383,17 @@ class StrainErrors:
 
 
 def stated(s: HingeSection, grid_length: float, rung: str) -> StrainErrors:
-    """Stated errors of a rung at every design; NaN for rungs other than solid and fem-solid. `grid_length`:
-    of the gauge's grid, mm."""
+    """Stated errors of a rung at every design; NaN for rungs other than solid and fem-solid.
+
+    Parameters
+    ----------
+    s
+        One design or many.
+    grid_length
+        Of the gauge's grid, mm.
+    rung
+        The rung's name.
+    """
     if rung != "solid":
         known = np.full(s.shape, 1.0 if rung == "fem-solid" else np.nan)
         short_slot = s.hinge_length < SHORT * s.hinge_thickness
@@ -345,11 +408,8 @@ def stated(s: HingeSection, grid_length: float, rung: str) -> StrainErrors:
 
 
 def in_zone(bounds: dict[str, list[float | None]], s: HingeSection) -> np.ndarray:
-    """Designs with every group of a zone between its ends (None: no end)."""
-    groups, inside = validity.groups(s), np.ones(s.shape, dtype=bool)
-    for name, (low, high) in bounds.items():
-        inside &= (groups[name] >= (low or 0.0)) & (groups[name] < (np.inf if high is None else high))
-    return inside
+    """Designs with every group of a zone between its ends."""
+    return np.broadcast_to(validity.in_bounds(bounds, validity.groups(s)), s.shape)
 
 
 def _stated(s: HingeSection, name: str) -> Array:

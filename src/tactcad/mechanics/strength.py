@@ -114,6 +114,17 @@ def back_share(s: HingeSection, stiffness: Array, arm: Array, give: float) -> Ar
     return np.maximum((S * arm - L + (1.0 - S) * w) / (L + w), S * arm / L - 1.0)
 
 
+def overload_stress(
+    s: HingeSection, stiffness: Array, arm: Array, give: float, closing: Array, load: float
+) -> Array:
+    """Stress at the fillet under a load (N) whose part beyond `closing` (N) the stop meets, MPa; without a
+    check of the fit's range."""
+    beyond = load - closing
+    forwards = closing + stress_share(s, stiffness, arm, give) * beyond
+    backwards = back_share(s, stiffness, arm, give) * beyond
+    return strain.stress_beyond_the_fit(s, np.maximum(forwards, backwards))
+
+
 def deflection_share(s: HingeSection, stiffness: Array, arm: Array, give: float) -> Array:
     """Force at a free arm's load line (N) that bends the hinge by as large an angle as one newton does on a
     closed stop: M/L."""
@@ -127,10 +138,21 @@ def largest_closing_force(
 
     F + share (overload - F) = limit.
 
-    `s`, `stiffness`, `arm`, `give`: as above; `overload`: force at the load line, N; `limit`: force at a free
-    arm's load line that gives the hinge's largest allowed angle and stress, N. Returns N, at most `limit`; 0
-    or less if a stop closed from the start would not protect the hinge: its share of the overload alone
-    exceeds the limit, or bends the hinge back too far."""
+    Parameters
+    ----------
+    s, stiffness, arm, give
+        As above.
+    overload : float
+        Force at the load line, N.
+    limit : array
+        Force at a free arm's load line that gives the hinge's largest allowed angle and stress, N.
+
+    Returns
+    -------
+    array
+        N, at most `limit`. 0 or less if a stop closed from the start would not protect the hinge: its share
+        of the overload alone exceeds the limit, or bends the hinge back too far.
+    """
     share = _share(s, stiffness, arm, give)
     closing = limit - share / (1.0 - share) * np.maximum(overload - limit, 0.0)
     back = back_share(s, stiffness, arm, give) * overload > limit

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache, reduce
 
@@ -117,33 +117,7 @@ GEOMETRY = (
 )
 
 
-# Dimensionless groups that bound the fits: on plane elements, and of the width.
-PLANE_GROUPS: dict[str, Callable[[HingeSection], Array]] = {
-    "r/t": lambda s: s.fillet_radius / s.hinge_thickness,
-    "l/t": lambda s: s.hinge_length / s.hinge_thickness,
-    "h/t": lambda s: s.arm_height / s.hinge_thickness,
-    "Hb/t": lambda s: s.body_height / s.hinge_thickness,
-    "(L - l/2)/h": lambda s: (s.load_arm - s.hinge_length / 2.0) / s.arm_height,
-    "L/Hb": lambda s: s.load_arm / s.body_height,
-    "Lb/Hb": lambda s: s.body_length / s.body_height,
-    "poisson": lambda s: s.poisson,
-}
-WIDTH_GROUPS: dict[str, Callable[[HingeSection], Array]] = {
-    "b/t": lambda s: s.width / s.hinge_thickness,
-    "b/l": lambda s: s.width / s.hinge_length,
-    "b/h": lambda s: s.width / s.arm_height,
-    "b/Hb": lambda s: s.width / s.body_height,
-}
-
-# Groups with a lower bound only: the fault below it, the group, and the bounded fit.
-LEAST: dict[str, tuple[str, Callable[[HingeSection], Array], str]] = {
-    "Lb/t": ("body too short", lambda s: s.body_length / s.hinge_thickness, "plane"),
-    "L/t": ("load arm too short", lambda s: s.load_arm / s.hinge_thickness, "plane"),
-    "b/r": ("sheet too thin for its fillets", lambda s: s.width / s.fillet_radius, "width"),
-}
-
-
-# Parameters that a group is made of, as the batch's columns are called.
+# Parameters that a dimensionless group is made of, as the batch's columns are called.
 FIELDS: dict[str, tuple[str, ...]] = {
     "r/t": ("fillet_radius", "hinge_thickness"),
     "l/t": ("hinge_length", "hinge_thickness"),
@@ -163,9 +137,38 @@ FIELDS: dict[str, tuple[str, ...]] = {
 }
 
 
+def _group(name: str) -> Callable[[HingeSection], Array]:
+    """Its value: a parameter, the ratio of two, or the arm's reach beyond the slot over its height."""
+    over, *under = FIELDS[name]
+    if len(under) == 2:
+        return lambda s: (s.load_arm - s.hinge_length / 2.0) / s.arm_height
+    return lambda s: getattr(s, over) / getattr(s, under[0]) if under else getattr(s, over)
+
+
+# Groups that bound the fits: on plane elements, and of the width.
+PLANE_GROUPS = {
+    name: _group(name) for name in ("r/t", "l/t", "h/t", "Hb/t", "(L - l/2)/h", "L/Hb", "Lb/Hb", "poisson")
+}
+WIDTH_GROUPS = {name: _group(name) for name in ("b/t", "b/l", "b/h", "b/Hb")}
+# Groups with a lower bound only: the fault below it, the group, and the bounded fit.
+LEAST = {
+    "Lb/t": ("body too short", _group("Lb/t"), "plane"),
+    "L/t": ("load arm too short", _group("L/t"), "plane"),
+    "b/r": ("sheet too thin for its fillets", _group("b/r"), "width"),
+}
+
+
 def groups(s: HingeSection) -> dict[str, Array]:
     """Value of every group for every design."""
     return {name: value(s) for name, value in (PLANE_GROUPS | WIDTH_GROUPS).items()}
+
+
+def in_bounds(bounds: Mapping[str, Sequence[float | None]], values: Mapping[str, Array]) -> np.ndarray:
+    """Mask of the designs with low <= group < high for each of a zone's bounds; None: no end."""
+    inside: np.ndarray = np.ones((), bool)
+    for name, (low, high) in bounds.items():
+        inside = inside & (values[name] >= (low or 0.0)) & (values[name] < (np.inf if high is None else high))
+    return inside
 
 
 @lru_cache
@@ -220,8 +223,13 @@ def rules(rung: str) -> tuple[RangeRule, ...]:
 
 
 def broken_rules(s: HingeSection, rung: str) -> dict[str, np.ndarray]:
-    """The rung's rules that any design breaks: by the rule's name, the mask of the designs that break it, of
-    the section's shape."""
+    """The rung's rules that any design breaks.
+
+    Returns
+    -------
+    dict of str to ndarray of bool
+        By the rule's name, the mask of the designs that break it, of the section's shape.
+    """
     known = s.__dict__.setdefault("broken_rules", {})  # used by every formula of the section
     if rung not in known:
         with np.errstate(all="ignore"):

@@ -119,9 +119,14 @@ def _moved(s: Segment, dx: float, dy: float) -> Segment:
 def nests(ordered: Iterable[tuple[Part, int, int]], wire: bool) -> list[Nest]:
     """A nest for each material and thickness of stock.
 
-    `ordered`: parts with how many pieces of each, and how many are cut at once on each other. `wire`: wire-
-    cut parts, as they lie in the sheet (never turned: it is rolled along the arms); else blanks of plates, by
-    laser, water jet or saw."""
+    Parameters
+    ----------
+    ordered
+        Parts with how many pieces of each, and how many are cut at once on each other.
+    wire
+        Wire-cut parts, as they lie in the sheet (never turned: it is rolled along the arms); else blanks of
+        plates, by laser, water jet or saw.
+    """
     groups: dict[tuple[str, float, int], list[tuple[Part, int]]] = {}
     for part, count, high in ordered:
         if (

@@ -195,8 +195,17 @@ def wire_questions(contents: ReleaseContents) -> list[str]:
 
 
 def package_readme(contents: ReleaseContents, one: Packed, whole: str, shop: Shop) -> bytes:
-    """The text. `contents`, `one`: the release, and the package; `whole`: name of the whole zip, with its
-    SHA-256; `shop`: the shop whose feed gave the wire's time."""
+    """The text.
+
+    Parameters
+    ----------
+    contents, one
+        The release, and the package.
+    whole
+        Name of the whole zip, with its SHA-256.
+    shop
+        The shop whose feed gave the wire's time.
+    """
     lines = first_lines(contents, one.package.title)
     lines += paragraph(say("taken from", whole=whole))
     for head, body in (

@@ -89,8 +89,15 @@ class OrderLine:
 
 def ordered(scenes: Sequence[Scene], identity: Identity | None, sets: Sets) -> tuple[OrderLine, ...]:
     """The lines that the scenes need, in order of first placement; what comes with another part, and
-    reference parts, need no order. `scenes`, `identity`: of the design; None: without letters. `sets`: what
-    is ordered (SETS)."""
+    reference parts, need no order.
+
+    Parameters
+    ----------
+    scenes, identity
+        Of the design; None: without letters.
+    sets
+        What is ordered (SETS).
+    """
     parts = {part.part_no: part for scene in scenes for part in scene.parts}
     bills = {scene.name: {row.part_no: row for row in bom_rows(scene, identity, {})} for scene in scenes}
     rows = {number: row for bill in bills.values() for number, row in reversed(bill.items())}

@@ -154,10 +154,8 @@ def _scene_faults(files: Mapping[str, bytes], contents: ReleaseContents, scene: 
     text = files[path].decode("ascii")
     yield from _header_faults(path, text, revision)
     rows = bom.rows_from_csv(files[bill])
-    solids, meant = (
-        len(re.findall("=NEXT_ASSEMBLY_USAGE_OCCURRENCE\\(", text)),
-        sum(r.qty for r in rows if r.has_solid),
-    )
+    solids = len(re.findall("=NEXT_ASSEMBLY_USAGE_OCCURRENCE\\(", text))
+    meant = sum(r.qty for r in rows if r.has_solid)
     if solids != meant:
         yield f"{path}: {solids} solids, {bill} has {meant:g}"
     for row in rows:
@@ -285,8 +283,15 @@ def check_packages(
 ) -> list[str]:
     """Faults of the written packages.
 
-    `paths`, `packages`: the written zips, and what they are to hold, in the same order; `every`: the whole
-    zip's files, found right; `contents`: what the release is about."""
+    Parameters
+    ----------
+    paths, packages
+        The written zips, and what they are to hold, in the same order.
+    every
+        The whole zip's files, found right.
+    contents
+        What the release is about.
+    """
     wrong, orders = [], []
     for path, one in zip(paths, packages, strict=True):
         files, faults = read_back(path)

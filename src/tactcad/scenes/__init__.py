@@ -93,9 +93,20 @@ def refuse_unknown_parts(design: CommonTables) -> None:
 def make_scene(design: CommonTables, name: str, pose: Pose | None = None) -> Scene:
     """One scene of a design.
 
-    `design`: must keep every rule, as `tactcad.parts.rules.load` ensures. `name`: one of
-    `scene_names(design)`. `pose`: by default the rest pose; the scene `array` has no other. Raises InputError
-    if the pose is impossible."""
+    Parameters
+    ----------
+    design
+        Must keep every rule, as `tactcad.parts.rules.load` ensures.
+    name
+        One of `scene_names(design)`.
+    pose
+        By default the rest pose; the scene `array` has no other.
+
+    Raises
+    ------
+    InputError
+        If the pose is impossible.
+    """
     from .scene import REST, with_added
 
     with making("scene", name):

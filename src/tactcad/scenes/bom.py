@@ -72,8 +72,14 @@ def bom_rows(
 ) -> tuple[BomRow, ...]:
     """The lines of a scene: made parts, then bought ones, then supplies; each in order of first placement.
 
-    `scene`: its placements and supplies. `identity`: of the design, which knows the letters of made parts;
-    None: without letters. `files`: by part number: path and SHA-256 of the file that the part is made from.
+    Parameters
+    ----------
+    scene
+        Its placements and supplies.
+    identity
+        Of the design, which knows the letters of made parts; None: without letters.
+    files
+        By part number: path and SHA-256 of the file that the part is made from.
     """
     parts = sorted(scene.parts, key=lambda part: part.bought)
     letter = lambda p: identity.of_part(p.part_no).revision if identity and not p.bought else ""  # noqa: E731
@@ -165,7 +171,15 @@ def _parsed(column: Any, cell: str) -> object:
 
 
 def json_bytes(rows: Sequence[BomRow], design: str, revision: str, scene: str) -> bytes:
-    """The rows, as `bom_rows` gives them, as JSON, with their `design`, `revision` and `scene`."""
+    """The rows as JSON.
+
+    Parameters
+    ----------
+    rows
+        As `bom_rows` gives them.
+    design, revision, scene
+        That they belong to.
+    """
     record = {
         "schema": SCHEMA,
         "design": design,

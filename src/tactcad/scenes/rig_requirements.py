@@ -35,12 +35,10 @@ from .requirement import LEAST_PRESS, SHEET, Built, DimensionLimits, Requirement
 if TYPE_CHECKING:
     from tactcad.mechanics.section import Array
 
-AXLE_HEIGHT, WHEEL, BORES, SHANKS = (
-    "axles: height over the cart's underside",
-    "wheel: outside diameter",
-    "wheel: bore",
-    "axle: shank",
-)
+AXLE_HEIGHT = "axles: height over the cart's underside"
+WHEEL = "wheel: outside diameter"
+BORES = "wheel: bore"
+SHANKS = "axle: shank"
 # Shank of an ISO 4762 screw of product grade A (ISO 4759-1:2000).
 SHANK = "h13"
 # mm, largest offset of the roller from its seat's middle, which shifts the load along the arm. The seat's
@@ -143,10 +141,8 @@ def roller(layout: Layout, known: dict[str, DimensionLimits]) -> list[Requiremen
 
 
 PLACE_ON_HINGE = "gauge lies on its hinge"
-SHARE, EYE = (
-    "bonding: element in its play on the tongue, share",
-    "bonding: gauge set between the tongue's edges",
-)
+SHARE = "bonding: element in its play on the tongue, share"
+EYE = "bonding: gauge set between the tongue's edges"
 TONGUE_ = "bonding nest: tongue width"
 
 

@@ -20,8 +20,15 @@ def assembly_tree(
     """The scene's parts, each named by its designator and coloured, in named sub-assemblies; equal parts
     share one shape.
 
-    `scene`: names the whole; `shapes`: solids by part number, each in its own frame, mm; `under`: by
-    designator the names of the sub-assemblies that hold it, the outer one first."""
+    Parameters
+    ----------
+    scene
+        Names the whole.
+    shapes
+        Solids by part number, each in its own frame, mm.
+    under
+        By designator the names of the sub-assemblies that hold it, the outer one first.
+    """
     leaves = [(under[p.designator], _leaf(p, shapes[p.part.part_no])) for p in scene.placements]
     return _compound(scene.name, leaves)
 

@@ -48,8 +48,17 @@ def bought_from_step(
 ) -> Part:
     """A bought part whose shape is the one solid of a STEP file.
 
-    `path`: the STEP file, mm; `part_no`, `name`, `material`, `purchase`: of the part, see
-    `tactcad.parts.language.description.Part`. Raises InputError if the file does not hold exactly one solid.
+    Parameters
+    ----------
+    path
+        The STEP file, mm.
+    part_no, name, material, purchase
+        Of the part, see `tactcad.parts.language.description.Part`.
+
+    Raises
+    ------
+    InputError
+        If the file does not hold exactly one solid.
     """
     from .step import model_file
 
@@ -66,9 +75,20 @@ def bought_from_cadquery(
 ) -> Part:
     """A bought part modelled in CadQuery.
 
-    `model`: one solid, mm; `path`: the STEP file that is written, and read from then on; `part_no`, `name`,
-    `material`, `purchase`: of the part, see `tactcad.parts.language.description.Part`. Raises InputError if
-    the model is not one solid."""
+    Parameters
+    ----------
+    model
+        One solid, mm.
+    path
+        The STEP file that is written, and read from then on.
+    part_no, name, material, purchase
+        Of the part, see `tactcad.parts.language.description.Part`.
+
+    Raises
+    ------
+    InputError
+        If the model is not one solid.
+    """
     shape = model.val() if isinstance(model, cq.Workplane) else model
     solids = shape.Solids() if isinstance(shape, cq.Shape) else []
     if len(solids) != 1:

@@ -24,8 +24,14 @@ from .occt import as_face, as_vertex, location, subshapes
 
 
 def measure(shape: TopoDS_Shape) -> dict:
-    """The kernel's measurements on a shape. Returns `volume` (mm3), `area` of the surface (mm2), `centre` of
-    mass (mm), and `box` as (least, largest) corner (mm)."""
+    """The kernel's measurements on a shape.
+
+    Returns
+    -------
+    dict
+        `volume` (mm3), `area` of the surface (mm2), `centre` of mass (mm), and `box` as (least, largest)
+        corner (mm).
+    """
     solid, surface = GProp_GProps(), GProp_GProps()
     BRepGProp.VolumeProperties_s(shape, solid)
     BRepGProp.SurfaceProperties_s(shape, surface)
@@ -88,9 +94,22 @@ class Faces:
 def faces_within(faces: Faces, place: Placement, box: np.ndarray, reach: float) -> TopoDS_Compound | None:
     """The faces of a placed shape that come near a box.
 
-    `faces`: in the shape's own frame. `place`: the shape's place. `box`: shape (2, 3); least and largest
-    corner in the scene, mm. `reach`: largest distance of a face's own box, mm. Returns the faces at their
-    place; None if none comes near."""
+    Parameters
+    ----------
+    faces
+        In the shape's own frame.
+    place
+        The shape's place.
+    box : ndarray, shape (2, 3)
+        Least and largest corner in the scene, mm.
+    reach
+        Largest distance of a face's own box, mm.
+
+    Returns
+    -------
+    TopoDS_Compound or None
+        The faces at their place; None if none comes near.
+    """
     low, high = np.moveaxis(boxed(faces.boxes, np.array(place.rotation), np.array(place.origin)), -2, 0)
     near = np.flatnonzero(np.all((low <= box[1] + reach) & (high >= box[0] - reach), axis=1))
     if not len(near):
@@ -134,8 +153,16 @@ def _point(vertex: TopoDS_Shape) -> np.ndarray:
 def nearest(first: TopoDS_Shape | None, second: TopoDS_Shape | None) -> tuple[float, Vector]:
     """Distance between two sets of faces.
 
-    `first`, `second`: as `faces_within` gives them; None for an empty set. Returns the distance, mm, infinite
-    if a set is empty; and its point on the first set."""
+    Parameters
+    ----------
+    first, second
+        As `faces_within` gives them; None for an empty set.
+
+    Returns
+    -------
+    tuple
+        The distance, mm, infinite if a set is empty; and its point on the first set.
+    """
     if first is None or second is None:
         return inf, (0.0, 0.0, 0.0)
     nearest_points = BRepExtrema_DistShapeShape(first, second)
@@ -148,8 +175,19 @@ def boxed(boxes: ArrayLike, rotation: np.ndarray, origin: np.ndarray) -> np.ndar
 
     The middle moves along; each half extent becomes the sum of what the turned edges reach along an axis.
 
-    `boxes`: shape (..., 2, 3); least and largest corners, mm. `rotation`: shape (3, 3); scene direction =
-    rotation x local direction. `origin`: shape (3,); mm. Returns least and largest corners in the scene, mm.
+    Parameters
+    ----------
+    boxes : ndarray, shape (..., 2, 3)
+        Least and largest corners, mm.
+    rotation : ndarray, shape (3, 3)
+        Scene direction = rotation x local direction.
+    origin : ndarray, shape (3,)
+        mm.
+
+    Returns
+    -------
+    ndarray, shape (..., 2, 3)
+        Least and largest corners in the scene, mm.
     """
     ends = np.asarray(boxes)
     middle, half = ends.mean(axis=-2), (ends[..., 1, :] - ends[..., 0, :]) / 2

@@ -67,8 +67,17 @@ def location(origin: Vector, rotation: Rotation) -> TopLoc_Location:
 
 
 def placed_shape(shape: TopoDS_Shape, origin: Vector, rotation: Rotation) -> TopoDS_Shape:
-    """The same shape, shared, at a place in the scene. `shape`: in its own frame, mm; `origin`: of that frame
-    in the scene, mm; `rotation`: rows of the matrix that turns local into scene directions."""
+    """The same shape, shared, at a place in the scene.
+
+    Parameters
+    ----------
+    shape
+        In its own frame, mm.
+    origin
+        Of that frame in the scene, mm.
+    rotation
+        Rows of the matrix that turns local into scene directions.
+    """
     return shape.Located(location(origin, rotation))
 
 

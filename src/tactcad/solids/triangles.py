@@ -38,10 +38,29 @@ def triangles(
 ) -> tuple[np.ndarray, np.ndarray]:
     """A triangle mesh of a shape, facing outwards.
 
-    `shape`: any shape of the kernel; `linear`: largest chord error, mm; `angular`: largest turn between
-    facets, radians, which usually governs; `many`: from so many faces on by the kernel's other method.
-    Returns vertices, mm (those that faces share are merged: they are the kernel's own edge points), and the
-    indices of each triangle's vertices. Raises ValueError if the kernel cannot mesh a face."""
+    Parameters
+    ----------
+    shape
+        Any shape of the kernel.
+    linear
+        Largest chord error, mm.
+    angular
+        Largest turn between facets, radians, which usually governs.
+    many
+        From so many faces on by the kernel's other method.
+
+    Returns
+    -------
+    points : ndarray, shape (n, 3)
+        Vertices, mm; those that faces share are merged: they are the kernel's own edge points.
+    faces : ndarray, shape (m, 3)
+        Indices of each triangle's vertices.
+
+    Raises
+    ------
+    ValueError
+        If the kernel cannot mesh a face.
+    """
     meshed = [face_triangles(face) for face in tessellated(shape, linear, angular, many)]
     starts = np.cumsum([0, *(len(points) for points, _ in meshed)])
     faces = [corners + start for (_, corners), start in zip(meshed, starts)]
@@ -90,8 +109,13 @@ def _merged(points: np.ndarray, faces: np.ndarray) -> tuple[np.ndarray, np.ndarr
 
 
 def polyhedra(mesh: manifold3d.Manifold) -> TopoDS_Shape:
-    """A solid of each piece of a mesh that hangs together; triangles in one plane are one face. Raises
-    ValueError if a triangle has no area."""
+    """A solid of each piece of a mesh that hangs together; triangles in one plane are one face.
+
+    Raises
+    ------
+    ValueError
+        If a triangle has no area.
+    """
     build, compound = BRep_Builder(), TopoDS_Compound()
     build.MakeCompound(compound)
     for piece in mesh.decompose():
@@ -161,8 +185,20 @@ class Facets:
 def facets(shape: TopoDS_Shape, linear: float, angular: float) -> Facets:
     """Tessellate a shape for a viewer.
 
-    `shape`: any shape of the kernel; `linear`: largest chord error, mm; `angular`: largest turn between
-    facets, radians. Raises ValueError if the kernel cannot mesh a face."""
+    Parameters
+    ----------
+    shape
+        Any shape of the kernel.
+    linear
+        Largest chord error, mm.
+    angular
+        Largest turn between facets, radians.
+
+    Raises
+    ------
+    ValueError
+        If the kernel cannot mesh a face.
+    """
     faces = tessellated(shape, linear, angular)
     meshed = [_face(face) for face in faces]
     starts = np.cumsum([0, *(len(points) for points, _, _ in meshed)])

@@ -16,9 +16,9 @@ from numpy.typing import NDArray
 from scipy import sparse
 from scipy.optimize import linprog
 
-from tactcad.mechanics import ladder, strain
+from tactcad.mechanics import ladder
 from tactcad.mechanics.section import Array, HingeSection
-from tactcad.mechanics.strength import back_share, stress_share, tip_compliance
+from tactcad.mechanics.strength import overload_stress, tip_compliance
 from tactcad.parts.array.clamp import SQUARE, lean
 from tactcad.parts.array.element import (
     ARM_LENGTH,
@@ -343,9 +343,7 @@ class Assembled:
         load, give = d.rating.overload_force, self.layout.stop_give
         with np.errstate(invalid="ignore", divide="ignore"):
             closing = np.minimum(self.gaps / tip_compliance(s, K, self.arm), load)
-            forwards = closing + stress_share(s, K, self.arm, give) * (load - closing)
-            backwards = back_share(s, K, self.arm, give) * (load - closing)
-            stress = strain.stress_beyond_the_fit(s, np.maximum(forwards, backwards))
+            stress = overload_stress(s, K, self.arm, give, closing, load)
         share = stress / d.material.yield_strength
         return np.where(share < CUT, share, CUT)  # not a number if there is no hinge
 
@@ -356,10 +354,19 @@ BLOCK = 2000  # rows of one program: below that a call's own cost, above it the 
 def resting_plane(points: Array, heights: Array) -> Array:
     """The plane that rests on points, pressed down in their middle.
 
-    `points`: (n, 2) places of the points, mm; the pressing force goes through their origin. `heights`:
-    (arrays, n) heights of the points, mm. Returns (arrays, 3): height at the origin and slopes along both
-    axes, so that the plane is below no point and as low at the origin as possible; of planes that rock over
-    two points, the one closest to all."""
+    Parameters
+    ----------
+    points
+        (n, 2) places of the points, mm; the pressing force goes through their origin.
+    heights
+        (arrays, n) heights of the points, mm.
+
+    Returns
+    -------
+    Array
+        (arrays, 3): height at the origin and slopes along both axes, so that the plane is below no point and
+        as low at the origin as possible; of planes that rock over two points, the one closest to all.
+    """
     return _resting(np.asarray(points, float).tobytes(), np.asarray(heights, float).tobytes())
 
 

@@ -94,8 +94,15 @@ def screwed(scene: Scene) -> list[Screwed]:
 
 
 def joints(design: str, screws: Sequence[Screwed], known: dict[str, DimensionLimits]) -> list[ScrewedJoint]:
-    """Every kind of screwed joint of a scene. `design`: its name; `screws`: of a scene of it. `known`:
-    variables by name; those of the joints are added if missing."""
+    """Every kind of screwed joint of a scene.
+
+    Parameters
+    ----------
+    design, screws
+        The design's name, and the screws of a scene of it.
+    known
+        Variables by name; those of the joints are added if missing.
+    """
     return list(dict.fromkeys(_joint(design, s, known) for s in screws))
 
 
@@ -230,8 +237,15 @@ BOUGHT = 0.2
 def patterns(
     layout: Layout, screws: Sequence[Screwed], known: dict[str, DimensionLimits]
 ) -> Iterator[Requirement]:
-    """For each part that several screws pass on their way into another one: that they enter. `screws`: of a
-    scene. `known`: variables by name; those of the holes' places are added if they are not known yet."""
+    """For each part that several screws pass on their way into another one: that they enter.
+
+    Parameters
+    ----------
+    layout, screws
+        The array, and the screws of a scene.
+    known
+        Variables by name; those of the holes' places are added if they are not known yet.
+    """
     design = layout.design.name
     pairs: dict[tuple[str, str, str], list[tuple[Screwed, Placement, Hole]]] = defaultdict(list)
     for s in screws:

@@ -67,8 +67,17 @@ FEW = 40  # pieces of the variables that matter to a value, for it to be climbed
 def stack(
     layout: Layout, variables: dict[str, DimensionLimits], wanted: Sequence[Requirement], count: int = 1000
 ) -> list[StackLine]:
-    """The stack of every requirement, for the published seed. `variables`, `wanted`: as `requirements` gives
-    them; `count`: arrays drawn for spread and yield, and as many on their corners."""
+    """The stack of every requirement, for the published seed.
+
+    Parameters
+    ----------
+    layout
+        The array.
+    variables, wanted
+        As `requirements` gives them.
+    count
+        Arrays drawn for spread and yield, and as many on their corners.
+    """
     rng = np.random.default_rng(SEED)
     assemble = family_of(layout.design).stack.built
     built = assemble(layout, made(variables, count, "normal", rng))

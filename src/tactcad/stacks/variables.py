@@ -109,9 +109,8 @@ def _array(layout: Layout) -> Iterable[DimensionLimits]:
     plates: tuple[tuple[Plate, Part], ...] = (("tapped", pair[0]), ("head", pair[1]))
     for which, part in plates:
         on: Matters = "pads" if which == "tapped" else "neither"
-        if (
-            part is pair[0]
-        ):  # the pair is made together: its common error is in one zone, its difference in another
+        # the pair is made together: its common error is in one zone, its difference in another
+        if part is pair[0]:
             for axis in AXES:
                 yield _zone(pair_holes(axis), "dowel holes", pins, "pads", *pair)
                 yield _zone(squareness(axis), "dowel holes' squareness", pins, "pads", part)

@@ -70,8 +70,19 @@ def names_of(study: Study, rung: str, number: int) -> list[str]:
 def closed_forms(
     study: Study, columns: dict[str, Column], refused: Refused, results: Mapping[str, Floats]
 ) -> None:
-    """Fill in what closed forms say of these designs. `refused`: mask of those not to be measured; those
-    refused by closed forms are added. `results`: by column, NaN if nothing is known: filled in."""
+    """Fill in what closed forms say of these designs.
+
+    Parameters
+    ----------
+    study
+        The study.
+    columns
+        The designs.
+    refused
+        Mask of those not to be measured; those refused by closed forms are added.
+    results
+        By column, NaN if nothing is known: filled in.
+    """
     rungs = [rung for rung in study.measure.rungs if rung in ladder.CLOSED_FORMS]
     if not rungs:
         return

@@ -65,9 +65,17 @@ def value_at(design: CommonTables, path: str) -> Any:
 
 
 def placed(table: dict[str, Any], design: CommonTables, path: str, value: Any) -> dict[str, Any]:
-    """A copy of a design's table with that value at the path; the rest is shared with the original. `table`:
-    as TOML gives it; `design`: the design read from it, for lists that it leaves to their default; `path`,
-    `value`: as `spec_at` knows it."""
+    """A copy of a design's table with that value at the path; the rest is shared with the original.
+
+    Parameters
+    ----------
+    table
+        As TOML gives it.
+    design
+        The design read from it, for lists that it leaves to their default.
+    path, value
+        As `spec_at` knows it.
+    """
     field, places = path.partition("[")[0], _places(path)
     head, *names = field.split(".", 2 if field.startswith("stop.gaps.") else -1)
     out = dict(table)

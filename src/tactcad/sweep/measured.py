@@ -69,8 +69,13 @@ def export_folder(folder: Path, number: int) -> Path:
 
 
 def measured(study: Study, start: int, stop: int, folder: Path) -> pa.Table:
-    """Results of designs `start` to `stop` (exclusive). Returns results (empty if unknown), valid, and
-    reason, null where all are valid."""
+    """Results of designs `start` to `stop` (exclusive).
+
+    Returns
+    -------
+    pyarrow.Table
+        Results (empty if unknown), valid, and reason, null where all are valid.
+    """
     import pyarrow as pa
 
     columns = designs_taken(study, start, stop)
@@ -158,8 +163,20 @@ def texts_of(study: Study) -> list[str]:
 def measured_whole(study: Study, table: dict[str, Any], folder: Path) -> tuple[dict[str, Any], str]:
     """Results of one design, by column, and the reason of its refusal ("" if there was none).
 
-    `table`: the design, as TOML would give it; `folder`: where an export goes. Raises InputError if the
-    export's folder cannot be written, which is no fault of the design."""
+    Parameters
+    ----------
+    study
+        The study.
+    table
+        The design, as TOML would give it.
+    folder
+        Where an export goes.
+
+    Raises
+    ------
+    InputError
+        The export's folder cannot be written, which is no fault of the design.
+    """
     found: dict[str, Any] = {}
     try:
         design = from_table(table)

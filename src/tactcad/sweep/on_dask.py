@@ -252,8 +252,13 @@ def _refuse_without_tactcad(client: Client) -> None:
 def all_done(client: Client, orders: Iterable[SweepOrder]) -> Iterator[Done]:
     """Each task's end, as they come; never more than AT_ONCE of them are handed out.
 
-    Raises InputError if a worker is of another version, or does not see the folder; CheckFailure if a task
-    killed every worker it was given to, or the scheduler is gone."""
+    Raises
+    ------
+    InputError
+        If a worker is of another version, or does not see the folder.
+    CheckFailure
+        If a task killed every worker it was given to, or the scheduler is gone.
+    """
     from distributed import CancelledError, KilledWorker, as_completed
     from distributed.comm.core import CommClosedError
 

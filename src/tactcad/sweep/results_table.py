@@ -58,9 +58,22 @@ class _Digested(io.BufferedWriter):
 def write_tables(folder: Path, chunks: Iterable[pa.Table], with_csv: bool, varied: Iterable[str]) -> Tally:
     """Write results.parquet, and results.csv if asked, each whole or not at all.
 
-    `folder`: the study's; `chunks`: tables of one schema, in the order of the designs; `with_csv`: whether
-    CSV is also written; `varied`: columns whose words are the user's: in CSV none is a formula. Raises
-    InputError, CheckFailure as `whole_file`."""
+    Parameters
+    ----------
+    folder
+        The study's.
+    chunks
+        Tables of one schema, in the order of the designs.
+    with_csv
+        Whether CSV is also written.
+    varied
+        Columns whose words are the user's: in CSV none is a formula.
+
+    Raises
+    ------
+    InputError, CheckFailure
+        As `whole_file`.
+    """
     import pyarrow.csv
     import pyarrow.parquet as pq
 

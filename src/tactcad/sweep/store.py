@@ -35,9 +35,17 @@ MOST_BYTES = 100_000
 class StudyStore:
     """Finished results of a study: an entry a task.
 
-    `folder`: its path; absolute, so that a worker with another working folder finds it. `made_by`: digest of
-    the rooms and libraries behind the results (`measured.made_by`). `store`: address of the store if it is
-    not in the folder."""
+    Parameters
+    ----------
+    study
+        The study.
+    folder
+        Its path; absolute, so that a worker with another working folder finds it.
+    made_by
+        Digest of the rooms and libraries behind the results (`measured.made_by`).
+    store
+        Address of the store if it is not in the folder.
+    """
 
     def __init__(self, study: Study, folder: Path, made_by: str, store: str | None = None) -> None:
         self.study, self.folder = study, folder
@@ -78,8 +86,13 @@ class StudyStore:
 
 
 def claimed(study: Study, out: str | Path) -> Path:
-    """The folder, absolute, made and marked as this study's. Raises InputError if it holds another study, or
-    anything else."""
+    """The folder, absolute, made and marked as this study's.
+
+    Raises
+    ------
+    InputError
+        If it holds another study, or anything else.
+    """
     folder = absolute(out)
     make_folder(folder)
     if not (folder / MARK).exists():
@@ -128,8 +141,13 @@ Kind = TypeVar("Kind")
 class FarStore:
     """The store at an address; entries' names are digests of their keys.
 
-    Raises InputError if fsspec does not know such addresses, a package for them is not installed, or there
-    can be no store; CheckFailure later, if the place does not answer or refuses."""
+    Raises
+    ------
+    InputError
+        If fsspec does not know such addresses, a package for them is not installed, or there can be no store.
+    CheckFailure
+        Later, if the place does not answer or refuses.
+    """
 
     def __init__(self, address: str) -> None:
         self.address = address

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from tactcad.design.family import family_of
-from tactcad.design.fields import Number, Numbers, OneOf, SomeOf, TextLine, Values, Whole, given
+from tactcad.design.fields import Number, Numbers, OneOf, SomeOf, TextLine, Values, Whole, given, spec_of
 from tactcad.design.files import read_text
 from tactcad.design.load import DEFAULT_DESIGN, MOST_BYTES, find, from_table, paths, read_table, unknown_field
 from tactcad.design.messages import InputError
@@ -36,7 +36,7 @@ ESTIMATE = "estimate"
 class StudyHead:
     """[study]: which design, and how designs are taken from what varies."""
 
-    name: str = given(Identity.__dataclass_fields__["name"].metadata["spec"])
+    name: str = given(spec_of(Identity, "name"))
     design: str = given(
         TextLine(
             r"[^\x00-\x1f]{1,200}",
@@ -190,8 +190,13 @@ def study_text() -> str:
 
 
 def read_study(path: str | Path) -> Study:
-    """A study file, field by field. Raises InputError if the file is missing or no study, a value is not
-    legal, or two contradict each other."""
+    """A study file, field by field.
+
+    Raises
+    ------
+    InputError
+        The file is missing or no study, a value is not legal, or two contradict each other.
+    """
     table = _plain_toml(path, "a study file (TOML)")
     for name, value in table.items():
         if name not in TABLES:

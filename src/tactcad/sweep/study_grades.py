@@ -32,9 +32,22 @@ OWN_MESH = tuple(c for c in CANDIDATES if c.mesh == rungs()[c.rung].meshes[0])  
 def with_allowance(study: Study, asked: Allowance, workers: int) -> tuple[Study, Picked]:
     """The study with what the allowance picks: a rung instead of those that it names, a number of arrays.
 
-    `asked`: P is the error of K, and of the yield's interval its half-width; if both are measured, of both.
-    `workers`: processes that share the work. Raises InputError if the study measures neither stiffness nor
-    virtual builds, so there is nothing to pick; CheckFailure if the allowance cannot be kept."""
+    Parameters
+    ----------
+    study
+        As read.
+    asked
+        P is the error of K, and of the yield's interval its half-width; if both are measured, of both.
+    workers
+        Processes that share the work.
+
+    Raises
+    ------
+    InputError
+        The study measures neither stiffness nor virtual builds, so there is nothing to pick.
+    CheckFailure
+        The allowance cannot be kept.
+    """
     rungs, builds = study.measure.rungs, BUILDS in study.measure.what
     if not rungs and not builds:
         option = "--in" if asked.within is None else "--within"

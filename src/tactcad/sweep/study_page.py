@@ -37,8 +37,13 @@ Floats = NDArray[np.float64]
 def write_page(out: str | Path) -> Path:
     """Write DIR/plot.html.
 
-    Raises InputError if the folder is no study's, or its table is not there, or not as the sweep wrote it;
-    CheckFailure for no field or no result varies among the designs that were measured."""
+    Raises
+    ------
+    InputError
+        The folder is no study's, or its table is not there, or not as the sweep wrote it.
+    CheckFailure
+        No field or no result varies among the designs that were measured.
+    """
     folder = Path(out)
     mark_of(folder)
     manifest = read_sealed(folder, SCHEMA)

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from tactcad.design.fields import with_value
 from tactcad.design.load import paths
 from tactcad.design.tree import Design
 from tactcad.parts.array.clamp import array_width
@@ -202,12 +203,6 @@ def numbers(found: Found, stand: Stand) -> Any:
         own = np.concatenate([own, last])
         own[-4] = max(own[-4] - last[2], 1)
     return np.concatenate([own, shared])
-
-
-def with_value(design: Design, path: str, value: Any) -> Design:
-    """A design with another value of one field of a table, unchecked."""
-    table, name = path.split(".")
-    return replace(design, **{table: replace(getattr(design, table), **{name: value})})
 
 
 def compact(found: Found) -> Target | None:

@@ -114,8 +114,15 @@ def reading_noise(design: Design) -> float:
 def knowledge(target: Target, design: Design, e: Elements, steps: Array | None = None) -> Knowledge:
     """The elements' errors under `target.known`.
 
-    `design`: with its tolerances, read-out and calibration; `steps`: if calibrated, its displacements after
-    0, of a shape that broadcasts with the elements."""
+    Parameters
+    ----------
+    target, design
+        The target, and the design with its tolerances, read-out and calibration.
+    e
+        The elements.
+    steps
+        calibrated: displacements of the calibration after 0, of a shape that broadcasts with the elements.
+    """
     sensitivity = _log_derivative(e, design, "load_arm") / e.section.load_arm
     place = target.known.contact / SIGMAS * sensitivity
     of_k, of_v, cross = place[0] ** 2, place[1] ** 2, place[0] * place[1]

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import fields
 from typing import Any
 
-from tactcad.design.fields import Whole
+from tactcad.design.fields import Whole, spec_of
 
 from .target import TABLES, Target
 
@@ -33,7 +32,7 @@ def value_of(target: Target, name: str) -> Any:
 def _spec(path: str) -> Any:
     """Of one value of a field."""
     table, name = path.split(".")
-    spec = next(f for f in fields(TABLES[table]) if f.name == name).metadata["spec"]
+    spec = spec_of(TABLES[table], name)
     return getattr(spec, "item", spec)
 
 
@@ -133,9 +132,21 @@ def eased(target: Target, by: float = 1.0 + STEP) -> Iterator[tuple[str, Target]
 def least_change(target: Target, name: str, possible: Callable[[Target], bool]) -> tuple[Any, Target] | None:
     """The value nearest to the present one with which a target is possible, found by halving.
 
-    `target`: an impossible one; `name`: the field, of EASES; `possible`: called for each value tried. Returns
-    the value and the target with it, for which `possible` holds, but not for one nearer by CLOSE; None if
-    FURTHEST times the value does not suffice."""
+    Parameters
+    ----------
+    target
+        An impossible target.
+    name
+        The field, of EASES.
+    possible
+        Whether a target is possible; called for each value tried.
+
+    Returns
+    -------
+    tuple or None
+        The value and the target with it, for which `possible` holds, but not for one nearer by CLOSE; None if
+        FURTHEST times the value does not suffice.
+    """
     low, high = 1.0, FURTHEST
     furthest = EASES[name](target, high)
     if furthest is None or furthest == target or not possible(furthest):

@@ -27,18 +27,16 @@ COUNT = 2048
 RESAMPLED = 100  # bootstrap samples for the shares' standard errors
 SLIGHT = 0.05  # of a half-space's coupling, the most that is drawn; chosen: pads well apart on thin tissue
 LEAST = 5e-4  # shares below are not listed
-READINGS, CONTACT, CALIBRATION, GAUGES, INSPECTION, CELL, COUPLING, LAYER, CLAMP, PADS = (
-    "noise of readings",
-    "contact's place along the arm",
-    "calibration's noise and scatter",
-    "gauges' own sensitivity",
-    "thickness as measured",
-    "load cell's limits",
-    f"coupling of the pads, to {100 * SLIGHT:g} % of a half-space's",
-    "recast layer",
-    "turn of the clamp",
-    "pad heights",
-)
+READINGS = "noise of readings"
+CONTACT = "contact's place along the arm"
+CALIBRATION = "calibration's noise and scatter"
+GAUGES = "gauges' own sensitivity"
+INSPECTION = "thickness as measured"
+CELL = "load cell's limits"
+COUPLING = f"coupling of the pads, to {100 * SLIGHT:g} % of a half-space's"
+LAYER = "recast layer"
+CLAMP = "turn of the clamp"
+PADS = "pad heights"
 
 
 @dataclass(frozen=True)

@@ -15,7 +15,18 @@ from typing import Any
 from tactcad.contact.elastic_body import Body
 from tactcad.contact.press import THINNEST, pad_stiffness
 from tactcad.design.family import all_families, family_of, taken_as
-from tactcad.design.fields import Number, Numbers, OneOf, SomeOf, TextLine, Whole, given, shown_text
+from tactcad.design.fields import (
+    Number,
+    Numbers,
+    OneOf,
+    SomeOf,
+    TextLine,
+    Whole,
+    given,
+    shown_text,
+    spec_of,
+    with_value,
+)
 from tactcad.design.files import read_text
 from tactcad.design.load import DEFAULT_DESIGN, MOST_BYTES, read, read_table, unknown_field
 from tactcad.design.materials import ALLOYS, alloy
@@ -34,10 +45,6 @@ KNOWN = ("drawn", "inspected", "calibrated")
 REFERENCES = ("stiffness", "modulus")
 
 
-def _spec(kind: Any, name: str) -> Any:
-    return kind.__dataclass_fields__[name].metadata["spec"]
-
-
 def _range(spec: Number, meaning: str) -> Numbers:
     return Numbers(spec, 2, 2, meaning)
 
@@ -50,8 +57,8 @@ def _percent(meaning: str) -> Number:
 class Wish:
     """[target]: what the sensor is to reach."""
 
-    name: str = given(_spec(Identity, "name"))
-    title: str = given(_spec(Identity, "title"), "Array from a target")
+    name: str = given(spec_of(Identity, "name"))
+    title: str = given(spec_of(Identity, "title"), "Array from a target")
     base: str = given(
         TextLine(
             r"[^\x00-\x1f]{1,200}",
@@ -98,7 +105,7 @@ class Grip:
     """[grasp]: forces."""
 
     force: float = given(Number("N", 1e-3, 1e4, "largest force on the whole array"))
-    overload: float = given(_spec(Rating, "overload_force"))
+    overload: float = given(spec_of(Rating, "overload_force"))
     element_force: float = given(Number("N", 1e-6, 1e4, "largest force on one element"), 1e4)
     loads: int = given(Whole(4, 1000, "loads at which signals are read, evenly up to the largest"), 10)
 
@@ -133,20 +140,20 @@ class Stock:
     """[stock]: available sheets, alloys and gauges."""
 
     sheets: tuple[float, ...] = given(
-        Numbers(_spec(Sheet, "thickness"), 1, 8, "sheet thicknesses"), None, "the base design's"
+        Numbers(spec_of(Sheet, "thickness"), 1, 8, "sheet thicknesses"), None, "the base design's"
     )
     alloys: tuple[str, ...] = given(
         SomeAlloys(tuple(ALLOYS), "sheet materials, names of the table"), None, "the base design's material"
     )
     hinge_tolerances: tuple[float, ...] = given(
         Numbers(
-            _spec(Tolerance, "hinge_thickness"), 1, 6, "tolerances of the hinge that the wire's passes hold"
+            spec_of(Tolerance, "hinge_thickness"), 1, 6, "tolerances of the hinge that the wire's passes hold"
         ),
         None,
         "the base design's",
     )
     gauges: tuple[float, ...] = given(
-        Numbers(_spec(StrainGauge, "resistance"), 1, 6, "gauges, by their resistance"),
+        Numbers(spec_of(StrainGauge, "resistance"), 1, 6, "gauges, by their resistance"),
         None,
         "the base design's",
     )
@@ -163,10 +170,10 @@ class Kinds:
         _range(Number("mm", 0.1, 100, "arm length"), "shortest and longest arm"), (4.0, 8.0)
     )
     hinges: tuple[float, ...] = given(
-        _range(_spec(Element, "hinge_thickness"), "thinnest and thickest hinge"), (0.15, 0.6)
+        _range(spec_of(Element, "hinge_thickness"), "thinnest and thickest hinge"), (0.15, 0.6)
     )
     pads: tuple[float, ...] | None = given(
-        _range(_spec(Element, "pad_length"), "shortest and longest pad, for a body under rigid pads"),
+        _range(spec_of(Element, "pad_length"), "shortest and longest pad, for a body under rigid pads"),
         None,
         "the base design's",
     )
@@ -249,9 +256,7 @@ class Target:
 
     def with_(self, path: str, value: Any) -> Target:
         """A copy with another value of one field, "grasp.force"."""
-        table, name = path.split(".")
-        changed = dataclasses.replace(getattr(self, table), **{name: value})
-        return dataclasses.replace(self, **{table: changed})
+        return with_value(self, path, value)
 
 
 TABLES: dict[str, type] = {
@@ -300,8 +305,13 @@ def target_text() -> str:
 
 
 def read_target(path: str | Path) -> Target:
-    """A target file, field by field. Raises InputError if the file is missing or no target, a value is not
-    legal, or two contradict each other."""
+    """A target file, field by field.
+
+    Raises
+    ------
+    InputError
+        The file is missing or no target, a value is not legal, or two contradict each other.
+    """
     return parse_target(read_text(path, MOST_BYTES, "a target file (TOML)"), str(path), Path(path).parent)
 
 
@@ -415,7 +425,7 @@ def _refuse_between_steps(target: Target) -> None:
 
 def _refuse_illegal_pitch(target: Target) -> None:
     """Pitches with which no design file could be written."""
-    spec = Array.__dataclass_fields__["spacer"].metadata["spec"]
+    spec = spec_of(Array, "spacer")
     for sheet in target.stock.sheets:
         spacer = round(target.room.pitch - sheet, 6)
         if spacer > spec.high:

@@ -65,8 +65,15 @@ def check_interference(
 ) -> list[Finding]:
     """Findings on every pair of placed parts of a scene that overlap, or touch without being meant to.
 
-    `scene`: placements and intended contacts; `shapes`: by part number, each in its own frame, mm; `known`:
-    verdicts from other scenes of the design, extended here: an array in a rig is not measured again."""
+    Parameters
+    ----------
+    scene
+        Placements and intended contacts.
+    shapes
+        By part number, each in its own frame, mm.
+    known
+        Verdicts from other scenes of the design, extended here: an array in a rig is not measured again.
+    """
     meant = {frozenset((c.first, c.second)): c for c in scene.contacts}
     local = {part.part_no: bounding_box(shapes[part.part_no]) for part in scene.parts}
     boxes = np.array([placed_box(p, local[p.part.part_no]) for p in scene.placements])
@@ -152,9 +159,17 @@ def meeting(
     Touching surfaces are faces that reach the other part's box: only these are measured. One part can contain
     the other without touching it only if its box contains the other's.
 
-    `pair`: the two placements. `boxes`: shape (2, 3); their least and largest corners in the scene, mm.
-    `shapes`: by part number, each in its own frame, mm. `faces`: by part number; extended by those that are
-    missing."""
+    Parameters
+    ----------
+    pair
+        The two placements.
+    boxes : two ndarrays, shape (2, 3)
+        Their least and largest corners in the scene, mm.
+    shapes
+        By part number, each in its own frame, mm.
+    faces
+        By part number; extended by those that are missing.
+    """
     first, second = (
         faces_within(_faces(p, shapes, faces), p, box, TOUCH_MM) for p, box in zip(pair, reversed(boxes))
     )

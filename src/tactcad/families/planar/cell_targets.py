@@ -18,7 +18,7 @@ from typing import Any
 
 import numpy as np
 
-from tactcad.design.fields import Number, Numbers, TextLine, Whole, given
+from tactcad.design.fields import Number, Numbers, TextLine, Whole, given, spec_of
 from tactcad.design.files import read_text
 from tactcad.design.load import MOST_BYTES, read
 from tactcad.design.messages import InputError
@@ -54,7 +54,7 @@ def _range(low: float, high: float, unit: str, meaning: str) -> Numbers:
 class CellWish:
     """[target]: what the sensor is to reach."""
 
-    name: str = given(Identity.__dataclass_fields__["name"].metadata["spec"])
+    name: str = given(spec_of(Identity, "name"))
     base: str = given(
         TextLine(r"[^\x00-\x1f]{1,200}", "a planar design by name or path", "whose other values are kept"),
         "planar-array",
@@ -84,9 +84,7 @@ class CellMeans:
     width: float = given(Number("mm", 2, 2000, "room along y"))
     cells: int = given(Whole(2, 1600, "cells, at least; the room is filled"), 2)
     foils: tuple[float, ...] | None = given(
-        Numbers(Planar.__dataclass_fields__["thickness"].metadata["spec"], 1, 8, "foils at hand"),
-        None,
-        "the base design's",
+        Numbers(spec_of(Planar, "thickness"), 1, 8, "foils at hand"), None, "the base design's"
     )
     shear: float = given(Number("", 0, 2, "largest tangential force, a share of the normal one"), 0.1)
     readings: int = given(Whole(1, 10000, "readings that are averaged at every load"), 10)

@@ -19,8 +19,17 @@ from . import plane
 
 
 def curled(s: HingeSection, flat: plane.Parts, k: plane.Constants | None = None) -> Array:
-    """Tip compliance of the solid from the parts in plane stress, mm/N. `flat`: their compliances in plane
-    stress, `plane.parts`; `k`: constants of the width, by default the shipped ones."""
+    """Tip compliance of the solid from the parts in plane stress, mm/N.
+
+    Parameters
+    ----------
+    s
+        One design or many.
+    flat
+        Their compliances in plane stress, `plane.parts`.
+    k
+        Constants of the width, by default the shipped ones.
+    """
     k = k or by_sides("width", s.two_sided)
     b, nu2 = s.width, s.poisson * s.poisson
     free = (1.0 + k["a"] * s.poisson) * _narrowness(s, k)

@@ -30,9 +30,18 @@ def bridge_signal(
 ) -> tuple[float, float]:
     """Voltages of a bridge's two outputs over ground while its switch is on: at the gauge, at the other side.
 
-    `design`: its nominal resistances, excitation and switch; `lead`: of each lead of the gauge, ohm; `x`:
-    dR/R of the gauge beyond its unloaded `bridge_offset`; `gauge`, `arm`: relative errors of resistance: of
-    the gauge, and of the others, each in the direction that adds to a positive one's."""
+    Parameters
+    ----------
+    design
+        Its nominal resistances, excitation and switch.
+    lead
+        Of each lead of the gauge, ohm.
+    x
+        dR/R of the gauge beyond its unloaded `bridge_offset`.
+    gauge, arm
+        Relative errors of resistance: of the gauge, and of the others, each in the direction that adds to a
+        positive one's.
+    """
     r, nominal = design.readout, completion_resistance(design)
     active = design.gauge.resistance * (1 + gauge) * (1 + r.bridge_offset + x)
     beside, upper, lower = (nominal * (1 + e) for e in (-arm, arm, -arm))
@@ -47,16 +56,31 @@ def bridge_signal(
 
 
 def imbalance(design: Design, lead: float, arm: float) -> tuple[float, float]:
-    """Least and largest output of the amplifier with no load on any element, V. `design`, `lead`: as for
-    `bridge_signal`; `arm`: tolerance of the completing resistances."""
+    """Least and largest output of the amplifier with no load on any element, V.
+
+    Parameters
+    ----------
+    design, lead
+        As for `bridge_signal`.
+    arm
+        Tolerance of the completing resistances.
+    """
     ends = [amplified(design, lead, 0.0, sign, arm) for sign in (-1.0, 1.0)]
     return min(ends), max(ends)
 
 
 def amplified(design: Design, lead: float, x: float, sign: float, arm: float) -> float:
     """The amplifier's output (V) at a dR/R of x, every tolerance at its worst in one direction (sign).
-    `design`, `lead`, `x`: as for `bridge_signal`; `sign`: 1 or -1; `arm`: tolerance of the completing
-    resistances."""
+
+    Parameters
+    ----------
+    design, lead, x
+        As for `bridge_signal`.
+    sign
+        1 or -1.
+    arm
+        Tolerance of the completing resistances.
+    """
     gauge = sign * design.gauge.resistance_tolerance
     plus, minus = bridge_signal(design, lead, x, gauge, sign * arm)
     return design.readout.gain * (

@@ -35,7 +35,13 @@ def element(layout: Layout, place: ElementPlace, gap: float | None = None) -> Pa
        |  |            hinge t                        \______ wire recess ___|
        +--+ pad                                     x ->
 
-     `gap`: stop gap at the arm's tip, mm; by default the design's."""
+    Parameters
+    ----------
+    layout, place
+        The array, and the element in it.
+    gap
+        Stop gap at the arm's tip, mm; by default the design's.
+    """
     design = layout.design
     unrated: tuple[str, ...] = ()
     if gap is None:
@@ -171,8 +177,19 @@ def element_number(design: Design, place: ElementPlace) -> str:
 
 
 def outline(layout: Layout, arm: float, hinge: HingeShape, gap: float) -> Contour:
-    """The element's contour in (x, z), counter-clockwise from the pad, mm. `arm`: arm length from the hinge's
-    centre to the tip, mm; `hinge`: its dimensions; `gap`: stop gap at the arm's tip, mm."""
+    """The element's contour in (x, z), counter-clockwise from the pad, mm.
+
+    Parameters
+    ----------
+    layout
+        The array.
+    arm
+        Arm length from the hinge's centre to the tip, mm.
+    hinge
+        Its dimensions.
+    gap
+        Stop gap at the arm's tip, mm.
+    """
     e = layout.design.element
     x_tip, x_pad = layout.pad_inner, layout.pad_outer
     x_hinge = x_tip + arm
@@ -317,8 +334,20 @@ def deflected_element(layout: Layout, place: ElementPlace, deflection: float, ro
     (u, v) from the hinge is then at the height -(pad height + radius), which is
     A sin(phi + atan2(v, u)) = w with A = hypot(u, v).
 
-     `deflection`: travel of the roller since it touched the pad, mm. `roller`: its radius, mm; its axis is
-    under the pad's middle. Raises InputError if the arm cannot turn so far."""
+    Parameters
+    ----------
+    layout, place
+        The array, and the element in it.
+    deflection
+        Travel of the roller since it touched the pad, mm.
+    roller
+        Its radius, mm; its axis is under the pad's middle.
+
+    Raises
+    ------
+    InputError
+        If the arm cannot turn so far.
+    """
     part = element(layout, place)
     z, w = _heights(layout, place, roller)
     u = -place.load_arm

@@ -5,6 +5,7 @@ from __future__ import annotations
 import inspect
 from collections.abc import Callable, Sequence
 from functools import cache
+from operator import attrgetter
 from typing import TypeVar
 
 import numpy as np
@@ -28,8 +29,20 @@ T = TypeVar("T")
 
 
 def hinge_section(layout: Layout, places: Sequence[ElementPlace]) -> HingeSection:
-    """Section parameters of elements of the array, mm and MPa. Of shape (len(places),), or of many designs at
-    once (..., len(places))."""
+    """Section parameters of elements of the array, mm and MPa.
+
+    Parameters
+    ----------
+    layout
+        The array.
+    places
+        The elements.
+
+    Returns
+    -------
+    HingeSection
+        Of shape (len(places),), or of many designs at once (..., len(places)).
+    """
     own = [own_parameters(p.hinge, p.load_arm, p.body_length) for p in places]
     stacked = {n: np.stack(np.broadcast_arrays(*(each[n] for each in own)), axis=-1) for n in own[0]}
     return HingeSection.of(**stacked, **shared_parameters(layout.design))
@@ -63,15 +76,8 @@ def own_parameters(hinge: HingeShape, load_arm: float, body_length: float) -> di
 
 def shared_parameters(design: Design) -> dict[str, float]:
     """Parameters that all elements of a design share, by the names of `HingeSection`'s fields; mm, MPa."""
-    return {
-        "body_height": design.element.body_height,
-        "poisson": design.material.poisson,
-        "youngs_modulus": design.material.youngs_modulus,
-        "width": design.sheet.thickness,
-        "two_sided": design.element.sides == "two",
-        "pad_height": design.element.pad_height,
-        "friction": design.rating.friction,
-    }
+    shared = {name: attrgetter(path)(design) for name, path in SHARED.items()}
+    return shared | {"two_sided": design.element.sides == "two"}
 
 
 def design_alloy(design: Design) -> Alloy:
@@ -131,6 +137,14 @@ def _names(kind: Callable[..., object]) -> tuple[str, ...]:
 
 
 # A section's parameters and their fields in the design file; an element may override the first four.
+SHARED = {
+    "body_height": "element.body_height",
+    "poisson": "material.poisson",
+    "youngs_modulus": "material.youngs_modulus",
+    "width": "sheet.thickness",
+    "pad_height": "element.pad_height",
+    "friction": "rating.friction",
+}
 PATHS = {
     "hinge_thickness": "element.hinge_thickness",
     "hinge_length": "element.hinge_length",
@@ -138,12 +152,7 @@ PATHS = {
     "arm_height": "element.arm_height",
     "load_arm": "array.row_arms",
     "body_length": "element.rear_length",
-    "body_height": "element.body_height",
-    "poisson": "material.poisson",
-    "youngs_modulus": "material.youngs_modulus",
-    "width": "sheet.thickness",
-    "pad_height": "element.pad_height",
-    "friction": "rating.friction",
+    **SHARED,
 }
 
 

@@ -242,9 +242,8 @@ class Layout:
         lowest = self.lowest_carrier
         for length in SET_SCREW_LENGTHS[c.screw]:
             reach = round(length - c.carrier_thickness + SUNK, 9)
-            if (
-                self.stop_plate_top + reach >= lowest - 1e-9 and reach >= LEAST_GAP
-            ):  # decimals, kept in binary
+            # decimals, kept in binary
+            if self.stop_plate_top + reach >= lowest - 1e-9 and reach >= LEAST_GAP:
                 return HoldDown(length, reach)
         return HoldDown(None, round(lowest - self.stop_plate_top, 9))
 

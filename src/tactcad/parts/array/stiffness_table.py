@@ -95,15 +95,11 @@ def array_lines(design: Design) -> Iterator[Deflection]:
     turned = f"{screw:.0f} N of each set screw at {seating.torque(layout):g} N m"
     bow = 1e3 * seating.BOW * design.tolerance.pad_height
     why = "half of tolerance.pad_height: the pads' error an eighth larger"
-    model, gives = (
-        "between the end plates, pressed under each set screw",
-        1e3 * screw * seating.stack_bow(layout),
-    )
+    model = "between the end plates, pressed under each set screw"
+    gives = 1e3 * screw * seating.stack_bow(layout)
     yield Deflection("array", "stack of elements", model, load, turned, gives, bow, why, (height,))
-    model, gives = (
-        "between the end plates, pressed at each set screw",
-        1e3 * screw * seating.carrier_bow(layout),
-    )
+    model = "between the end plates, pressed at each set screw"
+    gives = 1e3 * screw * seating.carrier_bow(layout)
     flat, why = 1e3 * seating.FLAT, "as flat as the plate that it is screwed on"
     thicker = ("clamp.carrier_thickness",)
     yield Deflection("array", "carrier", model, load, turned, gives, flat, why, thicker)

@@ -52,9 +52,15 @@ def stop_plate_beams(
 ) -> StopPlate:
     """The beams of a plate under set screws.
 
-    `rows`, `pitch`: between the rows of set screws, and along the row between two pairs, mm; `plate`: its
-    length across the rows, width along them, and thickness, mm; `screw`, `length`: thread of the set screws,
-    and their length, mm."""
+    Parameters
+    ----------
+    rows, pitch
+        Between the rows of set screws, and along the row between two pairs, mm.
+    plate
+        Its length across the rows, width along them, and thickness, mm.
+    screw, length
+        Thread of the set screws, and their length, mm.
+    """
     across, width, t = plate
     m = METRIC[screw]
     core = pi / 4 * (m.d - 0.9382 * m.pitch) ** 2  # stress area, ISO 898-1

@@ -52,8 +52,20 @@ def seating_force(thread: str) -> float:
 def cap_screw(thread: str, length: float) -> Part:
     """ISO 4762 socket head cap screw.
 
-    `thread`: such as "M3"; `length`: mm, a length of the standard. Raises KeyError if the table has no such
-    thread; ValueError if the standard has no such length."""
+    Parameters
+    ----------
+    thread
+        Such as "M3".
+    length
+        mm, a length of the standard.
+
+    Raises
+    ------
+    KeyError
+        If the table has no such thread.
+    ValueError
+        If the standard has no such length.
+    """
     m = METRIC[thread]
     if length not in CAP_SCREW_LENGTHS[thread]:
         raise ValueError(f"ISO 4762 {thread} has no length {length:g}; it has {CAP_SCREW_LENGTHS[thread]}")

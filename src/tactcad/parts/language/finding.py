@@ -80,8 +80,13 @@ def at_least(
 ) -> Iterator[Finding]:
     """A failure where a value is too small.
 
-    `check`, `part`, `message`, `place`: of the finding, see `Finding`. `value`, `least`: in the unit that the
-    message names; a shortfall of up to SAME is rounding."""
+    Parameters
+    ----------
+    check, part, message, place
+        Of the finding, see `Finding`.
+    value, least
+        In the unit that the message names; a shortfall of up to SAME is rounding.
+    """
     if value < least - SAME:
         yield Finding(check, "fail", part, place, value, least, message)
 

@@ -81,8 +81,13 @@ def contradictions(
 ) -> Iterator[str]:
     """Faults in a part's limits, a line each, with the legal values.
 
-    `characteristics`, `geometric`, `datums`: as the part states them. `features`: names of the part's
-    features; datums and geometric tolerances may refer to these only."""
+    Parameters
+    ----------
+    characteristics, geometric, datums
+        As the part states them.
+    features
+        Names of the part's features; datums and geometric tolerances may refer to these only.
+    """
     known = ", ".join(sorted(set(features) - {""}))
     for c in characteristics:
         if c.lower > c.upper:
@@ -129,8 +134,18 @@ def _row(table: list[dict[str, str]], size: float, what: str) -> dict[str, str]:
 def deviations(code: str, size: float) -> tuple[float, float]:
     """Lower and upper deviation of an ISO 286 tolerance class, mm.
 
-    `code`: fundamental deviation and grade, capitals for holes: d to p, D to P, js, JS; `size`: nominal size,
-    mm. Raises ValueError if the tables do not have the code or the size."""
+    Parameters
+    ----------
+    code
+        Fundamental deviation and grade, capitals for holes: d to p, D to P, js, JS.
+    size
+        Nominal size, mm.
+
+    Raises
+    ------
+    ValueError
+        If the tables do not have the code or the size.
+    """
     match = _CODE.fullmatch(code)
     letter, grade = (match[1], match[2]) if match else ("", "")
     width_row, shaft_row = _row(_GRADES, size, code), _row(_DEVIATIONS, size, code)

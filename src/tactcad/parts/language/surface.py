@@ -278,8 +278,13 @@ class Measured:
 
 
 def measured(part: Part, c: Characteristic) -> Measured:
-    """The surfaces of a characteristic on the part: of equal names, those at its nominal size. Raises
-    CheckFailure if its features have no such size."""
+    """The surfaces of a characteristic on the part: of equal names, those at its nominal size.
+
+    Raises
+    ------
+    CheckFailure
+        If its features have no such size.
+    """
     groups = [pieces(part, feature) for feature in c.between]
     if len(groups) == 1:
         # of any size: a hole that a pin is pressed into is modelled as wide as the pin, not as its limits

@@ -71,8 +71,15 @@ LEAST_TONGUE = 0.5  # mm: free-standing wall (vendors' pages, see checks/data/sh
 
 @dataclass(frozen=True)
 class BondingLayout:
-    """Derived dimensions (mm) of the fixture for elements with one kind of hinge. `design`: with its
-    [bonding] table. `hinge`: the kind of hinge; elements with other hinges want another nest."""
+    """Derived dimensions (mm) of the fixture for elements with one kind of hinge.
+
+    Parameters
+    ----------
+    design
+        With its [bonding] table.
+    hinge
+        The kind of hinge; elements with other hinges want another nest.
+    """
 
     design: Design
     hinge: HingeShape

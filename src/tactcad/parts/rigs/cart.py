@@ -411,9 +411,8 @@ def sample(rig: CartLayout, dents: tuple[tuple[float, float], ...] = (), depth: 
         if pressed
     )
     number = f"SAMPLE-{rig.sample.side:g}x{rig.sample.side:g}x{t:g}-rubber"
-    if (
-        pressed
-    ):  # one pad and the force gauge's tip make equal dents in different places: only the first is listed
+    # one pad and the force gauge's tip make equal dents in different places: only the first is listed
+    if pressed:
         x, y = dents[0]
         number += f"-pressed-{len(pockets)}x{depth:g}mm-at-{x + 0.0:g}x{y + 0.0:g}"
     return Part(

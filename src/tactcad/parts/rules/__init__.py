@@ -73,8 +73,16 @@ def refusal(broken: Finding, others: str = "") -> InputError:
 def load(source: str | Path) -> CommonTables:
     """A design, checked against every rule between its fields.
 
-    `source`: a path (it has a '/' or ends in .toml), or the name of a design in hardware/. Raises InputError
-    if the file is missing or not a design, a value is not legal, or a rule is broken."""
+    Parameters
+    ----------
+    source
+        A path (it has a '/' or ends in .toml), or the name of a design in hardware/.
+
+    Raises
+    ------
+    InputError
+        If the file is missing or not a design, a value is not legal, or a rule is broken.
+    """
     design = read(source)
     refuse_broken(design)
     return design

@@ -174,10 +174,8 @@ def gauge_bears_power(layout: Layout) -> Iterator[Finding]:
     elif name == "period" and (share := _borne(lambda s: load(period=r.period / max(s, SAME)) <= 1.0)):
         legal = f"at least {1 / float(rounded_down(share / r.period)):.4g} s"
     else:
-        name, legal = (
-            "excitation",
-            f"at most {rounded_down(r.excitation / load() ** 0.5)} V, or shorter readings",
-        )
+        name = "excitation"
+        legal = f"at most {rounded_down(r.excitation / load() ** 0.5)} V, or shorter readings"
     yield wrong(
         f"readout.{name}",
         f"more than the gauge's backing bears: {hot.power_density:.3g} kW/m2 of grid on average "

@@ -10,6 +10,7 @@ from math import ceil, floor, log10
 from operator import attrgetter
 from typing import Any, TypeVar
 
+from tactcad.design.fields import spec_of, with_value
 from tactcad.design.tree import CommonTables
 
 from ..array.layout import Layout
@@ -67,8 +68,15 @@ def misfit(layout: Layout, rules: Iterable[Rule]) -> Finding | None:
 def wrong(path: str, what: str, value: object, legal: str) -> Finding:
     """A finding on a field; the rule's name is added by the caller.
 
-    `path`: of the field, such as "element.hinge_thickness"; `what`: what is wrong, one clause; `value`,
-    `legal`: the field's value, or the value derived from it, and the legal range in words."""
+    Parameters
+    ----------
+    path
+        Of the field, such as "element.hinge_thickness".
+    what
+        Is wrong: one clause.
+    value, legal
+        The field's value, or the value derived from it, and the legal range in words.
+    """
     found = round(value, 9) if isinstance(value, float) else value  # 3.6, not 3.5999999999999996
     return Finding("", "fail", path, (), found, legal, what)
 
@@ -98,14 +106,16 @@ def too_much(layout: Layout, lines: Lines) -> Iterator[Finding]:
 
 
 def remedy(design: CommonTables, line: Deflection, lines: Lines) -> tuple[str, object, str]:
-    """The first field that alone brings a deflection, one of `lines`, below its allowance. Returns the
-    field's path, its value now, and in words the values that suffice."""
+    """The first field that alone brings a deflection, one of `lines`, below its allowance.
+
+    Returns
+    -------
+    tuple
+        The field's path, its value now, and in words the values that suffice.
+    """
     for path in line.fields:
         section, name = path.split(".")
-        value, spec = (
-            attrgetter(path)(design),
-            getattr(design, section).__dataclass_fields__[name].metadata["spec"],
-        )
+        value, spec = (attrgetter(path)(design), spec_of(type(getattr(design, section)), name))
         for end, words in ((spec.high, "at least"), (spec.low, "at most")):
             if _helps(design, line, lines, path, end):
                 return (
@@ -135,7 +145,6 @@ def _nearest(design: CommonTables, line: Deflection, lines: Lines, path: str, fa
 
 
 def _helps(design: CommonTables, line: Deflection, lines: Lines, path: str, value: float) -> bool:
-    section, name = path.split(".")
-    changed = replace(design, **{section: replace(getattr(design, section), **{name: value})})
+    changed = with_value(design, path, value)
     same = (d for d in lines(changed) if (d.part, d.model) == (line.part, line.model))
     return not next(same).too_much

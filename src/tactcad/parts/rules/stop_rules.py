@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import Field, fields, replace
+from dataclasses import replace
 from math import ceil, floor, hypot, pi, sqrt, tan
+from operator import attrgetter
 
+from tactcad.design.fields import spec_of, with_value
 from tactcad.design.tree import Design, Stop, Tolerance
 
 from ..array.clamp import STOP_PLATE_FLAT
@@ -201,7 +203,7 @@ def stop_gap_above_tolerance(layout: Layout) -> Iterator[Finding]:
             continue
         path = next(iter(held), next((path for path in taken if legal[path]), taken[0]))
         most = f"at most {legal[path]:g} mm" if legal[path] else "less, or a softer hinge"
-        yield wrong(path, what, _tolerance(d, path), most)
+        yield wrong(path, what, attrgetter(path)(d), most)
 
 
 def _opens(layout: Layout, place: ElementPlace) -> bool:
@@ -220,12 +222,13 @@ def _taken_by_tolerances(layout: Layout) -> list[str]:
 def _largest_tolerance(design: Design, path: str) -> float:
     """Largest value of a tolerance (mm, a multiple of TENTH) that alone leaves every derived gap open; 0
     if none does."""
-    least, now = _field(design, path).metadata["spec"].low, _tolerance(design, path)
+    section, name = path.split(".")
+    least, now = spec_of(type(getattr(design, section)), name).low, attrgetter(path)(design)
     low, high = ceil(least / TENTH), ceil(now / TENTH)
     given = design.stop.gaps or {}
 
     def open_at(tenths: int) -> bool:
-        layout = Layout(_with_tolerance(design, path, tenths * TENTH))
+        layout = Layout(with_value(design, path, round(tenths * TENTH, 4)))
         return all(_opens(layout, p) for p in layout.elements if p.arm not in given)
 
     if low >= high or not open_at(low):
@@ -234,21 +237,6 @@ def _largest_tolerance(design: Design, path: str) -> float:
         middle = (low + high) // 2
         low, high = (middle, high) if open_at(middle) else (low, middle)
     return round(low * TENTH, 4)
-
-
-def _tolerance(design: Design, path: str) -> float:
-    section, name = path.split(".")
-    return getattr(getattr(design, section), name)
-
-
-def _field(design: Design, path: str) -> Field:
-    section, name = path.split(".")
-    return next(f for f in fields(getattr(design, section)) if f.name == name)
-
-
-def _with_tolerance(design: Design, path: str, value: float) -> Design:
-    section, name = path.split(".")
-    return replace(design, **{section: replace(getattr(design, section), **{name: round(value, 4)})})
 
 
 @rule(after="stop_plate_stays")

@@ -51,8 +51,14 @@ ROW = {1: AGAINST_Y, 2: ALONG_Y}
 def array(design: Design, instead: Mapping[int, Part] = MappingProxyType({}), stops: bool = True) -> Scene:
     """Scene `array` of a design; elements are E1, E2, ... by number.
 
-    `design`: must keep every rule. `instead`: other parts by element number, such as one that a rig has
-    pressed. `stops`: whether the stop plate and its set screws are in place; they are not in the calibration.
+    Parameters
+    ----------
+    design
+        Must keep every rule.
+    instead
+        Other parts by element number, such as one that a rig has pressed.
+    stops
+        Whether the stop plate and its set screws are in place; they are not in the calibration.
     """
     layout = Layout(design)
     b = _placed(layout, instead, stops)
@@ -196,8 +202,15 @@ def _middle_y(p: Placement) -> float:
 
 
 def array_steps(layout: Layout, placed: Mapping[str, Sequence[Placement]]) -> tuple[Step, ...]:
-    """Steps that put the array together and make its pads coplanar, in order. `placed`: what each step puts
-    in place, by the step's title and in its order."""
+    """Steps that put the array together and make its pads coplanar, in order.
+
+    Parameters
+    ----------
+    layout
+        The array.
+    placed
+        What each step puts in place, by the step's title and in its order.
+    """
     d, c = layout.design, clamping(layout)
     width = layout.stack + 2 * d.clamp.end_plate_thickness
     # so far apart that each part of the stack shows: a pitch of air before each

@@ -50,9 +50,8 @@ BAR: dict[float, Rotation] = {
     1.0: ((0, 0, 1), (1, 0, 0), (0, 1, 0)),
     -1.0: ((0, 0, -1), (-1, 0, 0), (0, 1, 0)),
 }
-PARKED = (
-    14.0  # mm before its header a socket lies on the plate while its leads are soldered: clear of the clamp
-)
+# mm before its header a socket lies on the plate while its leads are soldered: clear of the clamp
+PARKED = 14.0
 LIFTED = 40.0  # mm that what comes from above starts over its place; chosen: fingers
 SPANNER = f"spanner {FLATS:g} mm"
 SOLDERING = "soldering iron with a 0.4 mm tip, temperature controlled"
