@@ -110,10 +110,8 @@ def _print(layout: Layout, builds: Builds, lines: list[StackLine]) -> None:
 
     print(f"{layout.design.name}: {builds.count} arrays of each distribution, seed {builds.seed}")
     for which, share in builds.kept.items():
-        failed = builds.failures[which]
-        why = "; ".join(
-            f"{n} miss: {requirement}" for requirement, n in sorted(failed.items(), key=lambda item: -item[1])
-        )
+        failed = sorted(builds.failures[which].items(), key=lambda item: -item[1])
+        why = "; ".join(f"{n} miss: {requirement}" for requirement, n in failed)
         print(f"  {which:8} {100 * share:6.2f} % meet all requirements{f' ({why})' if why else ''}")
     low, high = builds.interval
     print(f"  yield    {100 * builds.share:6.2f} % ({100 * low:.4g} to {100 * high:.4g} %)")
