@@ -244,16 +244,14 @@ def _letters_fault(record: Record) -> str:
         return "its date or title is no text"
     for name in ("kept", "unchanged"):
         table = record[name]
-        if not _is_table_of(table, list) or not all(map(_is_issue, table.values())):
+        if not _is_table_of(table, list) or not all(
+            [*map(type, row)] == [str, str] for row in table.values()
+        ):
             return f"{name} is no table of letters and dates"
     whole = (_is_table_of(boards, dict) for boards in record["boards"].values())
     tables = (t for boards in record["boards"].values() for board in boards.values() for t in board.items())
     plain = (_is_flat(t) if isinstance(t, dict) else _is_flat({name: t}) for name, t in tables)
     return "" if all(whole) and all(plain) else "a board holds more than plain values"
-
-
-def _is_issue(row: list[Any]) -> bool:
-    return len(row) == 2 and all(isinstance(text, str) for text in row)
 
 
 def _part_fault(part: dict[str, Any]) -> str:
