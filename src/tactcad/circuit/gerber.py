@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from tactcad.report.figures import as_csv
+from tactcad.design.files import as_csv
 
 from .copper import LAYERS, PLANES, TOP, VIA, VIA_DRILL, BoardCopper, Point
 from .printed import INK, printed

@@ -8,8 +8,8 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterator, Sequence
 
+from tactcad.design.files import as_csv
 from tactcad.parts.bought.electronic_parts import TO_CARD
-from tactcad.report.figures import as_csv
 
 from .netlist import GROUND, Component, Netlist
 from .netlist_files import Lead

@@ -18,9 +18,9 @@ from dataclasses import dataclass, fields
 from math import pi
 from uuid import NAMESPACE_OID, uuid5
 
+from tactcad.design.files import as_csv
 from tactcad.parts.array.layout import Layout
 from tactcad.parts.array.leads import boards, colours
-from tactcad.report.figures import as_csv
 
 from .netlist import GROUND, Component, Netlist
 

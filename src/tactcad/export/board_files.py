@@ -25,11 +25,11 @@ from tactcad.circuit.netlist import Component, Netlist
 from tactcad.circuit.netlist_files import deck_bytes, kicad_bytes, netlist_csv, wiring_csv
 from tactcad.contour import circle, rectangle
 from tactcad.design.family import family_of
+from tactcad.design.files import as_csv
 from tactcad.design.messages import CheckFailure
 from tactcad.design.tree import CommonTables
 from tactcad.parts.bought.electronic_parts import Supply
 from tactcad.parts.language.description import Extrusion, Material, Part
-from tactcad.report.figures import as_csv
 from tactcad.scenes.scene import UPRIGHT, Placement, Scene, rotation
 
 from .shapes import Shapes

@@ -13,10 +13,10 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from tactcad.design.family import family_of
+from tactcad.design.files import as_csv
 from tactcad.design.tree import CommonTables
 from tactcad.parts.language.description import Part
 from tactcad.parts.language.limits import FACES, Characteristic, Geometric
-from tactcad.report.figures import as_csv
 from tactcad.scenes.requirement import DimensionLimits
 from tactcad.stacks.stack import StackLine
 

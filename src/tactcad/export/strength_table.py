@@ -5,13 +5,13 @@ from __future__ import annotations
 
 import numpy as np
 
+from tactcad.design.files import as_csv
 from tactcad.design.tree import Design
 from tactcad.mechanics import ladder, strength
 from tactcad.parts.array.element import element_number
 from tactcad.parts.array.hinge_section import design_alloy, hinge_section
 from tactcad.parts.array.layout import Layout
 from tactcad.parts.array.stop_gap import overloads
-from tactcad.report.figures import as_csv
 
 NAME = "strength.csv"
 

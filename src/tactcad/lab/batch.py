@@ -11,12 +11,11 @@ import numpy as np
 
 from tactcad.design import csv_table
 from tactcad.design.csv_table import Field, Table, numeric, require_columns
-from tactcad.design.files import write_whole
+from tactcad.design.files import as_csv, write_whole
 from tactcad.design.messages import CheckFailure, InputError, one_of
 from tactcad.mechanics import ladder
 from tactcad.mechanics.accuracy import choose_each, expected_error_of
 from tactcad.mechanics.section import OPTIONAL, REQUIRED, HingeSection
-from tactcad.report.figures import as_csv
 
 SIDES = {"one": False, "two": True}
 DEFAULT_SIDES = "two"

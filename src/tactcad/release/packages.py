@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from math import ceil, floor
 
 from tactcad.checks.shop import Feed, Shop
+from tactcad.design.files import as_csv
 from tactcad.design.tree import CommonTables
 from tactcad.drawing.engine.boxes import part_box
 from tactcad.export import inspection
@@ -18,7 +19,6 @@ from tactcad.parts.array.element import least_passes
 from tactcad.parts.bought.electronic_parts import BARE_BOARD, BOARD, ELECTRONIC, MECHANICAL
 from tactcad.parts.language.description import Part
 from tactcad.parts.language.stock import cut_section, own_thickness, stock_of
-from tactcad.report.figures import as_csv
 from tactcad.scenes.bom import read_in_sheet
 
 from .nest import Nest, nest_dxf, nest_svg, nests

@@ -6,8 +6,6 @@ record's numbers is refused at import. Numbers in sentences are written by `sig`
 
 from __future__ import annotations
 
-import csv
-import io
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields, is_dataclass, replace
 from math import floor, isfinite, isinf, isnan, log10
@@ -159,13 +157,6 @@ def csv_lines(figures: Sequence[Figure], records: Sequence[Any], digits: str = "
     if digits:
         figures = [f if f.digits == "d" else replace(f, digits=digits) for f in figures]
     return [[f.column for f in figures], *([f.text(row) for f in figures] for row in records)]
-
-
-def as_csv(rows: Iterable[Iterable[object]], end: str = "\r\n") -> bytes:
-    """Rows, the first of which names the columns, as CSV (RFC 4180, UTF-8)."""
-    text = io.StringIO(newline="")
-    csv.writer(text, lineterminator=end).writerows(rows)
-    return text.getvalue().encode()
 
 
 def sig(value: float, digits: int = 3) -> str:

@@ -14,12 +14,12 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, fields
 from typing import Any
 
+from tactcad.design.files import as_csv
 from tactcad.design.text_values import as_number, as_whole
 from tactcad.design.tree import Identity
 from tactcad.parts.bought.electronic_parts import Supply
 from tactcad.parts.bought.standard_parts import example
 from tactcad.parts.language.description import Part, Purchase
-from tactcad.report.figures import as_csv
 from tactcad.scenes.scene import Scene
 
 SCHEMA = "tactcad-bom-1"
