@@ -37,7 +37,7 @@ from bench_plots import figures
 from measuring import BENCHMARKS, RunPlan, environment, machine, peers, versions
 
 from tactcad.design.messages import CheckFailure
-from tactcad.report.report import standalone
+from tactcad.report.report import Picture, standalone
 
 SCHEMA = "tactcad-bench-1"
 SHORT_SEED = 8  # any; a full run draws its own unless it is given one
@@ -122,9 +122,9 @@ def remarks(entry: dict) -> list[str]:
     return [*entry["findings"], *entry["missing"], *failed]
 
 
-def to_markdown(result: dict, plots: str = "plots") -> str:
-    """`plots` is the folder of the pictures, as seen from the file."""
-    lines, shown = ["# Speed against accuracy, measured", "", made_on(result)], figures(result)
+def to_markdown(result: dict, shown: dict[str, list[Picture]], plots: str = "plots") -> str:
+    """`shown`: its figures; `plots` is the folder of the pictures, as seen from the file."""
+    lines = ["# Speed against accuracy, measured", "", made_on(result)]
     for name, entry in result["benchmarks"].items():
         lines += ["", f"## {entry['title']}", "", entry["question"], ""]
         lines += [f"- {line}" for line in remarks(entry)]
@@ -135,16 +135,18 @@ def to_markdown(result: dict, plots: str = "plots") -> str:
     return "\n".join(lines) + "\n"
 
 
-def images(result: dict) -> dict[str, str]:
-    return {f"{f.name}.svg": standalone(f) for shown in figures(result).values() for f in shown}
+def images(shown: dict[str, list[Picture]]) -> dict[str, str]:
+    """Each of the figures as a file of its own, by its name."""
+    return {f"{f.name}.svg": standalone(f) for pictures in shown.values() for f in pictures}
 
 
 def files(result: dict) -> dict[str, str]:
     """Every file of a report's folder, by name."""
-    made = {"report.json": to_json(result), "report.md": to_markdown(result)}
+    shown = figures(result)
+    made = {"report.json": to_json(result), "report.md": to_markdown(result, shown)}
     for entry in result["benchmarks"].values():
         made |= {f"tables/{key}.csv": tables.as_csv(data) for key, data in entry["tables"].items()}
-    return made | {f"plots/{name}": text for name, text in images(result).items()}
+    return made | {f"plots/{name}": text for name, text in images(shown).items()}
 
 
 def main(arguments: list[str] | None = None) -> int:

@@ -18,6 +18,7 @@ from pathlib import Path
 
 from bench import SCHEMA, images, made_on, remarks, to_json, to_markdown
 from bench_elements import TRUTH
+from bench_plots import figures
 from measuring import BENCHMARKS
 from tables import filled, lines, markdown
 
@@ -129,11 +130,12 @@ def blocks(result: dict) -> dict[str, str]:
 def publish(report: Path, further: Sequence[Path], root: Path) -> list[Path]:
     """Write everything that is published into the checkout `root`; returns what was written."""
     result = load(*(folder / "report.json" for folder in (report, *further)))
+    shown = figures(result)
     files = {
         REFERENCE: to_json(result),
-        REFERENCE.replace(".json", ".md"): to_markdown(result, "../../docs/images"),
+        REFERENCE.replace(".json", ".md"): to_markdown(result, shown, "../../docs/images"),
     }
-    files |= {f"docs/images/{name}": text for name, text in images(result).items()}
+    files |= {f"docs/images/{name}": text for name, text in images(shown).items()}
     if (report / TRUTH).is_file():
         files[f"benchmarks/data/{TRUTH}"] = (report / TRUTH).read_text("utf-8")
     files[DOCUMENT] = (root / DOCUMENT).read_text("utf-8")

@@ -82,7 +82,8 @@ def rise(layout: Layout, step: float = 2.0) -> float:
 def test_the_beams_err_to_the_soft_side(changes, least, most):
     layout = Layout(variant(changes))
     plate = layout.stop_plate_beams()
-    of_elements = rise(layout)
+    # long plates: 0.6 % at most from elements of 2 mm, in a fifth of their time
+    of_elements = rise(layout, 4.0 if "array.row_arms" in changes else 2.0)
     ratio = (plate.one - plate.screw) / of_elements
     print(f"{changes}: beams over elements {ratio:.3f}")
     assert least < ratio < most

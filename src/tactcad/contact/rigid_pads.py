@@ -142,7 +142,7 @@ def pad_law(poisson: float, thickness: float, base: str, length: float, width: f
                 continue
             touching = np.flatnonzero(f)
             seen = np.concatenate([modes, basis])[:, touching]
-            grip = seen @ np.linalg.solve(M[np.ix_(touching, touching)], seen.T)
+            grip = seen @ np.linalg.solve(M.take(touching, 0).take(touching, 1), seen.T)
             rigid, way = np.linalg.eigh(grip[:3, :3])
             held = rigid > POINTS * rigid[-1]
             way = way[:, held]

@@ -30,7 +30,7 @@ from scipy.special import fdtrc
 
 from tactcad.design.messages import InputError
 from tactcad.lab.column_units import LOAD, unlikely
-from tactcad.lab.combine import Interval, Slopes, combine, hull, scatter
+from tactcad.lab.combine import Interval, Slopes, combine, combine_each, hull, scatter
 from tactcad.lab.readings import GraspReadings
 from tactcad.lab.regression import TOLD_FROM_TIME, require_level, t_quantile
 from tactcad.report.figures import aligned
@@ -165,7 +165,8 @@ def evaluate(
     if widened > EXCHANGED and len(readings.element) >= FEW:
         _refuse_exchanged(readings, signal, calibration, terms, level)
     by_limits = tuple(
-        (name, hull(combined, [combine(at, level)[0] for at in group])) for name, group in limits.items()
+        (name, hull(combined, [i for i, _, _ in combine_each(group, level)]))
+        for name, group in limits.items()
     )
     dropped = int((~touching).sum())
     if terms is not None:
@@ -548,8 +549,8 @@ def _wrong_forces(
 
 
 def _pair(slopes: Slopes, limits: list[Slopes], m: int, r: int, level: float) -> Pair:
-    object_, _, _ = combine(slopes, level, [m, r])
-    everywhere = hull(object_, [combine(at, level, [m, r])[0] for at in limits])
+    object_, *others = (found for found, _, _ in combine_each([slopes, *limits], level, [m, r]))
+    everywhere = hull(object_, others)
     ratio = slopes.s[m] / slopes.s[r]
     k_m, k_r = slopes.f[m] / slopes.s[m], slopes.f[r] / slopes.s[r]
     var = [slopes.covariance[i][1, 1] / slopes.s[i] ** 2 for i in (m, r)]

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from tactcad.design.messages import InputError
 from tactcad.lab.calibration_file import Sensitivity
-from tactcad.lab.combine import Interval, combine, hull
+from tactcad.lab.combine import Interval, combine_each, hull
 from tactcad.lab.grasp import coupled, slopes_of
 from tactcad.lab.load_cell import RIGID
 from tactcad.lab.pads import INCOMPRESSIBLE
@@ -105,11 +105,11 @@ def _object(taxels: Taxels, s: np.ndarray, used: np.ndarray, level: float, share
     part[:, 1, 1] += taxels.column("variance_offset_mm2")[rows]
     part[:, [0, 1], [1, 0]] -= (s * taxels.column("covariance_stiffness_offset_N"))[rows, None]
     slopes = replace(slopes, from_calibration=part)
-    best, _, _ = combine(slopes, level)
-    if share == 0:
-        return best
-    shape = share * _shares(taxels)[np.ix_(rows, rows)]
-    return hull(best, [combine(at, level)[0] for at in coupled([slopes], shape)])
+    cases = [slopes]
+    if share != 0:
+        cases += coupled([slopes], share * _shares(taxels)[np.ix_(rows, rows)])
+    best, *others = (found for found, _, _ in combine_each(cases, level))
+    return hull(best, others)
 
 
 @lru_cache(maxsize=16)
