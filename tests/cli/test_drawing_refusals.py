@@ -91,5 +91,5 @@ def test_a_sheet_that_is_too_small_for_a_part(place, capsys, monkeypatch):
 
     for module in (compose, sheets):
         monkeypatch.setattr(module, "SERIES", ((30, 1),))
-    status, said = refused(place, capsys, "export", "--drawings")
+    status, said = refused(place, capsys, "export", "--drawings", "--scene", "array")
     assert status == 1 and "finds no place on A0 at 30:1" in said and "no drawing was written" in said

@@ -70,8 +70,16 @@ def dxf_bytes(part: Part) -> bytes:
 
     Its bytes depend on neither process, time zone nor home folder.
 
-    `part`: a part that has a cut file (`tactcad.parts.language.stock`). Raises ValueError if the part has
-    none."""
+    Parameters
+    ----------
+    part
+        A part that has a cut file (`tactcad.parts.language.stock`).
+
+    Raises
+    ------
+    ValueError
+        If the part has none.
+    """
     cut = _section(part)
     return layered_dxf({LAYER: (*cut.openings, cut.outer)}, cut.outer.box)
 
@@ -240,9 +248,19 @@ def _snapped(chain: list[Segment]) -> Contour:
 def check_dxf(written: str | Path | bytes, part: Part) -> list[str]:
     """Faults of a written cut file compared with its part.
 
-    `written`: path of the file, or its bytes; `part`: a part that has a cut file (`cut_section`). Returns
-    version, units, layers, gaps, double entities, and contours that differ in area, length or box; empty if
-    nothing is wrong."""
+    Parameters
+    ----------
+    written
+        Path of the file, or its bytes.
+    part
+        A part that has a cut file (`cut_section`).
+
+    Returns
+    -------
+    list of str
+        Version, units, layers, gaps, double entities, and contours that differ in area, length or box; empty
+        if nothing is wrong.
+    """
     try:
         file = read_dxf(written)
     except ValueError as error:

@@ -95,10 +95,19 @@ def doubts(design: CommonTables, path: Path | None) -> list[str]:
 def check_golden(design: CommonTables, path: Path | None) -> list[Finding]:
     """Hold a design against its golden file.
 
-    `design`: a design that keeps its rules; `path`: of the golden file, which may be absent; None: the design
-    can have none. Content that the golden file's revision does not have fails, and a letter kept by a
-    part that changed; under a new revision, and if there is no golden file yet, what `make golden` would take
-    up is flagged."""
+    Parameters
+    ----------
+    design
+        A design that keeps its rules.
+    path
+        Of the golden file, which may be absent; None: the design can have none.
+
+    Returns
+    -------
+    list of Finding
+        Content that the golden file's revision does not have fails, and a letter kept by a part that changed;
+        under a new revision, and if there is no golden file yet, what `make golden` would take up is flagged.
+    """
     if path is None:
         return [_finding("flag", design, doubt) for doubt in doubts(design, path)]
     if not path.exists():
@@ -183,10 +192,26 @@ def compared(path: Path, design: CommonTables) -> tuple[Record | None, Record]:
 def accept(design: CommonTables, path: Path, failures: Sequence[Finding]) -> list[str]:
     """Write the golden file where anything changed.
 
-    `design`, `path`: the design, and the path of its golden file; `failures`: failures found by the design's
-    checks. Returns lines by which parts that did not change keep their letters; none if the letter stays, or
-    it has them. Raises CheckFailure if a check failed, or the golden file's own revision has other content;
-    nothing is then written. Also as `compared`; InputError if the file cannot be written."""
+    Parameters
+    ----------
+    design, path
+        The design, and the path of its golden file.
+    failures
+        Failures found by the design's checks.
+
+    Returns
+    -------
+    list of str
+        Lines by which parts that did not change keep their letters; none if the letter stays, or it has them.
+
+    Raises
+    ------
+    CheckFailure
+        If a check failed, or the golden file's own revision has other content; nothing is then written. Also
+        as `compared`.
+    InputError
+        If the file cannot be written.
+    """
     left = f"{path.name} is left as it was"
     if failures:
         raise CheckFailure(f"{design.name}: {len(failures)} of the checks failed; {left}")

@@ -53,8 +53,13 @@ def part_inspection_bytes(
 ) -> bytes:
     """The sheet (RFC 4180, UTF-8).
 
-    `design`, `parts`: the design, and the parts to list: of its scenes, or of some; `variables`, `lines`: its
-    variables, and the stack of every requirement."""
+    Parameters
+    ----------
+    design, parts
+        The design, and the parts to list: of its scenes, or of some.
+    variables, lines
+        Its variables, and the stack of every requirement.
+    """
     known, identity = {p.part_no: p for p in parts}, design.design
     rows: list[tuple[object, ...]] = [PART_COLUMNS]
     for (part_no, name), (share, requirement) in ranked(variables, lines):

@@ -70,12 +70,32 @@ def export(
     Nothing is written if the folder already holds exactly this export; the rules between fields, which the
     earlier export kept, are tried only if something has to be made.
 
-    `design`: read field by field; `options`: scenes, pose, detail, and additional products; `out`: the
-    folder; `progress`: receives each task and its reason; `others`: what to do with files in the folder that
-    tactcad did not write (publication.py). Returns the files made, and why; none if nothing had changed.
-    Raises InputError if the design breaks a rule, or `out` may not be replaced or cannot be written;
-    CheckFailure if a file does not read back as it should, or if something in `out` had changed meanwhile and
-    was kept."""
+    Parameters
+    ----------
+    design
+        Read field by field.
+    options
+        Scenes, pose, detail, and additional products.
+    out
+        The folder.
+    progress
+        Receives each task and its reason.
+    others
+        What to do with files in the folder that tactcad did not write (publication.py).
+
+    Returns
+    -------
+    Exported
+        The files made, and why; none if nothing had changed.
+
+    Raises
+    ------
+    InputError
+        If the design breaks a rule, or `out` may not be replaced or cannot be written.
+    CheckFailure
+        If a file does not read back as it should, or if something in `out` had changed meanwhile and was
+        kept.
+    """
     inputs = inputs_of(
         {"design": design, "options": options},
         ROOMS + (FOR_ROBOTS if options.robot else ()),
@@ -172,8 +192,15 @@ def made_files(
 ) -> Iterator[tuple[Output, bytes, bool]]:
     """Every file of the jobs, its bytes, and whether they were made anew; what the cache holds comes first.
 
-    `plan`: that the jobs are of; `jobs`: made in parallel (workers.py), after the solids that they need;
-    `step`, `say`: receive done, total and current task; and lines to keep."""
+    Parameters
+    ----------
+    plan
+        That the jobs are of.
+    jobs
+        Made in parallel (workers.py), after the solids that they need.
+    step, say
+        Receive done, total and current task; and lines to keep.
+    """
     cache, shapes = plan.shapes.cache, plan.shapes
     total, done, missing = sum(len(job.files) for job in jobs), 0, []
     for job in jobs:

@@ -127,10 +127,22 @@ def replacing(directory: str | Path, schema: str, others: str = REFUSE, say: Say
 
     If anything is raised inside, the earlier folder stays.
 
-    `directory`, `schema`: the folder, and the schema of its manifest; `others`: what to do with files in it
-    that tactcad did not write: refuse, keep or discard; `say`: receives lines worth keeping, such as what was
-    kept. Raises InputError if DIR may not be replaced (see `looked_at`), or the place cannot be written to;
-    CheckFailure if the disk is full, or as `Work.publish`."""
+    Parameters
+    ----------
+    directory, schema
+        The folder, and the schema of its manifest.
+    others
+        What to do with files in it that tactcad did not write: refuse, keep or discard.
+    say
+        Receives lines worth keeping, such as what was kept.
+
+    Raises
+    ------
+    InputError
+        If DIR may not be replaced (see `looked_at`), or the place cannot be written to.
+    CheckFailure
+        If the disk is full, or as `Work.publish`.
+    """
     out = absolute(directory)
 
     def recover(left: Path) -> None:

@@ -10,7 +10,6 @@ from dataclasses import dataclass
 from io import BytesIO
 from math import isclose
 
-from OCP.BRepCheck import BRepCheck_Analyzer
 from OCP.IFSelect import IFSelect_RetDone
 from OCP.Quantity import Quantity_Color, Quantity_ColorRGBA, Quantity_TOC_sRGB
 from OCP.STEPCAFControl import STEPCAFControl_Reader, STEPCAFControl_Writer
@@ -30,7 +29,8 @@ from tactcad.profiling import under_way
 from tactcad.scenes.scene import Placement, Scene
 from tactcad.solids.measure import volume
 from tactcad.solids.occt import TDF_LabelSequence, location
-from tactcad.solids.step import set_up_writer, silence
+from tactcad.solids.step import leave_unmended, set_up_writer, silence
+from tactcad.solids.valid import is_clear_prism, is_valid
 
 from .step_text import AP214, AP242, Header, canonical
 
@@ -42,9 +42,25 @@ PLACE_AGREES = 1e-7
 def part_step(part: Part, shape: TopoDS_Shape, header: Header) -> bytes:
     """A part alone as a STEP file: one PRODUCT, no assembly.
 
-    `part`: what the file is compared with; `shape`: its solid in its own frame, mm; `header`: entries of the
-    file's header. Returns the file in canonical form. Raises CheckFailure if it differs when read back:
-    product, validity, or the volume by more than a share of 1e-6."""
+    Parameters
+    ----------
+    part
+        What the file is compared with.
+    shape
+        Its solid in its own frame, mm.
+    header
+        Entries of the file's header.
+
+    Returns
+    -------
+    bytes
+        The file in canonical form.
+
+    Raises
+    ------
+    CheckFailure
+        If it differs when read back: product, validity, or the volume by more than a share of 1e-6.
+    """
     document, shape_tool = new_document()
     add_prototype(document, shape_tool, part, shape)
     data = written(document, header)
@@ -55,10 +71,25 @@ def part_step(part: Part, shape: TopoDS_Shape, header: Header) -> bytes:
 def scene_step(scene: Scene, shapes: Mapping[str, TopoDS_Shape], header: Header) -> bytes:
     """A scene as a STEP assembly named after the header.
 
-    `scene`: its placements become instances, named by designator, of one product a part; `shapes`: solids by
-    part number, each in its own frame, mm; `header`: entries of the file's header. Returns the file in
-    canonical form. Raises CheckFailure if it does not read back to the same names, places (1e-7 mm) and
-    volumes."""
+    Parameters
+    ----------
+    scene
+        Its placements become instances, named by designator, of one product a part.
+    shapes
+        Solids by part number, each in its own frame, mm.
+    header
+        Entries of the file's header.
+
+    Returns
+    -------
+    bytes
+        The file in canonical form.
+
+    Raises
+    ------
+    CheckFailure
+        If it does not read back to the same names, places (1e-7 mm) and volumes.
+    """
     document = scene_document(scene, shapes, header.name)
     under_way("writing")
     data = written(document, header)
@@ -163,7 +194,9 @@ def read_document(data: bytes) -> TDocStd_Document:
     reader = STEPCAFControl_Reader()
     reader.SetNameMode(True)
     reader.SetGDTMode(True)
-    if reader.ReadStream("written.step", BytesIO(data)) != IFSelect_RetDone or not reader.Transfer(document):
+    read = reader.ReadStream("written.step", BytesIO(data)) == IFSelect_RetDone
+    leave_unmended(reader)
+    if not read or not reader.Transfer(document):
         raise CheckFailure("the written STEP file cannot be read back")
     return document
 
@@ -196,7 +229,7 @@ def assembly_in(document: TDocStd_Document) -> Assembly:
         tuple(instances),
         shapes,
         {name: tuple(map(volume, _solids(shape))) for name, shape in shapes.items()},
-        all(BRepCheck_Analyzer(shape).IsValid() for shape in shapes.values()),
+        all(is_valid(shape, is_clear_prism(shape)) for shape in shapes.values()),
     )
 
 

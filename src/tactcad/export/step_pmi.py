@@ -76,9 +76,26 @@ class Annotation:
 def part_step_pmi(part: Part, shape: bytes, header: Header) -> bytes:
     """A part's model with its limits.
 
-    `part`: it has limits; `shape`: its solid in its own frame (solids/step.py); `header`: entries of the
-    file's header. Returns the file in canonical form. Raises CheckFailure if a limit refers to no face, or
-    the file does not read back to the same part, values, datums and faces."""
+    Parameters
+    ----------
+    part
+        It has limits.
+    shape
+        Its solid in its own frame (solids/step.py).
+    header
+        Entries of the file's header.
+
+    Returns
+    -------
+    bytes
+        The file in canonical form.
+
+    Raises
+    ------
+    CheckFailure
+        If a limit refers to no face, or the file does not read back to the same part, values, datums and
+        faces.
+    """
     solid = _without_locations(from_bytes(shape))
     document, tool = new_document()
     label = add_prototype(document, tool, part, solid)

@@ -54,10 +54,20 @@ def side_by_side(
 
     Within a turn they start in the order given; a turn starts when the one before it was taken up.
 
-    `tasks`: even a single one has its own process: the kernel would block this one, or crash it; `hear`:
-    receives the tasks under way, at least every `every` seconds; an exception from it ends the work; `say`:
-    receives lines from `relayed`, each once. Raises CheckFailure if a process was killed or crashed, with its
-    task; else a task's own exception. The others are ended."""
+    Parameters
+    ----------
+    tasks
+        Even a single one has its own process: the kernel would block this one, or crash it.
+    hear
+        Receives the tasks under way, at least every `every` seconds; an exception from it ends the work.
+    say
+        Receives lines from `relayed`, each once.
+
+    Raises
+    ------
+    CheckFailure
+        If a process was killed or crashed, with its task; else a task's own exception. The others are ended.
+    """
     cores = min(len(os.sched_getaffinity(0)), len(tasks))
     waiting = sorted(range(len(tasks)), key=lambda n: tasks[n].turn)
     busy: dict[Connection, tuple[int, float]] = {}

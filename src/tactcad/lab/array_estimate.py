@@ -83,9 +83,28 @@ def estimate(
 ) -> list[ElementEstimate]:
     """Estimate every element of a design.
 
-    `rung`: of the ladder; `force`: on each pad, N; by default the design's rating; `mesh`: density of rung
-    fem-solid's finer mesh; `numbers`: only these elements; ratios are then to the stiffest of them. Returned
-    by number. Raises CheckFailure: an element lies outside the rung's range."""
+    Parameters
+    ----------
+    layout : Layout
+    rung : str
+        Of the ladder.
+    force : float, optional
+        On each pad, N; by default the design's rating.
+    mesh : int, optional
+        Density of rung fem-solid's finer mesh.
+    numbers : collection of int, optional
+        Only these elements; ratios are then to the stiffest of them.
+
+    Returns
+    -------
+    list of ElementEstimate
+        By number.
+
+    Raises
+    ------
+    CheckFailure
+        An element lies outside the rung's range.
+    """
     design = layout.design
     force = design.rating.force if force is None else force
     places = tuple(p for p in layout.elements if not numbers or p.number in numbers)
@@ -131,8 +150,21 @@ def choose_rung(layout: Layout, accuracy: float) -> Choice:
 
     Equal elements are solved once and count once in the expected time.
 
-    `accuracy`: relative error of the stiffness, at most. Raises CheckFailure: no rung is that accurate at
-    every element."""
+    Parameters
+    ----------
+    layout : Layout
+    accuracy : float
+        Relative error of the stiffness, at most.
+
+    Returns
+    -------
+    Choice
+
+    Raises
+    ------
+    CheckFailure
+        No rung is that accurate at every element.
+    """
     section, names = distinct_sections(layout)
     return choose(section, accuracy, names)
 

@@ -63,9 +63,26 @@ def as_made(
 ) -> list[AsMade]:
     """Estimates of every element as designed and as made.
 
-    `readings`: every dimension of every element, as `read_sheet` gives them; `rung`: a closed form of the
-    ladder; `force`: on each pad, N; by default the design's rating. Returned in the order of the layout's
-    elements. Raises CheckFailure: an element, as designed or as made, lies outside the rung's range."""
+    Parameters
+    ----------
+    layout : Layout
+    readings : sequence of Reading
+        Every dimension of every element, as `read_sheet` gives them.
+    rung : str
+        A closed form of the ladder.
+    force : float, optional
+        On each pad, N; by default the design's rating.
+
+    Returns
+    -------
+    list of AsMade
+        In the order of the layout's elements.
+
+    Raises
+    ------
+    CheckFailure
+        An element, as designed or as made, lies outside the rung's range.
+    """
     force = layout.design.rating.force if force is None else force
     designed = hinge_section(layout, layout.elements)
     of = {p.number: tuple(r for r in readings if r.number == p.number) for p in layout.elements}

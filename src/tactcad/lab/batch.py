@@ -30,11 +30,28 @@ def estimate_file(
 ) -> tuple[int, int]:
     """Estimate the stiffness of every row of a table of designs.
 
-    `source`: CSV with the columns of `section.REQUIRED` (mm, MPa); others are copied; `target`: the same
-    table with the ADDED columns, stiffness in N/mm; `rung`: of the ladder, for every row; `accuracy`: gives
-    the allowed relative error for all rows' dimensions; every row then gets the cheapest rung within it,
-    instead of `rung`. Returns in_range, rows: rows that got a stiffness, and rows in all. Raises InputError:
-    the table is malformed (file:line:column); nothing is written."""
+    Parameters
+    ----------
+    source : str or Path
+        CSV with the columns of `section.REQUIRED` (mm, MPa); others are copied.
+    target : str or Path
+        The same table with the ADDED columns, stiffness in N/mm.
+    rung : str
+        Of the ladder, for every row.
+    accuracy : callable, optional
+        Gives the allowed relative error for all rows' dimensions; every row then gets the cheapest rung
+        within it, instead of `rung`.
+
+    Returns
+    -------
+    in_range, rows : int
+        Rows that got a stiffness, and rows in all.
+
+    Raises
+    ------
+    InputError
+        The table is malformed (file:line:column); nothing is written.
+    """
     header, rows, section = read_table(Path(source))
     if accuracy is None:
         stiffness, reasons = estimate_rows(section, rung)

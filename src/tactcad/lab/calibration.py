@@ -146,15 +146,33 @@ def calibrate(
 ) -> list[ElementCalibration]:
     """Stiffness and sensitivity of every element, with intervals.
 
-    `readings`: displacement (mm), force (N) and signal (V) of all elements; `load_cell`: stiffness of the
-    force sensor with its limits (N/mm); inf for a rigid one; `level`: confidence level of every interval,
-    from 0.5 to below 1; `drop_outliers`: leave outliers out of the fit; they are reported either way;
-    `run_scatter`: relative standard deviation of an element's slope from run to run, if it is known. By
-    default it is estimated from the file's runs; for an element with a single run `RUN_SCATTER` is assumed;
-    `tell`: called with (elements done, elements in all, name of the next one) before each element. Returns
-    one for each element, in the order of the file. Raises InputError: a level or a scatter out of range;
-    readings in contact too few for a line; readings that an elastic element behind this load cell cannot
-    give."""
+    Parameters
+    ----------
+    readings : CalibrationReadings
+        Displacement (mm), force (N) and signal (V) of all elements.
+    load_cell : LoadCell
+        Stiffness of the force sensor with its limits (N/mm); inf for a rigid one.
+    level : float
+        Confidence level of every interval, from 0.5 to below 1.
+    drop_outliers : bool
+        Leave outliers out of the fit; they are reported either way.
+    run_scatter : float, optional
+        Relative standard deviation of an element's slope from run to run, if it is known. By default it
+        is estimated from the file's runs; for an element with a single run `RUN_SCATTER` is assumed.
+    tell : callable
+        Called with (elements done, elements in all, name of the next one) before each element.
+
+    Returns
+    -------
+    list of ElementCalibration
+        One for each element, in the order of the file.
+
+    Raises
+    ------
+    InputError
+        A level or a scatter out of range; readings in contact too few for a line; readings that an elastic
+        element behind this load cell cannot give.
+    """
     require_level(level)
     if run_scatter is not None and not 0 <= run_scatter < 1:
         raise InputError("run scatter", "out of range", value=run_scatter, legal="from 0 to below 1")
@@ -373,8 +391,18 @@ def first_in_contact(x: np.ndarray, force: np.ndarray, run: np.ndarray) -> tuple
     (one-sided t test) is left out with all before it. At least three steps and 60 % of all are kept; with
     three displacements none is left out.
 
-    `x`, `force`, `run`: displacement of the stage (mm), force (N), number of the run. Returns first: mm; the
-    second displacement unless the test leaves out more; left_out: number of steps before it."""
+    Parameters
+    ----------
+    x, force, run : arrays, [reading]
+        Displacement of the stage (mm), force (N), number of the run.
+
+    Returns
+    -------
+    first : float
+        mm; the second displacement unless the test leaves out more.
+    left_out : int
+        Number of steps before it.
+    """
     step, index = np.unique(steps(x), return_inverse=True)
     if len(step) > MOST:
         group = np.arange(len(step)) * MOST // len(step)

@@ -81,8 +81,11 @@ class Sensitivity:
         """The calibration that the same readings give with the load cell at its lower (sign -1) or upper (1)
         limit.
 
-        Raises InputError: at that limit the load cell is no stiffer than element and cell in series were
-        measured to be."""
+        Raises
+        ------
+        InputError
+            At that limit the load cell is no stiffer than element and cell in series were measured to be.
+        """
         cell = self.load_cell + sign * self.load_cell_half_width
         old = 1 / (1 + self.stiffness / self.load_cell)  # 1 - k/K_c, as k = K K_c/(K + K_c)
         k, v = self.stiffness * old, self.signal_per_deflection * old
@@ -150,7 +153,11 @@ def to_json(
 def to_csv(rows: list[ElementCalibration], load_cell: LoadCell) -> str:
     """Table 1's columns with standard errors as CSV, which `read` reads back.
 
-    Raises CheckFailure: the readings of an element do not bound its stiffness."""
+    Raises
+    ------
+    CheckFailure
+        The readings of an element do not bound its stiffness.
+    """
     for r in rows:
         if not (0 < r.stiffness.value < inf and isfinite(r.stiffness.standard_error)):
             raise CheckFailure(
@@ -171,9 +178,21 @@ def to_csv(rows: list[ElementCalibration], load_cell: LoadCell) -> str:
 def read(path: str) -> Sensitivity:
     """A calibration from the CSV of `to_csv` or the JSON of `to_json`.
 
-    `path`: read as JSON where it ends in .json. Values without a column of uncertainties count as exact.
-    Returned in the order of the file. Raises InputError: not such a file; an element that is listed twice; a
-    value out of its range; a sensitivity of zero."""
+    Parameters
+    ----------
+    path : str
+        Read as JSON where it ends in .json. Values without a column of uncertainties count as exact.
+
+    Returns
+    -------
+    Sensitivity
+        In the order of the file.
+
+    Raises
+    ------
+    InputError
+        Not such a file; an element that is listed twice; a value out of its range; a sensitivity of zero.
+    """
     if path.endswith(".json"):
         return _from_json(path)
     other = (STIFFNESS_SE, SENSITIVITY_SE, CORRELATION, DOF, LOAD_CELL, LOAD_CELL_HALF_WIDTH, ZERO)

@@ -85,21 +85,35 @@ def combine(slopes: Slopes, level: float, members: list[int] | None = None) -> t
     With two elements the interval is Fieller's. The search runs over an angle, x = scale tan(angle), so that
     an interval that runs through infinity is treated like any other.
 
-    `level`: confidence level of the interval; `members`: indices of the elements, by default all. Returns
-    disagreement_p: probability that noise alone makes the elements disagree this much; 1 with two elements;
-    widened: factor on the standard error for the elements' disagreement; 1 if they agree."""
-    return combine_each([slopes], level, members)[0]
+    Parameters
+    ----------
+    slopes : Slopes
+    level : float
+        Confidence level of the interval.
+    members : list of int, optional
+        Indices of the elements, by default all.
+
+    Returns
+    -------
+    interval : Interval
+    disagreement_p : float
+        Probability that noise alone makes the elements disagree this much; 1 with two elements.
+    widened : float
+        Factor on the standard error for the elements' disagreement; 1 if they agree.
+    """
+    return combine_each([(slopes, members)], level)[0]
 
 
 def combine_each(
-    cases: Sequence[Slopes], level: float, members: list[int] | None = None
+    cases: Sequence[tuple[Slopes, list[int] | None]], level: float
 ) -> list[tuple[Interval, float, float]]:
-    """`combine` of each of several slopes of the same elements: searched together they take half of the
-    time."""
-    m = list(range(len(cases[0].s))) if members is None else members
+    """`combine` of several slopes, each with its members, as many of each: searched together they take half
+    of the time."""
+    of = [(at, list(range(len(at.s))) if m is None else m) for at, m in cases]
+    extra = len(of[0][1]) - 2
     # without noise in K and K_v, f + x s of an element has no variance at x = -K: keep it above zero there
-    f, s = (np.array([values[m] for values in of]) for of in ([at.f for at in cases], [at.s for at in cases]))
-    c = np.array([at.from_signal[m] + _moderated(at, m) if len(m) > 2 else at.covariance[m] for at in cases])
+    f, s = np.array([at.f[m] for at, m in of]), np.array([at.s[m] for at, m in of])
+    c = np.array([at.from_signal[m] + _moderated(at, m) if extra > 0 else at.covariance[m] for at, m in of])
     scale = np.median(np.abs(f / s), axis=1)
     smallest = np.maximum(1e-14 * c[..., 0, 0], NO_VARIANCE)
     c_ff, c_fs, c_ss = (np.ascontiguousarray(c[:, None, :, i, j]) for i, j in ((0, 0), (0, 1), (1, 1)))
@@ -115,8 +129,8 @@ def combine_each(
     best = _minimum(misfit, len(cases))
     least = misfit(best[:, None])[:, 0].tolist()
     limits, said = [], []
-    for at, angle, own, size, low in zip(cases, best, c, scale, least):
-        x, extra = float(size) * tan(angle), len(m) - 2
+    for (at, m), angle, own, size, low in zip(of, best, c, scale, least):
+        x = float(size) * tan(angle)
         inflation, dof = scatter(at, m, own, x)
         expected, of_misfit = expected_misfit(at, m, own, x)
         # the variances are estimated too, hence F and not chi-squared
@@ -155,9 +169,23 @@ def _moderated(slopes: Slopes, m: list[int]) -> np.ndarray:
 def scatter(slopes: Slopes, m: list[int], c: np.ndarray, x: float) -> tuple[float, float]:
     """Factor by which weights from c understate the variance of x, and that variance's degrees of freedom.
 
-    `m`: indices of the elements; `c`: covariances of (f, s) from which the weights are made; `x`: K_obj,
-    N/mm, at which f + x s is most equal. Returns inflation: variance of x by the elements' own covariances,
-    over the one by `c`; dof: Welch and Satterthwaite's."""
+    Parameters
+    ----------
+    slopes : Slopes
+    m : list of int
+        Indices of the elements.
+    c : array, [element, 2, 2]
+        Covariances of (f, s) from which the weights are made.
+    x : float
+        K_obj, N/mm, at which f + x s is most equal.
+
+    Returns
+    -------
+    inflation : float
+        Variance of x by the elements' own covariances, over the one by `c`.
+    dof : float
+        Welch and Satterthwaite's.
+    """
     along, share, s, heaviest = _weighed(slopes, m, c, x)
     pull = share * (s - (share * s).sum() / share.sum())  # relative, of each element's f + x s on x
     signal, calibration = _own(slopes, m, along, pull**2)
@@ -231,7 +259,7 @@ def _edges(misfit: Misfit, best: np.ndarray, limit: np.ndarray) -> np.ndarray:
         return misfit(angle.reshape(len(best), -1)).reshape(angle.shape) > limit[:, None, None]
 
     def at(offset: np.ndarray, index: np.ndarray) -> np.ndarray:
-        return np.take_along_axis(offset, index[..., None], axis=2)[..., 0]
+        return offset.reshape(index.size, -1)[np.arange(index.size), index.ravel()].reshape(index.shape)
 
     fine = np.broadcast_to(np.linspace(0.0, pi, 2 * ANGLES), (len(best), 2, 2 * ANGLES))
     outside = beyond(fine)

@@ -121,15 +121,36 @@ def evaluate(
 ) -> Grasp:
     """K_obj of one sample.
 
-    `readings`: signals (V) of its elements at every load; `calibration`: of these elements at least;
-    `reference`: number of the reference element; by default the stiffest of those read; `level`: confidence
-    level of every interval, from 0.5 to below 1; `coupling`: largest displacement of a pad by the force on
-    another, over that by the same force on itself, in the order of `readings.element`; the object's is taken
-    to lie between zero and this. Without it the pads are taken to press on separate springs;
-    `overload_force`: N on one element, the most that its stop takes: what passes it is noted; `elements`:
-    number in the whole array, which bears the load; by default those read. Raises InputError: an element
-    without calibration or with a constant signal, a reference that was not read, fewer than two elements or
-    than three loads above zero, two elements whose channels are swapped, one whose channel is reversed."""
+    Parameters
+    ----------
+    readings : GraspReadings
+        Signals (V) of its elements at every load.
+    calibration : Sensitivity
+        Of these elements at least.
+    reference : int, optional
+        Number of the reference element; by default the stiffest of those read.
+    level : float
+        Confidence level of every interval, from 0.5 to below 1.
+    coupling : array, [element, element], optional
+        Largest displacement of a pad by the force on another, over that by the same force on itself, in the
+        order of `readings.element`; the object's is taken to lie between zero and this. Without it the pads
+        are taken to press on separate springs.
+    overload_force : float, optional
+        N on one element, the most that its stop takes: what passes it is noted.
+    elements : int, optional
+        Number in the whole array, which bears the load; by default those read.
+
+    Returns
+    -------
+    Grasp
+
+    Raises
+    ------
+    InputError
+        An element without calibration or with a constant signal, a reference that was not read, fewer than
+        two elements or than three loads above zero, two elements whose channels are swapped, one whose
+        channel is reversed.
+    """
     require_level(level)
     touching, where = readings.load > 0, f"{readings.path}: sample {readings.sample}"
     _refuse_swapped(readings, calibration)
@@ -160,12 +181,14 @@ def evaluate(
     others = [i for i in np.argsort(-slopes.f / slopes.s, kind="stable") if i != r]
     limits = _limits(readings.element, signal, calibration, slopes, coupling, terms)
     everywhere = [at for group in limits.values() for at in group]
-    pairs = tuple(_pair(slopes, everywhere, int(m), r, level) for m in others)
+    cases = [slopes, *everywhere]
+    found = iter(combine_each([(at, [int(m), r]) for m in others for at in cases], level))
+    pairs = tuple(_pair(slopes, [next(found)[0] for _ in cases], int(m), r, level) for m in others)
     combined, p, widened = combine(slopes, level)
     if widened > EXCHANGED and len(readings.element) >= FEW:
         _refuse_exchanged(readings, signal, calibration, terms, level)
     by_limits = tuple(
-        (name, hull(combined, [i for i, _, _ in combine_each(group, level)]))
+        (name, hull(combined, [i for i, _, _ in combine_each([(at, None) for at in group], level)]))
         for name, group in limits.items()
     )
     dropped = int((~touching).sum())
@@ -236,7 +259,11 @@ def below_stops(
     """The readings at loads below that at which the first element reaches its stop, and a note where that
     leaves some out. A stopped pad bears more than its spring says, so the others' readings err as well.
 
-    Raises InputError: fewer than three loads are left."""
+    Raises
+    ------
+    InputError
+        Fewer than three loads are left.
+    """
     place = {int(n): i for i, n in enumerate(at.number)}
     stop = at.stop[[place[int(n)] for n in readings.element]]
     touching = readings.load > 0
@@ -280,9 +307,20 @@ def on_layers(
 ) -> Grasp:
     """The same readings on layers: K_obj of a single level pad, of all elements and of every pair.
 
-    `grasp`: of the same readings, by `evaluate` on separate springs; `readings`, `calibration`, `level`: as
-    of `evaluate`; `layers`: one if the thickness is known, else all that the intervals are to cover. Raises
-    InputError: fewer than two pads that are read touch, or no modulus explains the readings."""
+    Parameters
+    ----------
+    grasp
+        Of the same readings, by `evaluate` on separate springs.
+    readings, calibration, level
+        As of `evaluate`.
+    layers
+        One if the thickness is known, else all that the intervals are to cover.
+
+    Raises
+    ------
+    InputError
+        Fewer than two pads that are read touch, or no modulus explains the readings.
+    """
     number = readings.element
     known = calibration.of(number)
     reference = grasp.pairs[0].reference
@@ -423,9 +461,28 @@ def common_slopes(
     signal[element, state] less each element's mean is g p + noise, with equal noise in every channel: g p is
     its best rank-one approximation. An error of p scales all g alike, and K_obj does not depend on it.
 
-    `element`: numbers; `signal`: V, in contact; `calibration`: of these elements at least; `terms`: of
-    `drift_terms`; the signals are then those of all states. Returns noise: standard deviation, V. Raises
-    InputError: an element without calibration."""
+    Parameters
+    ----------
+    element : array, [element]
+        Numbers.
+    signal : array, [element, state]
+        V, in contact.
+    calibration : Sensitivity
+        Of these elements at least.
+    terms : array, [term, state], optional
+        Of `drift_terms`; the signals are then those of all states.
+
+    Returns
+    -------
+    slopes : Slopes
+    noise : float
+        Standard deviation, V.
+
+    Raises
+    ------
+    InputError
+        An element without calibration.
+    """
     centred = _without(signal, terms)
     u, size, vt = np.linalg.svd(centred, full_matrices=False)
     dof = (len(element) - 1) * (signal.shape[1] - 1 - _count(terms))
@@ -548,8 +605,9 @@ def _wrong_forces(
     return notes, float(rise.sum())
 
 
-def _pair(slopes: Slopes, limits: list[Slopes], m: int, r: int, level: float) -> Pair:
-    object_, *others = (found for found, _, _ in combine_each([slopes, *limits], level, [m, r]))
+def _pair(slopes: Slopes, found: list[Interval], m: int, r: int, level: float) -> Pair:
+    """`found`: K_obj by the two, of the slopes as they are and at their limits."""
+    object_, *others = found
     everywhere = hull(object_, others)
     ratio = slopes.s[m] / slopes.s[r]
     k_m, k_r = slopes.f[m] / slopes.s[m], slopes.f[r] / slopes.s[r]

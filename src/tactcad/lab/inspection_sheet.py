@@ -66,10 +66,23 @@ class Reading:
 def read_sheet(path: str | Path, layout: Layout) -> list[Reading]:
     """Every row of an inspection sheet.
 
-    `layout`: of the design that the sheet was exported with. Returned by element number, and for each element
-    in the order of its dimensions. Raises InputError: the file is not this design's sheet with every row, has
-    something changed that was not to be filled in, or holds a measured value or an uncertainty that cannot be
-    one."""
+    Parameters
+    ----------
+    path : str or Path
+    layout : Layout
+        Of the design that the sheet was exported with.
+
+    Returns
+    -------
+    list of Reading
+        By element number, and for each element in the order of its dimensions.
+
+    Raises
+    ------
+    InputError
+        The file is not this design's sheet with every row, has something changed that was not to be filled
+        in, or holds a measured value or an uncertainty that cannot be one.
+    """
     table = read_table(path, "an inspection sheet (CSV)", comments=False)
     require_columns(table, NEEDED)
     rows = [_Row(table, line, cells) for line, cells in table.records]
@@ -222,7 +235,11 @@ class Reissued:
 def reissued(design: Design, path: str | Path) -> Reissued:
     """The design, as the filled inspection sheet of its elements makes it.
 
-    Raises InputError if the sheet is not this design's, cannot be read, or holds no sheet thickness."""
+    Raises
+    ------
+    InputError
+        If the sheet is not this design's, cannot be read, or holds no sheet thickness.
+    """
     layout = Layout(design)
     readings = read_sheet(path, layout)
     sheets = [

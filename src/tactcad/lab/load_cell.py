@@ -34,8 +34,11 @@ RIGID = 1e9  # N/mm: the value of a rigid load cell in a calibration's file
 class LoadCell:
     """The force sensor's own stiffness, known to lie within stiffness +- half_width; both N/mm.
 
-    Raises InputError: a stiffness not positive, or finite and above RIGID; limits that reach zero, or of a
-    rigid one."""
+    Raises
+    ------
+    InputError
+        A stiffness not positive, or finite and above RIGID; limits that reach zero, or of a rigid one.
+    """
 
     stiffness: float
     half_width: float = 0.0
@@ -54,7 +57,11 @@ class LoadCell:
     def parse(cls, text: str) -> LoadCell:
         """From "57.04", "57.04+-1", "57.04+-2%" or "inf"; without limits `CELL_ACCURACY` is assumed.
 
-        Raises InputError: the text has none of these forms."""
+        Raises
+        ------
+        InputError
+            The text has none of these forms.
+        """
         value, given, limits = text.strip().replace("\N{PLUS-MINUS SIGN}", "+-").partition("+-")
         try:
             stiffness = as_number(value)
@@ -77,8 +84,18 @@ class LoadCell:
 def series_removed(slope: float, load_cell: float) -> float:
     """Stiffness of the element alone, k K_c/(K_c - k), from that of element and load cell in series.
 
-    `slope`: k: force over the stage's displacement, N/mm; `load_cell`: K_c, N/mm; inf for a rigid one.
-    Returns N/mm; inf if k is no less than K_c."""
+    Parameters
+    ----------
+    slope : float
+        k: force over the stage's displacement, N/mm.
+    load_cell : float
+        K_c, N/mm; inf for a rigid one.
+
+    Returns
+    -------
+    float
+        N/mm; inf if k is no less than K_c.
+    """
     if isinf(load_cell):
         return slope
     return slope * load_cell / (load_cell - slope) if slope < load_cell else inf

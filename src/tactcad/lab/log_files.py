@@ -57,7 +57,11 @@ class LabLog:
 def read_log(path: str | Path) -> LabLog:
     """Read a log; the format goes by the file's ending, all else than .lvm and .tdms is CSV.
 
-    Raises InputError: not such a file; a row of another length; a column named twice."""
+    Raises
+    ------
+    InputError
+        Not such a file; a row of another length; a column named twice.
+    """
     ending = Path(path).suffix.lower()
     if ending == ".tdms":
         return _tdms(path)

@@ -141,7 +141,11 @@ QUANTITIES = ("element", "run", "sample", "displacement", "force", "load")
 def read_map(path: str | Path) -> LogMap:
     """A mapping file, field by field.
 
-    Raises InputError: the file is missing or no map, a value is not legal, or two contradict each other."""
+    Raises
+    ------
+    InputError
+        The file is missing or no map, a value is not legal, or two contradict each other.
+    """
     where = str(path)
     table = parse_toml(read_text(path, MOST_BYTES, "a mapping file (TOML)"), where)
     for name, value in table.items():

@@ -96,9 +96,12 @@ class Taken:
 def take(log: LabLog, by: LogMap) -> Taken:
     """The readings that a log holds.
 
-    Raises InputError: a column that the log lacks; no steps; rows missing within one; a channel twice; a
-    driving column that does not change; a force or load at its limit; channels that are swapped; too few
-    elements left."""
+    Raises
+    ------
+    InputError
+        A column that the log lacks; no steps; rows missing within one; a channel twice; a driving column that
+        does not change; a force or load at its limit; channels that are swapped; too few elements left.
+    """
     time = _time(log, by)
     drive = _numbers(log, by.steps.column, by) if by.steps.column and by.steps.by == "plateau" else None
     spans = _spans(log, by, time, drive)

@@ -64,9 +64,22 @@ class GraspReadings:
 def calibration(path: str | Path) -> CalibrationReadings:
     """Read the readings for `tactcad calibrate`.
 
-    `path`: CSV with the columns element, run, displacement, force, signal. Returned in the order of the file.
-    Raises InputError: a malformed table, a displacement twice in a run, too few readings of an element,
-    displacements with their sign reversed; with file, line and column."""
+    Parameters
+    ----------
+    path : str or Path
+        CSV with the columns element, run, displacement, force, signal.
+
+    Returns
+    -------
+    CalibrationReadings
+        In the order of the file.
+
+    Raises
+    ------
+    InputError
+        A malformed table, a displacement twice in a run, too few readings of an element, displacements with
+        their sign reversed; with file, line and column.
+    """
     return calibration_of(read_table(path, KIND))
 
 
@@ -128,9 +141,21 @@ def grasps(path: str | Path) -> list[GraspReadings]:
 
     Every element must be read at every load of a run, since one approach of the array moves all elements.
 
-    `path`: CSV with the columns element, load, signal; run and sample if there are several. Returns one for
-    each sample, in the order of the file. Raises InputError: a malformed table, a reading twice or missing;
-    with file, line and column."""
+    Parameters
+    ----------
+    path : str or Path
+        CSV with the columns element, load, signal; run and sample if there are several.
+
+    Returns
+    -------
+    list of GraspReadings
+        One for each sample, in the order of the file.
+
+    Raises
+    ------
+    InputError
+        A malformed table, a reading twice or missing; with file, line and column.
+    """
     return grasps_of(read_table(path, KIND))
 
 

@@ -85,10 +85,24 @@ def fit_lines(
     """Weighted least squares of y[:, k] = intercept[run, k] + slope[k] x, and + drift[k] time if there is
     time.
 
-    `y`: k responses; `run`: number of the reading's run; `weight`: proportional to 1/variance; by default
-    equal; `time`: with it, every response drifts at a rate of its own, one for all runs. Displacement and
-    responses are then what time leaves of them (Frisch and Waugh), and the slopes the same as with time in
-    the fit. Returns slopes in units of y over those of x."""
+    Parameters
+    ----------
+    x : array, [reading]
+    y : array, [reading, k]
+        k responses.
+    run : array, [reading]
+        Number of the reading's run.
+    weight : array, [reading], optional
+        Proportional to 1/variance; by default equal.
+    time : array, [reading], optional
+        With it, every response drifts at a rate of its own, one for all runs. Displacement and responses are
+        then what time leaves of them (Frisch and Waugh), and the slopes the same as with time in the fit.
+
+    Returns
+    -------
+    Lines
+        Slopes in units of y over those of x.
+    """
     w = np.ones(len(x)) if weight is None else weight / weight.mean()
     runs, index = np.unique(run, return_inverse=True)
     total = np.bincount(index, w)
@@ -166,9 +180,18 @@ def extreme_deviates(
 
     The search ends after PATIENCE removed readings in a row that are no outliers.
 
-    `x`, `y`, `run`, `weight`: as for `fit_lines`, with one response; `alpha`: probability that a reading is
-    reported although all are good. Returns indices of at most a tenth of the readings, the furthest off
-    first."""
+    Parameters
+    ----------
+    x, y, run, weight : arrays, [reading]
+        As for `fit_lines`, with one response.
+    alpha : float
+        Probability that a reading is reported although all are good.
+
+    Returns
+    -------
+    list of int
+        Indices of at most a tenth of the readings, the furthest off first.
+    """
     n = len(x)
     left = _Left(x, y, run, weight)
     smallest = float(rounding(y[:, None])[0])
@@ -317,9 +340,17 @@ class Bow:
 def bow(x: np.ndarray, y: np.ndarray, run: np.ndarray, weight: np.ndarray) -> Bow | None:
     """The bow of one response.
 
-    `x`, `y`, `run`, `weight`: as for `regression.fit_lines`, with one response. Returns y = intercept[run] +
-    slope x + curvature x^2 by weighted least squares; the height over the full scale is then -curvature
-    range/(4 slope). None if there are too few displacements to tell a parabola."""
+    Parameters
+    ----------
+    x, y, run, weight : arrays, [reading]
+        As for `regression.fit_lines`, with one response.
+
+    Returns
+    -------
+    Bow or None
+        y = intercept[run] + slope x + curvature x^2 by weighted least squares; the height over the full scale
+        is then -curvature range/(4 slope). None if there are too few displacements to tell a parabola.
+    """
     if len(np.unique(np.round(x, 9))) < 4:
         return None
     square = (x - x.mean()) ** 2

@@ -42,9 +42,24 @@ def calibration_rows(
 ) -> np.ndarray:
     """Readings of a calibration: in every run the stage presses load cell and element in series.
 
-    `load_cell`: stiffness of the load cell, N/mm; `displacement`: of the stage, mm; `gap`: largest way
-    through air before contact, mm; each run's is drawn from 0 to this. Returns element, run, displacement
-    (mm), force (N), signal (V)."""
+    Parameters
+    ----------
+    truth : Truth
+    load_cell : float
+        Stiffness of the load cell, N/mm.
+    displacement : array, [step]
+        Of the stage, mm.
+    runs : int
+    noise : Noise
+    rng : numpy.random.Generator
+    gap : float
+        Largest way through air before contact, mm; each run's is drawn from 0 to this.
+
+    Returns
+    -------
+    array, [reading, 5]
+        Element, run, displacement (mm), force (N), signal (V).
+    """
     share = load_cell / (load_cell + truth.stiffness)
     shape = (len(truth.element), runs, len(displacement))
     more = rng.spawn(1)[0]  # a generator of its own, so that a gap or relative noise leaves the other draws
@@ -75,8 +90,24 @@ def approach(
     object's stiffness under one pad; one that is not yet in contact carries no load. The forces add up to
     the load.
 
-    `load`: N; `stiffness`: K, N/mm; `object_stiffness`: x, N/mm; `pad_height`: h: height of each pad over the
-    plane, mm; by default all are level. Returns z: mm; deflection: mm."""
+    Parameters
+    ----------
+    load : array, [load]
+        N.
+    stiffness : array, [element]
+        K, N/mm.
+    object_stiffness : float
+        x, N/mm.
+    pad_height : array, [element], optional
+        h: height of each pad over the plane, mm; by default all are level.
+
+    Returns
+    -------
+    z : array, [load]
+        mm.
+    deflection : array, [element, load]
+        mm.
+    """
     h = np.zeros_like(stiffness) if pad_height is None else pad_height
     share = object_stiffness / (stiffness + object_stiffness)
     rate = stiffness * share

@@ -94,9 +94,17 @@ class Published:
 def load(table1: str | Path | None = None, table2: str | Path | None = None) -> Published:
     """The paper's data.
 
-    `table1`, `table2`: files of the same form that replace the paper's tables. Raises InputError with file,
-    line and column: a missing column, text for a number, a value out of range, an element listed twice, gaps
-    in the grid of Table 2."""
+    Parameters
+    ----------
+    table1, table2
+        Files of the same form that replace the paper's tables.
+
+    Raises
+    ------
+    InputError
+        With file, line and column: a missing column, text for a number, a value out of range, an element
+        listed twice, gaps in the grid of Table 2.
+    """
     data = Path(str(files("tactcad.paper"))) / "data"
     lines = [line.split(",") for line in (data / "printed.csv").read_text("utf-8").splitlines()]
     printed = {name: text for name, text, *_ in lines if name[0] != "#" and name != "name"}

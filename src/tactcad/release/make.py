@@ -82,13 +82,32 @@ def release(
     `<design>-<revision>-<way>.zip`; the revision is followed by SAMPLE for a sample and by PRELIMINARY for a
     draft.
 
-    `design`, `design_file`: the design, with its owner and contact unless a sample, and its file; `out`: the
-    folder to write to; `shop_file`: the limits that parts are checked against; `progress`: receives each
-    task, and the reason if nothing is done; `terms`: draft or not, sample or not, and so on. A draft's README
-    lists the checks that fail. Returns the zip, its files, the differences from the previous one, and the
-    packages. Raises CheckFailure if a check fails, the golden file does not hold exactly this revision, or a
-    written file does not read back; nothing is then written and older zips remain. Otherwise as
-    `places.replacing`; InputError if `out` cannot be written, or as `places.looked_at`."""
+    Parameters
+    ----------
+    design, design_file
+        The design, with its owner and contact unless a sample, and its file.
+    out
+        The folder to write to.
+    shop_file
+        The limits that parts are checked against.
+    progress
+        Receives each task, and the reason if nothing is done.
+    terms
+        Draft or not, sample or not, and so on. A draft's README lists the checks that fail.
+
+    Returns
+    -------
+    Released
+        The zip, its files, the differences from the previous one, and the packages.
+
+    Raises
+    ------
+    CheckFailure
+        If a check fails, the golden file does not hold exactly this revision, or a written file does not read
+        back; nothing is then written and older zips remain. Otherwise as `places.replacing`.
+    InputError
+        If `out` cannot be written, or as `places.looked_at`.
+    """
     places, foreign = looked_up(design, design_file, out, shop_file, terms)
     scenes = [make_scene(design, name) for name in scene_names(design)]
     # the golden file first: it needs no kernel

@@ -82,9 +82,20 @@ class Figure:
 class Figures(Mapping[str, Figure]):
     """All figures of one kind of record, by name.
 
-    `record`: a dataclass; `*figures`: in the order in which tables have them; `without`: fields with numbers
-    that no table shows. Raises TypeError: a figure is declared twice, or is not a field of the record; a
-    number of the record has no figure."""
+    Parameters
+    ----------
+    record : type
+        A dataclass.
+    *figures : Figure
+        In the order in which tables have them.
+    without : sequence of str
+        Fields with numbers that no table shows.
+
+    Raises
+    ------
+    TypeError
+        A figure is declared twice, or is not a field of the record; a number of the record has no figure.
+    """
 
     def __init__(self, record: type, *figures: Figure, without: Sequence[str] = ()) -> None:
         self._by_name = {figure.name: figure for figure in figures}
@@ -162,7 +173,13 @@ def csv_lines(figures: Sequence[Figure], records: Sequence[Any], digits: str = "
 def sig(value: float, digits: int = 3) -> str:
     """A number as text without exponent between 1e-4 and 1e7.
 
-    `value`: the number; `digits`: significant digits."""
+    Parameters
+    ----------
+    value
+        The number.
+    digits
+        Significant digits.
+    """
     value = float(value)
     if isnan(value):
         return "–"

@@ -39,9 +39,20 @@ def change_record(
 ) -> tuple[dict[str, Any], bytes]:
     """The record and its block of arrays for `review_page`, equal for equal input.
 
-    `sides`, `designs`, `shapes`: each of before and after; both designs must keep their rules. The shapes'
-    makers must be two; `differences`, `meaning`: between the sides; `say`: receives (done, total, text) as
-    the work goes on. Raises CheckFailure if the designs have no scene in common."""
+    Parameters
+    ----------
+    sides, designs, shapes
+        Each of before and after; both designs must keep their rules. The shapes' makers must be two.
+    differences, meaning
+        Between the sides.
+    say
+        Receives (done, total, text) as the work goes on.
+
+    Raises
+    ------
+    CheckFailure
+        If the designs have no scene in common.
+    """
     scenes = {
         # what came and went first
         name: _named(sorted(pieces, key=lambda p: list(LOOKS).index(p.kind)))

@@ -73,8 +73,18 @@ def changed_scenes(
 ) -> dict[str, list[ScenePiece]]:
     """Every scene that both designs have, in pieces; loads the kernel.
 
-    `designs`, `shapes`: as in `changed_scene`; both designs must keep their rules; `say`: receives (done,
-    total, text) as the work goes on. Raises CheckFailure if the designs have no scene in common."""
+    Parameters
+    ----------
+    designs, shapes
+        As in `changed_scene`; both designs must keep their rules.
+    say
+        Receives (done, total, text) as the work goes on.
+
+    Raises
+    ------
+    CheckFailure
+        If the designs have no scene in common.
+    """
     before, after = (chosen_scenes(design, None) for design in designs)
     names = [name for name in after if name in before]
     if not names:
@@ -92,8 +102,11 @@ def changed_scene(
 ) -> list[ScenePiece]:
     """Every piece of the scene, before and after; loads the kernel.
 
-    `designs`, `scenes`, `shapes`: each of before and after. The shapes' makers must be two: equal numbers may
-    mean other parts."""
+    Parameters
+    ----------
+    designs, scenes, shapes
+        Each of before and after. The shapes' makers must be two: equal numbers may mean other parts.
+    """
     from tactcad.solids.changed import ChangedMaterial, changed
     from tactcad.solids.occt import placed_shape
 

@@ -237,8 +237,13 @@ class PartFacts:
 def part_facts(part: Part, variables: dict[str, DimensionLimits], lines: Sequence[StackLine]) -> PartFacts:
     """The facts of one part.
 
-    `part`: its description; `variables`, `lines`: of the assembled sensor, as `stacks.virtual_build.Sensor`
-    has them: what depends on the part."""
+    Parameters
+    ----------
+    part
+        Its description.
+    variables, lines
+        Of the assembled sensor, as `stacks.virtual_build.Sensor` has them: what depends on the part.
+    """
     return PartFacts(
         part_no=part.part_no,
         name=part.name,

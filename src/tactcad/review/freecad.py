@@ -72,9 +72,22 @@ def freecad_document(
 ) -> bytes:
     """The document.
 
-    `design`: must keep its rules; `scene_names`: the scenes to hold; the first one is shown; `shapes`: makes
-    solids, or takes them from its cache; `say`: receives (done, total, text) as the work goes on. Raises
-    CheckFailure if FreeCAD is not installed, or ends without a document."""
+    Parameters
+    ----------
+    design
+        Must keep its rules.
+    scene_names
+        The scenes to hold; the first one is shown.
+    shapes
+        Makes solids, or takes them from its cache.
+    say
+        Receives (done, total, text) as the work goes on.
+
+    Raises
+    ------
+    CheckFailure
+        If FreeCAD is not installed, or ends without a document.
+    """
     command = program()
     scenes = tuple(make_scene(design, name) for name in scene_names)
     parts = {part.part_no: part for scene in scenes for part in scene.parts}
@@ -228,10 +241,22 @@ def freecad_changes(
 ) -> bytes:
     """The document.
 
-    `designs`: before and after; both must keep their rules; `shapes`: makers of their solids; `changes`: rows
-    of the spreadsheet of changes, the first its heading; `say`: receives (done, total, text) as the work goes
-    on. Raises CheckFailure if FreeCAD is not installed or ends without a document, or the designs have no
-    scene in common."""
+    Parameters
+    ----------
+    designs
+        Before and after; both must keep their rules.
+    shapes
+        Makers of their solids.
+    changes
+        Rows of the spreadsheet of changes, the first its heading.
+    say
+        Receives (done, total, text) as the work goes on.
+
+    Raises
+    ------
+    CheckFailure
+        If FreeCAD is not installed or ends without a document, or the designs have no scene in common.
+    """
     command = program()
     scenes = changed_scenes(designs, shapes, say)
     record, texts = changes_record(designs, scenes, changes)
@@ -302,9 +327,22 @@ def made_by_freecad(
 ) -> bytes:
     """The document of a record.
 
-    `command`: as `program` found it; `record`: as `peers/freecad_document.py` reads it; `texts`: the shapes
-    of its parts (BREP), in their order; `say`: receives (done, text) as the work goes on. Raises CheckFailure
-    if FreeCAD ends without a document."""
+    Parameters
+    ----------
+    command
+        As `program` found it.
+    record
+        As `peers/freecad_document.py` reads it.
+    texts
+        The shapes of its parts (BREP), in their order.
+    say
+        Receives (done, text) as the work goes on.
+
+    Raises
+    ------
+    CheckFailure
+        If FreeCAD ends without a document.
+    """
     with scratch_folder("freecad") as folder:
         for n, (part, text) in enumerate(zip(record["parts"], texts, strict=True)):
             say(n + 1, part["part_no"])

@@ -177,8 +177,15 @@ def live_record(design: CommonTables, scene_name: str, shapes: Shapes) -> tuple[
     """`review_record` of one scene without its slow parts: checks, virtual builds with each requirement's
     variance, pictures of strain.
 
-    `design`: must keep its rules; `scene_name`: the scene; `shapes`: makes solids, or takes them from its
-    cache: parts that did not change are not meshed again."""
+    Parameters
+    ----------
+    design
+        Must keep its rules.
+    scene_name
+        The scene.
+    shapes
+        Makes solids, or takes them from its cache: parts that did not change are not meshed again.
+    """
     scene = make_scene(design, scene_name)
     parts = list({part.part_no: part for part in scene.parts}.values())
     pack = mesh_pack(parts, shapes)

@@ -53,8 +53,13 @@ class ViewerLibrary:
 def viewer_library() -> ViewerLibrary:
     """The installed viewer.
 
-    Raises InputError if it is not installed; the message gives the command; CheckFailure if it is not whole,
-    or not of the version that the page needs."""
+    Raises
+    ------
+    InputError
+        If it is not installed; the message gives the command.
+    CheckFailure
+        If it is not whole, or not of the version that the page needs.
+    """
     spec = find_spec(PACKAGE)
     if spec is None or not spec.submodule_search_locations:
         raise InputError("the page's viewer", f"{DISTRIBUTION} is not installed", legal=INSTALL)
@@ -73,8 +78,14 @@ def viewer_library() -> ViewerLibrary:
 def review_page(record: Mapping[str, Any], block: bytes, library: ViewerLibrary) -> bytes:
     """The page (HTML, UTF-8).
 
-    `record`, `block`: as `review_record` or `change_record` gives them; texts in it may hold anything, the
-    page shows them as text; `library`: the viewer."""
+    Parameters
+    ----------
+    record, block
+        As `review_record` or `change_record` gives them; texts in it may hold anything, the
+        page shows them as text.
+    library
+        The viewer.
+    """
     folder, identity = files(__package__), record["design"]
     live = LIVE in record
     names = (*SCRIPTS, LIVE) if live else SCRIPTS

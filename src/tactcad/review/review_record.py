@@ -54,7 +54,11 @@ class StrainField:
 def strain_field(layout: Layout, place: ElementPlace) -> StrainField:
     """The field of one element, clamped at its clamp edge, pressed away from the object at its load line.
 
-    Raises CheckFailure if the mesh cannot follow its contour."""
+    Raises
+    ------
+    CheckFailure
+        If the mesh cannot follow its contour.
+    """
     contour = element(layout, place).extrusion.outer
     shape = cut_element(contour, layout.clamp_edge, place.hinge_x - place.load_arm)
     alloy = design_alloy(layout.design)
@@ -196,9 +200,19 @@ def review_record(
 ) -> tuple[dict[str, Any], bytes]:
     """The record and the block, equal for equal input.
 
-    `design`: must keep its rules; `scene_names`: the scenes to show, the first one first; `shapes`: makes
-    solids, or takes them from its cache; `say`: receives (done, total, text) as the work goes on; `sheets`:
-    drawing sheets (SVG) by part number."""
+    Parameters
+    ----------
+    design
+        Must keep its rules.
+    scene_names
+        The scenes to show, the first one first.
+    shapes
+        Makes solids, or takes them from its cache.
+    say
+        Receives (done, total, text) as the work goes on.
+    sheets
+        Drawing sheets (SVG) by part number.
+    """
     scenes = tuple(make_scene(design, name) for name in scene_names)
     parts = list({part.part_no: part for scene in scenes for part in scene.parts}.values())
     total = len(parts) + 2

@@ -71,10 +71,21 @@ def revision_sides(
 ) -> tuple[Side, Side]:
     """Two revisions of one design.
 
-    `old`, `new`: commits, branches or tags, as HEAD~3; WORKING for the present files, by the present code;
-    `design`: a path, or a name in hardware/; `their_code`: receives each revision's own code before it runs.
-    None: no code of theirs runs, the present one reads their designs. Raises InputError if there is no
-    repository, no such revision, no such design in it, or no way to compare it."""
+    Parameters
+    ----------
+    old, new
+        Commits, branches or tags, as HEAD~3; WORKING for the present files, by the present code.
+    design
+        A path, or a name in hardware/.
+    their_code
+        Receives each revision's own code before it runs. None: no code of theirs runs, the present one reads
+        their designs.
+
+    Raises
+    ------
+    InputError
+        If there is no repository, no such revision, no such design in it, or no way to compare it.
+    """
     file = design_file(design)
     with repository_of(file) as repository:
         path = repository.path_of(file)

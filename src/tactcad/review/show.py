@@ -54,9 +54,20 @@ class ShownPage:
 def show(design: str | Path | CommonTables, scene: str = "array") -> ShownPage:
     """The review page of one scene of a design.
 
-    `design`: a path, a name in hardware/, an export's folder, or a design that was read and perhaps changed;
-    `scene`: one of `tactcad.scenes.scene_names`. Raises InputError if there is no such design or scene, or
-    the design breaks a rule; CheckFailure if the page's viewer, the extra `review`, is not installed."""
+    Parameters
+    ----------
+    design
+        A path, a name in hardware/, an export's folder, or a design that was read and perhaps changed.
+    scene
+        One of `tactcad.scenes.scene_names`.
+
+    Raises
+    ------
+    InputError
+        If there is no such design or scene, or the design breaks a rule.
+    CheckFailure
+        If the page's viewer, the extra `review`, is not installed.
+    """
     library = viewer_library()  # report a missing one before any work
     read, sheets = _read(design)
     shapes = shapes_of(read, warnings.warn)
@@ -68,8 +79,18 @@ def show(design: str | Path | CommonTables, scene: str = "array") -> ShownPage:
 def show_changes(before: str | Path | CommonTables, after: str | Path | CommonTables) -> ShownPage:
     """The page of what changed between two designs, and what each change means.
 
-    `before`, `after`: as `show` takes them; both are built by the present code. Raises InputError: as `show`;
-    CheckFailure: as `show`, and if the designs have no scene in common."""
+    Parameters
+    ----------
+    before, after
+        As `show` takes them; both are built by the present code.
+
+    Raises
+    ------
+    InputError
+        As `show`.
+    CheckFailure
+        As `show`, and if the designs have no scene in common.
+    """
     library = viewer_library()
     designs = _read(before)[0], _read(after)[0]
     old, new = (
@@ -86,8 +107,18 @@ def show_changes(before: str | Path | CommonTables, after: str | Path | CommonTa
 def show_in_vscode(design: str | Path | CommonTables, scene: str = "array") -> None:
     """The parts of one scene in OCP CAD Viewer: a tree of sub-assemblies and designators, with colours.
 
-    `design`, `scene`: as `show` takes them. Raises InputError: as `show`; CheckFailure if the package
-    ocp-vscode is not installed, or no viewer listens."""
+    Parameters
+    ----------
+    design, scene
+        As `show` takes them.
+
+    Raises
+    ------
+    InputError
+        As `show`.
+    CheckFailure
+        If the package ocp-vscode is not installed, or no viewer listens.
+    """
     viewer = _listening()
     read, _ = _read(design)
     (name,) = chosen_scenes(read, [scene])

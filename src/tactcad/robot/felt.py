@@ -108,7 +108,7 @@ def _object(taxels: Taxels, s: np.ndarray, used: np.ndarray, level: float, share
     cases = [slopes]
     if share != 0:
         cases += coupled([slopes], share * _shares(taxels)[np.ix_(rows, rows)])
-    best, *others = (found for found, _, _ in combine_each(cases, level))
+    best, *others = (found for found, _, _ in combine_each([(at, None) for at in cases], level))
     return hull(best, others)
 
 

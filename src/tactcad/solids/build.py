@@ -7,7 +7,8 @@ than making the parts of an array.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import tau
+from dataclasses import replace
+from math import isclose, tau
 
 from OCP.BRepAlgoAPI import BRepAlgoAPI_Cut
 from OCP.BRepBuilderAPI import (
@@ -16,7 +17,6 @@ from OCP.BRepBuilderAPI import (
     BRepBuilderAPI_MakeVertex,
     BRepBuilderAPI_MakeWire,
 )
-from OCP.BRepCheck import BRepCheck_Analyzer
 from OCP.BRepGProp import BRepGProp_Face
 from OCP.BRepPrimAPI import (
     BRepPrimAPI_MakeCone,
@@ -31,7 +31,7 @@ from OCP.ShapeUpgrade import ShapeUpgrade_UnifySameDomain
 from OCP.TopAbs import TopAbs_SOLID
 from OCP.TopoDS import TopoDS_Face, TopoDS_Shape, TopoDS_Wire
 
-from tactcad.contour import Contour, Line, Point
+from tactcad.contour import Contour, Line, Point, circle
 from tactcad.parts.language.description import (
     Extrusion,
     Feature,
@@ -47,11 +47,15 @@ from tactcad.profiling import making
 from .measure import volume
 from .occt import TopTools_ListOfShape, as_face, as_wire, subshapes
 from .step import read_step_solid
+from .valid import is_clear_prism, is_valid
 
 # The kernel's volume agrees with the closed form within this share, or the build is refused.
 VOLUME_AGREES = 1e-6
 # Tools of cuts start this far outside the face (mm), so that no two faces coincide.
 OUTSIDE = 0.5
+# Holes through a plate above which they are openings of its outline, as a cut's time grows with their square;
+# chosen: more than any plate had whose files are kept.
+MANY = 100
 
 
 class SolidError(RuntimeError):
@@ -69,13 +73,18 @@ def build(part: Part) -> TopoDS_Shape:
 def _built(part: Part) -> TopoDS_Shape:
     if isinstance(part.body, ModelFile):
         return read_step_solid(part.body)
-    stock = _extruded(part.body) if isinstance(part.body, Extrusion) else _revolved(part.body)
-    tools = [tool for feature in part.features for tool in _tools(feature)]
+    body, features = part.body, part.features
+    if isinstance(body, Extrusion) and len(bores := _bores(body, features)) > MANY:
+        openings = (circle((h.at[0], h.at[1]), h.diameter) for h in bores)
+        body = replace(body, openings=(*body.openings, *openings))
+        features = tuple(f for f in features if f not in bores)
+    stock = _extruded(body) if isinstance(body, Extrusion) else _revolved(body)
+    tools = [tool for feature in features for tool in _tools(feature)]
     solids = subshapes(_cut(stock, tools) if tools else stock, TopAbs_SOLID)
     if len(solids) != 1:
         raise SolidError(f"{part.part_no}: the description makes {len(solids)} solids")
     (solid,) = solids
-    if not BRepCheck_Analyzer(solid).IsValid():
+    if not is_valid(solid, is_clear_prism(solid)):
         raise SolidError(f"{part.part_no}: the kernel calls the solid invalid")
     found = volume(solid)
     if abs(found - part.volume) > VOLUME_AGREES * part.volume:
@@ -83,6 +92,16 @@ def _built(part: Part) -> TopoDS_Shape:
             f"{part.part_no}: the solid has {found:.9g} mm3, its description {part.volume:.9g} mm3"
         )
     return solid
+
+
+def _bores(body: Extrusion, features: Sequence[Feature]) -> list[Hole]:
+    """The plain holes through a plate, from face to face."""
+    return [
+        f
+        for f in features
+        if isinstance(f, Hole) and f.through and not f.counterbore and abs(f.axis[2]) == 1.0
+        if isclose(f.depth, body.thickness)
+    ]
 
 
 def _cut(stock: TopoDS_Shape, tools: Sequence[TopoDS_Shape]) -> TopoDS_Shape:

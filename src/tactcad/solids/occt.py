@@ -32,13 +32,15 @@ __all__ = [
     "TopTools_ListOfShape",
     "as_edge",
     "as_face",
+    "as_shell",
     "as_vertex",
     "as_wire",
 ]
 
 # OCP 7.9 marks static functions by _s where OCP 8 does not.
-as_edge, as_face, as_vertex, as_wire = (
-    getattr(TopoDS, f"{kind}_s", None) or getattr(TopoDS, kind) for kind in ("Edge", "Face", "Vertex", "Wire")
+as_edge, as_face, as_shell, as_vertex, as_wire = (
+    getattr(TopoDS, f"{kind}_s", None) or getattr(TopoDS, kind)
+    for kind in ("Edge", "Face", "Shell", "Vertex", "Wire")
 )
 
 

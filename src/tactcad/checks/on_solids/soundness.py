@@ -13,24 +13,21 @@ import numpy as np
 import trimesh
 from OCP.BOPAlgo import BOPAlgo_ArgumentAnalyzer
 from OCP.BRep import BRep_Tool
-from OCP.BRepCheck import BRepCheck_Analyzer
 from OCP.BRepGProp import BRepGProp
 from OCP.GProp import GProp_GProps
-from OCP.ShapeAnalysis import ShapeAnalysis_ShapeTolerance
 from OCP.TopAbs import TopAbs_EDGE, TopAbs_FACE, TopAbs_ShapeEnum, TopAbs_SHELL, TopAbs_SOLID
 from OCP.TopoDS import TopoDS_Shape
 
 from tactcad.contour import LEAST_EDGE, is_sliver
-from tactcad.contour.inside import keep_clear
 from tactcad.parts.language.description import Part
 from tactcad.parts.language.finding import Finding
 from tactcad.profiling import making
 from tactcad.solids import CHORD_MM, USUAL, Meshing
 from tactcad.solids.measure import measure
 from tactcad.solids.occt import as_edge, subshapes
-from tactcad.solids.prism_edges import prism_edges
 from tactcad.solids.step import read_step, write_step
 from tactcad.solids.triangles import triangles
+from tactcad.solids.valid import is_clear_prism, is_valid
 
 from ..check import Check
 
@@ -39,8 +36,6 @@ VOLUME_AGREES = 1e-6
 # volume and area, and mm.
 STEP_AGREES, STEP_AGREES_MM = 1e-9, 1e-6
 LEAST_FACE = LEAST_EDGE**2  # mm2
-# Beyond the shape's own tolerances, between edges that the kernel need not compare; chosen: ten of its least.
-CLEAR_MM = 1e-6
 
 
 def check_brep(part: Part, shape: TopoDS_Shape) -> list[Finding]:
@@ -59,12 +54,13 @@ def check_brep(part: Part, shape: TopoDS_Shape) -> list[Finding]:
             f"{len(solids)} solids with {len(shells)} shells instead of one of each",
         )
         return findings
-    if not BRepCheck_Analyzer(shape).IsValid():
+    clear = is_clear_prism(shape)
+    if not is_valid(shape, clear):
         fail("brep-valid", 0, 1, "the kernel calls the solid invalid")
     if not BRep_Tool.IsClosed_s(shells[0]):
         fail("shell-closed", 0, 1, "the solid's shell is open")
     findings += [*_tiny(part, shape, TopAbs_EDGE), *_tiny(part, shape, TopAbs_FACE)]
-    if meets_itself(shape):
+    if not clear and meets_itself(shape):
         fail("self-intersection", 1, 0, "faces or edges of the solid pass through each other")
     volume = measure(shape)["volume"]
     if abs(volume - part.volume) > VOLUME_AGREES * part.volume:
@@ -87,7 +83,7 @@ def check_step(part: Part, shape: TopoDS_Shape) -> list[Finding]:
 
 def check_step_file(part: Part, shape: TopoDS_Shape, data: bytes) -> list[Finding]:
     """Findings on a STEP file of the part's shape. Raises ValueError if it cannot be read."""
-    read = read_step(data)
+    read = read_step(data, mended=False)
     findings = [replace(f, message=f"read back from STEP: {f.message}") for f in check_brep(part, read)]
     if any(f.check == "one-solid" for f in findings):
         return findings
@@ -133,14 +129,7 @@ def _size(sub: TopoDS_Shape, kind: TopAbs_ShapeEnum) -> tuple[float, tuple[float
 
 
 def meets_itself(shape: TopoDS_Shape) -> bool:
-    """Whether faces or edges of a valid solid pass through each other.
-
-    A prism does not if the edges of its plane area keep clear of each other, which a plane test shows in a
-    hundredth of the kernel's time for a foil of thousands of edges. The kernel decides all other cases.
-    """
-    edges = prism_edges(shape)
-    if edges and keep_clear(edges, CLEAR_MM + 2.0 * ShapeAnalysis_ShapeTolerance().Tolerance(shape, 1)):
-        return False
+    """Whether faces or edges of a valid solid pass through each other."""
     analyzer = BOPAlgo_ArgumentAnalyzer()
     analyzer.SetShape1(shape)
     analyzer.ArgumentTypeMode = False

@@ -100,9 +100,20 @@ HEADING = 80  # bytes, which readers skip (3D Systems' StereoLithography interfa
 def part_stl(part_no: str, shape: TopoDS_Shape, meshing: Meshing) -> bytes:
     """The file of a shape.
 
-    `part_no`: stands in the heading; `shape`: in mm; `meshing`: turn between facets, and the promised
-    relative error of the volume. Raises CheckFailure if the file read back is no closed surface, or its
-    volume is further off the solid's."""
+    Parameters
+    ----------
+    part_no
+        Stands in the heading.
+    shape
+        In mm.
+    meshing
+        Turn between facets, and the promised relative error of the volume.
+
+    Raises
+    ------
+    CheckFailure
+        If the file read back is no closed surface, or its volume is further off the solid's.
+    """
     import trimesh
     from trimesh.exchange.stl import export_stl
 
