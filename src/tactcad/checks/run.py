@@ -31,10 +31,26 @@ def run_checks(
 
     A part that cannot be built is a finding, and its scenes are then not checked for interference.
 
-    `design`: must keep its rules; `scene_names`: the scenes to check; `shop_file`: limits of the workshop;
-    `say`: receives (done, total, text) before each part and scene; `strict`: a rig that does not take the
-    array fails; otherwise it is flagged; `meshing`: of the parts, for the mesh check. Raises InputError if
-    the shop file cannot be used."""
+    Parameters
+    ----------
+    design
+        Must keep its rules.
+    scene_names
+        The scenes to check.
+    shop_file
+        Limits of the workshop.
+    say
+        Receives (done, total, text) before each part and scene.
+    strict
+        A rig that does not take the array fails; otherwise it is flagged.
+    meshing
+        Of the parts, for the mesh check.
+
+    Raises
+    ------
+    InputError
+        If the shop file cannot be used.
+    """
     scenes = [make_scene(design, name) for name in scene_names]
     report = Report(design.name, design.design.revision, size=overall_size(design))
     job = Job(design, scene_names, scenes, load_shop(shop_file), meshing, report.deflections)

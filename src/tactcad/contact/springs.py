@@ -12,9 +12,24 @@ def press(
 ) -> tuple[float, np.ndarray, np.ndarray]:
     """Elements pressed by a total load, each on a spring of its own.
 
-    `K`: N/mm; `back`: how far the face lies back from each pad, mm; `stop`: sink at which each element is
-    stopped, mm; inf without; `object_stiffness`: of each spring, N/mm: that of the object under one pad;
-    `load`: N. Returns mm; N and mm, [element]."""
+    Parameters
+    ----------
+    K : ndarray, [element]
+        N/mm.
+    back : ndarray, [element]
+        How far the face lies back from each pad, mm.
+    stop : ndarray, [element]
+        Sink at which each element is stopped, mm; inf without.
+    object_stiffness
+        Of each spring, N/mm: that of the object under one pad.
+    load
+        N.
+
+    Returns
+    -------
+    approach, force, sink
+        mm; N and mm, [element].
+    """
 
     def sinks(approach: float) -> np.ndarray:
         free = np.maximum(approach - back, 0.0) * object_stiffness / (K + object_stiffness)

@@ -122,11 +122,24 @@ def clamped(
 ) -> Clamped:
     """One element under 1 MPa.
 
-    `s`: one element (scalars); its body ends at the rest if the leaf is backed, else at its fixed end;
-    `rubber`: reach of the pressed stretch from the hinge's middle towards the pad, and towards the clamp, mm;
-    `width`: of the rubber across the element, mm; `grid_length`: of the gauge's grid, mm; `tongue`: flat
-    length of its tip, mm; None: the leaf is not backed. Raises CheckFailure if the leaf is too long and thin
-    for these elements, or the mesh does not reach the design."""
+    Parameters
+    ----------
+    s
+        One element (scalars); its body ends at the rest if the leaf is backed, else at its fixed end.
+    rubber
+        Reach of the pressed stretch from the hinge's middle towards the pad, and towards the clamp, mm.
+    width
+        Of the rubber across the element, mm.
+    grid_length
+        Of the gauge's grid, mm.
+    tongue
+        Flat length of its tip, mm; None: the leaf is not backed.
+
+    Raises
+    ------
+    CheckFailure
+        If the leaf is too long and thin for these elements, or the mesh does not reach the design.
+    """
     mesh = plane_mesh(reference_shape(s), DENSITY, whole=True, order=ORDER)
     space = PlaneSpace.of(mesh)
     E, nu, b = float(s.youngs_modulus), float(s.poisson), float(s.width)

@@ -50,9 +50,24 @@ def solve_plane(
 ) -> PlaneSolution:
     """Plane problem of an element: clamped at the body's end, parabolic shear of 1 N on the arm's end.
 
-    `shape`: of the element, mm; `E`, `nu`: Young's modulus, MPa, and Poisson's ratio; `width`: of the sheet,
-    mm; `density`, `order`, `whole`: of the mesh, as for `plane_mesh`; `plane_strain`: instead of plane
-    stress. Its compliance is that of the work-conjugate deflection."""
+    Parameters
+    ----------
+    shape
+        Of the element, mm.
+    E, nu
+        Young's modulus, MPa, and Poisson's ratio.
+    width
+        Of the sheet, mm.
+    density, order, whole
+        Of the mesh, as for `plane_mesh`.
+    plane_strain
+        Instead of plane stress.
+
+    Returns
+    -------
+    PlaneSolution
+        Its compliance is that of the work-conjugate deflection.
+    """
     with making("elements", f"plane, density {density}, order {order}"):
         mesh = plane_mesh(shape, density, whole, order)
         return solved(E, nu, width, mesh, PlaneSpace.of(mesh), plane_strain)
@@ -142,9 +157,20 @@ def solve_solid(
 ) -> SolidSolution:
     """Solid problem of an element: clamped at the body's end, shear of 1 N on the arm's end, parabolic in z.
 
-    `shape`: of the element, mm; `E`, `nu`: Young's modulus, MPa, and Poisson's ratio; `width`: of the sheet,
-    mm; `density`, `order`: of the plane's mesh, as for `plane_mesh`; `across`: density over the width, by
-    default that of the plane; `order_across`: of the elements over the width, by default that in the plane.
+    Parameters
+    ----------
+    shape
+        Of the element, mm.
+    E, nu
+        Young's modulus, MPa, and Poisson's ratio.
+    width
+        Of the sheet, mm.
+    density, order
+        Of the plane's mesh, as for `plane_mesh`.
+    across
+        Density over the width, by default that of the plane.
+    order_across
+        Of the elements over the width, by default that in the plane.
     """
     across = across or density
     with making("elements", f"solid, density {density} and {across} across, order {order}"):

@@ -104,10 +104,24 @@ def solve(
 ) -> ElementResult:
     """Stiffness, strains and stresses of one element by a finite-element rung.
 
-    `s`: one design (scalars); `rung`: "fem-plane" or "fem-solid"; `grid_length`: of the gauge's grid, mm;
-    `shape`: the shape cut from the element's contour; by default the reference shape; `mesh`: half the order
-    of fem-solid's finest elements in the plane. Raises CheckFailure if the design is impossible or the mesh
-    cannot follow it."""
+    Parameters
+    ----------
+    s
+        One design (scalars).
+    rung
+        "fem-plane" or "fem-solid".
+    grid_length
+        Of the gauge's grid, mm.
+    shape
+        The shape cut from the element's contour; by default the reference shape.
+    mesh
+        Half the order of fem-solid's finest elements in the plane.
+
+    Raises
+    ------
+    CheckFailure
+        If the design is impossible or the mesh cannot follow it.
+    """
     solution = converged(s, rung, shape, mesh)
     flat = readings(solution.plane, grid_length)
     read = solid_readings(solution.plane, solution.solids, grid_length) if solution.solids else flat

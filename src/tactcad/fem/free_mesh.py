@@ -213,10 +213,23 @@ def uncut_compliance(
 
     The deflection is the mean over the face (work-conjugate).
 
-    `outer`, `holes`: contours of the part, mm; `shape`: its hinge, meshed with elements of t/per_thickness
-    mm; `spacer`: x beyond which (away from the arm) the sheet is clamped between spacers, and the range of z,
-    mm; `pad`: x from, x to and z of the pad's face, mm; `E`, `nu`: Young's modulus, MPa, and Poisson's ratio;
-    `width`: of the sheet, mm; `per_thickness`: elements over the hinge's thickness."""
+    Parameters
+    ----------
+    outer, holes
+        Contours of the part, mm.
+    shape
+        Its hinge, meshed with elements of t/per_thickness mm.
+    spacer
+        x beyond which (away from the arm) the sheet is clamped between spacers, and the range of z, mm.
+    pad
+        x from, x to and z of the pad's face, mm.
+    E, nu
+        Young's modulus, MPa, and Poisson's ratio.
+    width
+        Of the sheet, mm.
+    per_thickness
+        Elements over the hinge's thickness.
+    """
     fillets = [f for b in (shape.arm, shape.body) for f in (b.low_fillet, b.high_fillet) if f]
     walls = sorted({f.wall for f in fillets})
     middle = (shape.low + shape.high) / 2.0

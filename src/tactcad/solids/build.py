@@ -65,7 +65,11 @@ class SolidError(RuntimeError):
 def build(part: Part) -> TopoDS_Shape:
     """The part's solid in its own frame, mm.
 
-    Raises SolidError: where the result is not one valid solid, or its volume is not the closed form's."""
+    Raises
+    ------
+    SolidError
+        Where the result is not one valid solid, or its volume is not the closed form's.
+    """
     with making("solid", part.part_no):
         return _built(part)
 
