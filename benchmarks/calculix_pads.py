@@ -79,7 +79,9 @@ class Scene:
         depth, fall = self.motion
         side = np.where(self.pads.x < -1e-9, -1.0, 1.0)[:, None]
         down = depth + fall * side * (self.contact.at[0] - self.pads.x[:, None]) / (LENGTH / 2.0)
-        return float(np.linalg.solve(self.contact.face, down.ravel()).reshape(down.shape)[-1].sum())
+        unit = np.eye(down.size).reshape(-1, *down.shape)
+        face = self.contact.face.moved(unit).reshape(down.size, -1)
+        return float(np.linalg.solve(face, down.ravel()).reshape(down.shape)[-1].sum())
 
     def by_calculix(self, halves: int, share: float = 1.0) -> float:
         """Force on the last pad at that share of its motion, N."""

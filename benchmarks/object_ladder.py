@@ -20,7 +20,7 @@ from tables import filled, lines
 
 from tactcad.contact import large_strain, springs
 from tactcad.contact.elastic_body import Body
-from tactcad.contact.press import Pads, PadsOnBody, Pressed, pad_stiffness
+from tactcad.contact.press import Face, Pads, PadsOnBody, Pressed, pad_stiffness
 from tactcad.design.files import write_whole
 
 BODIES = ((0.3, 6.0), (0.45, 3.0), (0.49, 1.0), (0.4999, 4.0))  # nu, thickness (mm)
@@ -91,7 +91,8 @@ class AgainstElements:
 
     def error(self, at: Scene) -> float:
         flat, right = (PadsOnBody(at.pads, self.body) for _ in range(2))
-        right.face = self.full[: len(flat.face), : len(flat.face)]
+        n = len(at.pads.x)
+        right.face = Face(self.full.blocks, self.full.place[:n, :n])
         a, b = (p.press(load=at.load, angle=at.angle, modulus=at.modulus) for p in (flat, right))
         return difference(a.force, b.force)
 

@@ -94,9 +94,16 @@ def array(K, x, y, lever=inf, height=0.0, stop=inf, **shape) -> Pads:
 ROW = array([2.0, 8.0, 4.0], [0.0, 4.0, 8.0], [0.0, 0.0, 1.0], lever=6.0)
 
 
+def dense(contact: PadsOnBody) -> np.ndarray:
+    """Compliance of the face, [patch, patch]."""
+    unit = np.eye(contact.at[0].size).reshape(-1, *contact.at.shape[1:])
+    return contact.face.moved(unit).reshape(len(unit), -1).T
+
+
 def test_reciprocity_superposition_and_scale():
     contact = PadsOnBody(ROW, Body(0.5, 0.49, 6.0))
-    assert contact.face == pytest.approx(contact.face.T, rel=1e-6)  # sixteen differences lose digits
+    whole = influence(contact.body, tuple(contact.at.reshape(4, -1)))  # each pair of patches by itself
+    assert dense(contact) == pytest.approx(whole, rel=1e-6)  # sixteen differences lose digits
     one, two = contact.press(load=1.0), contact.press(load=2.0)
     assert two.sink == pytest.approx(2 * one.sink, rel=1e-9)  # no pad lifts: linear
     by_way = contact.press(approach=one.approach)
@@ -130,7 +137,7 @@ def test_what_touches_presses_and_what_presses_touches(angle):
     contact = PadsOnBody(ROW, Body(0.8, 0.45, 8.0))
     pressed = contact.press(load=0.7, angle=angle)
     x, y, a, b, f = pressed.patches.reshape(5, -1)
-    surface = contact.face @ f
+    surface = dense(contact) @ f
     local = pressed.patches[:2] - np.array([ROW.x, ROW.y])[:, :, None]
     pad = (
         pressed.sink[:, None] + (pressed.slope[:, 0, None] * local[0]) + pressed.slope[:, 1, None] * local[1]
@@ -147,7 +154,7 @@ def test_what_touches_presses_and_what_presses_touches(angle):
     D = np.zeros((9, 9))
     for i in range(3):
         D[3 * i : 3 * i + 3, 3 * i : 3 * i + 3] = ROW.compliance[i]
-    upper = np.linalg.cholesky(contact.face + B @ D @ B.T).T
+    upper = np.linalg.cholesky(dense(contact) + B @ D @ B.T).T
     back = x * tan(radians(angle[0])) + y * tan(radians(angle[1]))
     other = nnls(upper, np.linalg.solve(upper.T, pressed.approach - back))[0]
     assert other == pytest.approx(f, abs=1e-9)

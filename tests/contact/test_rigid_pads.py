@@ -12,6 +12,7 @@ from tactcad.contact import rigid_pads
 from tactcad.contact.elastic_body import Body, influence
 from tactcad.contact.press import PATCHES, Pads, PadsOnBody, complementary, pad_stiffness, patches
 from tactcad.contact.rigid_pads import POWERS, ManyPresses, pad_law, press_many
+from tactcad.lab import pressed
 from tactcad.lab.pads import springs_of
 from tactcad.parts.rules import load
 
@@ -117,16 +118,21 @@ def row_of(number: int, pitch: float, stop: float) -> Pads:
 
 
 @pytest.mark.parametrize(
-    ("pitch", "angle", "stop", "off"), [(4.0, (1.0, 2.0), 0.1, 0.01), (3.2, (0, 0), inf, 0.025)]
+    ("number", "pitch", "angle", "stop", "off"),
+    [
+        (3, 4.0, (1.0, 2.0), 0.1, 0.01),
+        (3, 3.2, (0, 0), inf, 0.025),
+        (26, 3.03, (1.0, 0.3), inf, pressed.MANY_PADS),
+    ],
 )
-def test_many_pads_are_pressed_as_few(pitch, angle, stop, off):
+def test_many_pads_are_pressed_as_few(number, pitch, angle, stop, off):
     """By the law of whole pads against single patches: forces within what is stated of their mean."""
-    pads, body = row_of(3, pitch, stop), Body(0.7, 0.49, 6.0)
-    exact = PadsOnBody(pads, body).press(load=5.0, angle=angle)
-    many = press_many(pads, body, 5.0, angle)
+    pads, body, load = row_of(number, pitch, stop), Body(0.7, 0.49, 6.0), 5.0 * number / 3
+    exact = PadsOnBody(pads, body).press(load=load, angle=angle)
+    many = press_many(pads, body, load, angle)
     mean = exact.force[exact.force > 0].mean()
     assert many.force == pytest.approx(exact.force, abs=off * mean)
-    assert many.force.sum() == pytest.approx(5.0) and (many.stopped == exact.stopped).all()
+    assert many.force.sum() == pytest.approx(load) and (many.stopped == exact.stopped).all()
 
 
 def test_far_pads_bear_alike():

@@ -9,7 +9,7 @@ import pytest
 from tactcad.contour import Arc, Contour, Line, chain
 from tactcad.design.messages import CheckFailure
 from tactcad.fem.elements import solve_plane
-from tactcad.fem.shape import cut_element, outline, read, reference_contour, reference_shape
+from tactcad.fem.shape import cut_element, outline, read, reference_shape
 from tactcad.mechanics import ladder
 from tactcad.mechanics.section import REFERENCE
 from tactcad.parts.array.element import element
@@ -48,7 +48,7 @@ def moved(contour, dx, mirror=False):
 @pytest.mark.parametrize("mirror", [False, True])
 def test_reference_contour_is_read_back(name, mirror):
     s = SECTIONS[name]
-    contour = moved(reference_contour(s), 11.0, mirror)
+    contour = moved(outline(reference_shape(s)), 11.0, mirror)
     shape = read(contour, 11.0 + (-6.0 if mirror else 6.0))
     assert shape.hinge_thickness == pytest.approx(0.25, abs=1e-12)
     assert outline(shape).area == pytest.approx(contour.area, rel=1e-12)
@@ -154,7 +154,7 @@ def test_contour_with_a_lump_on_the_arm_is_refused():
 
 def test_notched_arm_is_refused_not_smoothed_over():
     s = REFERENCE.with_(two_sided=False)
-    pieces = list(reference_contour(s))
+    pieces = list(outline(reference_shape(s)))
     at = next(i for i, p in enumerate(pieces) if p.name == "arm-high")
     top = pieces[at]
     bump = [(5.0, 2.0), (5.0, 2.4), (4.0, 2.4), (4.0, 2.0)]

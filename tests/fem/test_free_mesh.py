@@ -12,7 +12,7 @@ from tactcad.fem.elements import fixed_unknowns, parabola
 from tactcad.fem.fem_ladder import converged_plane
 from tactcad.fem.free_mesh import Fine, triangle_mesh
 from tactcad.fem.mapped_mesh import plane_mesh
-from tactcad.fem.shape import reference_contour, reference_shape
+from tactcad.fem.shape import outline, reference_shape
 from tactcad.fem.space import line_load
 from tactcad.lab.array_estimate import compare_uncut
 from tactcad.mechanics.section import REFERENCE
@@ -32,7 +32,7 @@ def test_free_mesh_and_mapped_mesh_agree_on_the_reference_design(two):
     s = REFERENCE.with_(two_sided=two)
     shape = reference_shape(s)
     fine = tuple(Fine((x, (shape.low + shape.high) / 2), 0.06) for x in np.linspace(-0.375, 0.375, 9))
-    basis = Basis(triangle_mesh(reference_contour(s), (), fine, 0.6), ElementTriP2(), intorder=4)
+    basis = Basis(triangle_mesh(outline(reference_shape(s)), (), fine, 0.6), ElementTriP2(), intorder=4)
     mapped = plane_mesh(shape, 1, whole=True)
     A = elasticity.stiffness_matrix(basis, *elasticity.lame(69000.0, 0.33, plane_stress=True)) * 3.0
     f = np.zeros(A.shape[0])

@@ -183,6 +183,19 @@ def test_a_stream_is_its_grasps():
         assert many.modulus[i] == pytest.approx(alone.modulus[0], rel=1e-5)
 
 
+def test_a_fit_is_where_more_stages_lead(monkeypatch):
+    """What lifting changes is found by the pads' own places: these were up to 0.09 half-widths off."""
+    readings = [one_lab(0.087 * np.array([np.cos(t), np.sin(t)]), 0.5, 7)[0] for t in (0.7, 2.2, 3.8, 5.5)]
+    known, at = one_lab(seed=7)[1], layers(DESIGN, "6+-0.3", NU)[0]
+    signal = np.array([r.signal for r in readings])
+    few = fit(at, NUMBER[READ], labs.LOAD, signal, known)
+    monkeypatch.setattr(layer_fit, "STAGES", 12)
+    monkeypatch.setattr(layer_fit, "MOVED", 0.1)
+    many = fit(at, NUMBER[READ], labs.LOAD, signal, known)
+    half = (many.modulus[:, 2] - many.modulus[:, 1]) / 2
+    assert np.abs(few.modulus[:, 0] - many.modulus[:, 0]).max() < 0.03 * half.min()
+
+
 def test_layers_of_unknown_thickness_are_all_covered():
     """The true K_obj of the single pad on 6 mm is within the interval over all layers, and each one's is."""
     reading, known = one_lab()

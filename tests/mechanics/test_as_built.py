@@ -11,7 +11,7 @@ import pytest
 from variants import variant
 
 from tactcad.contour import Line
-from tactcad.fem.shape import reference_contour
+from tactcad.fem.shape import outline, reference_shape
 from tactcad.mechanics import ladder
 from tactcad.mechanics.as_built import (
     COMMON,
@@ -70,7 +70,7 @@ def test_a_layer_takes_its_thickness_of_every_cut_face(two_sided):
     """The contour's area falls by the layer times the length of its cut faces; the clamped and the loaded
     end stay."""
     s, layer = REFERENCE.with_(two_sided=two_sided), 1e-6
-    whole, left = reference_contour(s), reference_contour(without_layer(s, layer))
+    whole, left = outline(reference_shape(s)), outline(reference_shape(without_layer(s, layer)))
     ends = [min(p[0] for p in (e.start, e.end)) for e in whole if isinstance(e, Line)]
     low, high = min(ends), 6.0
     cut = sum(e.length for e in whole if not (e.start[0] == e.end[0] and e.start[0] in (low, high)))

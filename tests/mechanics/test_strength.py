@@ -49,13 +49,6 @@ def test_nominal_yield_forces_by_hand(name, nominal):
     assert np.all((reduced > 1 / 1.35) & (reduced < 1 / 1.15))  # the fillet's share
 
 
-def test_rated_force_is_the_least_of_asked_and_yield_over_one_and_a_half():
-    sheet = ALLOYS["7075-T6"]
-    at_yield = strength.yield_force(ARRAY, sheet)
-    np.testing.assert_allclose(strength.rated_force(ARRAY, sheet, 2.0, 1.5), np.minimum(2.0, at_yield / 1.5))
-    assert strength.rated_force(ARRAY, sheet, 0.01, 1.5).tolist() == [0.01] * 3
-
-
 def test_elastic_says_no_above_yield():
     sheet = ALLOYS["6061-T6"]
     at_yield = strength.yield_force(ARRAY, sheet)

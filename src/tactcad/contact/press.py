@@ -20,7 +20,6 @@ from math import inf, radians, tan
 
 import numpy as np
 from scipy.linalg.lapack import dpotrf, dpotrs  # thousands of calls: without checks a third quicker
-from scipy.optimize import nnls
 
 from tactcad.design.messages import InputError
 
@@ -29,6 +28,8 @@ from .elastic_body import Body, influence
 # A side of a pad: a round punch on a layer is 0.07 to 0.18 % soft by Hayes' equation (with 8: 0.3 to 0.8 %).
 PATCHES = 12
 GRADING = 2.0  # power toward the edges; 3 and 4 are as good on thick layers, and 1 to 16 % off on thin ones
+SOLVED = 1e-13  # relative, of displacements by the forces on patches
+PATIENCE = 10  # rounds in which as many patches are wrong as before
 THINNEST = 0.25  # of the root of a pad's area: thinner layers want more patches, 0.4 % at 0.17
 
 
@@ -91,6 +92,23 @@ def patches(length: float, width: float, disc: bool, number: int = PATCHES) -> n
     return np.array([x * length, y * width, a * length, b * width])
 
 
+class Face:
+    """Compliance of a body's face under equal pads, which depends on their distance only: `blocks`, [place,
+    patch, patch], and the place that pad i has from pad j, ~place where the block is turned round, [i, j]."""
+
+    def __init__(self, blocks: np.ndarray, place: np.ndarray) -> None:
+        self.blocks, self.place = blocks, place
+        self.pairs = [np.nonzero(place == k) for k in range(-len(blocks), len(blocks))]
+
+    def moved(self, f: np.ndarray) -> np.ndarray:
+        """Displacements by forces, both [..., pad, patch]."""
+        out, blocks = np.zeros_like(f), (*self.blocks[::-1], *self.blocks.swapaxes(1, 2))
+        for (i, j), block in zip(self.pairs, blocks):
+            if len(i):
+                out[..., i, :] += f[..., j, :] @ block
+        return out
+
+
 class PadsOnBody:
     """The pads on one body, set up once: then `press` as often as wanted.
 
@@ -109,13 +127,20 @@ class PadsOnBody:
         self.at = np.empty((4, n, m))
         self.at[0], self.at[1] = pads.x[:, None] + one[0], pads.y[:, None] + one[1]
         self.at[2:] = one[2:, None, :]
-        # pads are equal, so a block of the face's compliance depends on their distance only
         apart = np.stack([pads.x[:, None] - pads.x, pads.y[:, None] - pads.y], axis=-1).reshape(-1, 2)
-        places, which = np.unique(np.round(apart, 9), axis=0, return_inverse=True)
-        blocks = np.array([block(dx, dy) for dx, dy in places])
-        self.face = blocks[which.ravel()].reshape(n, n, m, m).swapaxes(1, 2).reshape(n * m, n * m)
-        if rung == "fem-object":
-            self.face = (self.face + self.face.T) / 2  # elements that differ from pad to pad
+        apart = np.round(apart, 9)
+        turned = (apart[:, 0] < 0) | (apart[:, 0] == 0) & (apart[:, 1] < 0)
+        places, which = np.unique(np.where(turned[:, None], -apart, apart), axis=0, return_inverse=True)
+        # elements differ from pad to pad, and sixteen differences of a rectangle lose digits
+        blocks = np.array(
+            [
+                (block(dx, dy) + block(-dx, -dy).T) / 2
+                if rung == "fem-object" or not (dx or dy)
+                else block(dx, dy)
+                for dx, dy in places
+            ]
+        )
+        self.face = Face(blocks, np.where(turned, ~which.ravel(), which.ravel()).reshape(n, n))
         # sink and slopes to displacement of a patch, [3, patch]
         self.modes = np.stack([np.ones(m), one[0], one[1]])
 
@@ -182,13 +207,34 @@ class PadsOnBody:
         lever = D[:, :, 0] / D[:, :1, 0]  # how a pad moves where its middle sinks by 1
         fixed = np.where(stopped, self.pads.stop, 0.0)[:, None] * lever
         D[stopped] -= lever[stopped][:, :, None] * D[stopped][:, :1, :]
-        M = self.face * soft
-        for i in range(n):
-            block = slice(i * m, (i + 1) * m)
-            # the unknown is the force on a linear body; the pad bears `hard` times as much
-            M[block, block] += hard[i] * self.modes.T @ D[i] @ self.modes
-        gap = (back + np.where(stopped[:, None], fixed @ self.modes, 0.0)).ravel()
-        f, at = complementary(M, gap, load, approach, np.repeat(hard, m))
+        springs = hard[:, None, None] * D
+        # the unknown is the force on a linear body; the pad bears `hard` times as much
+        own = soft * self.face.blocks[self.face.place[0, 0]] + self.modes.T @ springs @ self.modes
+        gap = back + np.where(stopped[:, None], fixed @ self.modes, 0.0)
+        right = np.stack([np.ones((n, m)), gap])
+        close = SOLVED * np.abs(right).max((1, 2), keepdims=True)
+        last = [np.zeros((n, m), bool), np.broadcast_to(np.eye(m), own.shape).copy(), 0.0 * right]
+
+        def moved(f: np.ndarray) -> np.ndarray:
+            turned = np.einsum("nij,...nj->...ni", springs, f @ self.modes.T)
+            return soft * self.face.moved(f) + turned @ self.modes
+
+        def solve(active: np.ndarray) -> np.ndarray:
+            """By conjugate gradients: each pad alone is solved, its neighbours follow."""
+            on = active.reshape(n, m)
+            was, inverse, f = last
+            other = (on != was).any(1)
+            inverse[other] = np.linalg.inv(
+                np.where(on[other, :, None] & on[other, None, :], own[other], np.eye(m))
+            )
+            eased = lambda left: (inverse @ left[..., None])[..., 0]  # noqa: E731
+            f = _conjugate(lambda f: moved(f) * on, eased, right * on, f * on, close)
+            last[:] = on, inverse, f
+            return f.reshape(2, -1)
+
+        every, share = np.ones(n * m, bool), np.repeat(hard, m)
+        over = lambda f: moved(f.reshape(n, m)).ravel()  # noqa: E731
+        f, at = _exchange(solve, over, gap.ravel(), load, approach, share, every)
         f = hard[:, None] * f.reshape(n, m)
         generalised = f @ self.modes.T  # force and moments of each pad
         motion = np.einsum("nij,nj->ni", D, generalised) + fixed
@@ -217,48 +263,76 @@ def complementary(
 ) -> tuple[np.ndarray, float]:
     """f >= 0 with M f + gap - approach >= 0 and one of them zero; the approach where the load, the sum of
     share f, is given. `first`: the patches assumed in contact at the start; by default all.
-
-    Patches in tension leave, patches that overlap come back, until neither is left; should that go in
-    circles, by non-negative least squares.
     """
     n = len(gap)
+
+    def solve(active: np.ndarray) -> np.ndarray:
+        f, rows = np.zeros((2, n)), np.flatnonzero(active)
+        if len(rows):
+            factor, failed = dpotrf(M.take(rows, 0).take(rows, 1), lower=1, clean=0)
+            if failed:
+                raise np.linalg.LinAlgError(f"influence of patches is not positive definite ({failed})")
+            f[:, rows] = dpotrs(factor, np.column_stack([np.ones(len(rows)), gap[rows]]), lower=1)[0].T
+        return f
+
     active = np.ones(n, bool) if first is None or not first.any() else first
-    seen = set()
-    while (key := active.tobytes()) not in seen and active.any():
-        seen.add(key)
-        rows = np.flatnonzero(active)
-        factor, failed = dpotrf(M.take(rows, 0).take(rows, 1), lower=1, clean=0)
-        if failed:
-            raise np.linalg.LinAlgError(f"influence of patches is not positive definite ({failed})")
-        both, _ = dpotrs(factor, np.column_stack([np.ones(len(rows)), gap[rows]]), lower=1)
-        at = (load + share[rows] @ both[:, 1]) / (share[rows] @ both[:, 0]) if approach is None else approach
-        f = np.zeros(n)
-        f[rows] = at * both[:, 0] - both[:, 1]
-        over = M[:, rows] @ f[rows] + gap - at  # gap that is left
-        wrong = 1e-12 * max(abs(at), 1e-300)
-        if (f[rows] >= 0).all() and (over[~active] >= -wrong).all():
-            return f, float(at)
-        active = np.where(active, f > 0, over < 0)
-    return _by_least_squares(M, gap, load, approach, share)
+    return _exchange(solve, lambda f: M @ f, gap, load, approach, share, active)
 
 
-def _by_least_squares(
-    M: np.ndarray, gap: np.ndarray, load: float | None, approach: float | None, share: np.ndarray
+def _exchange(
+    solve: Callable[[np.ndarray], np.ndarray],
+    moved: Callable[[np.ndarray], np.ndarray],
+    gap: np.ndarray,
+    load: float | None,
+    approach: float | None,
+    share: np.ndarray,
+    active: np.ndarray,
 ) -> tuple[np.ndarray, float]:
-    upper = np.linalg.cholesky(M).T
+    """As `complementary`; `solve` gives the forces on active patches for a displacement of 1 and for the gap.
 
-    def forces(at: float) -> np.ndarray:
-        return nnls(upper, np.linalg.solve(upper.T, at - gap))[0]
+    Patches in tension leave, patches that overlap come back, until neither is left. Should their number stay,
+    one at a time, which ends for every positive definite matrix (Murty 1974).
+    """
+    fewest, patience = len(gap) + 1, PATIENCE
+    while True:
+        both = solve(active)
+        at = (load + share @ both[1]) / (share @ both[0]) if approach is None else approach
+        f = at * both[0] - both[1]
+        wrong = np.where(active, f < 0, moved(f) + gap - at < -1e-12 * max(abs(at), 1e-300))
+        if not (count := int(wrong.sum())):
+            return f, float(at)
+        if count < fewest:
+            fewest, patience = count, PATIENCE
+        elif patience:
+            patience -= 1
+        else:
+            wrong[: np.flatnonzero(wrong)[-1]] = False
+        active = active ^ wrong
 
-    if approach is not None:
-        return forces(approach), approach
-    low, high = float(gap.min()), float(gap.min()) + 1.0
-    while share @ forces(high) < load:
-        high = gap.min() + 2 * (high - gap.min())
-    for _ in range(60):
-        middle = (low + high) / 2
-        low, high = (middle, high) if share @ forces(middle) < load else (low, middle)
-    return forces(high), high
+
+def _conjugate(
+    moved: Callable[[np.ndarray], np.ndarray],
+    eased: Callable[[np.ndarray], np.ndarray],
+    right: np.ndarray,
+    x: np.ndarray,
+    close: np.ndarray,
+) -> np.ndarray:
+    """Solves moved(x) = right for several right sides, [side, ...], from x, until what is left is as small as
+    `close`; `eased` is a rough inverse."""
+    inner = lambda a, b: np.einsum("sij,sij->s", a, b)[:, None, None]  # noqa: E731
+    left = right - moved(x)
+    way = eased(left)
+    energy = inner(left, way)
+    for _ in range(right[0].size):
+        if not (np.abs(left) > close).any():
+            break
+        back = moved(way)
+        step = energy / np.maximum(inner(way, back), 1e-300)
+        x, left = x + step * way, left - step * back
+        now = eased(left)
+        energy, before = inner(left, now), np.maximum(energy, 1e-300)
+        way = now + energy / before * way
+    return x
 
 
 def _block_of_layer(pads: Pads, body: Body, one: np.ndarray) -> Callable[[float, float], np.ndarray]:

@@ -131,6 +131,7 @@ def pad_law(poisson: float, thickness: float, base: str, length: float, width: f
     value = np.zeros((3, KNOTS, KNOTS))
     basis = _powers(one[0], one[1])
     felt = np.zeros((KNOTS, KNOTS, len(basis), 6))
+    by_contact: dict[bytes, np.ndarray] = {}  # neighbouring knots touch with the same patches
     for i, x in enumerate(t):
         f = np.ones(one.shape[1])
         for j, y in enumerate(t[: KNOTS - i]):
@@ -141,15 +142,9 @@ def pad_law(poisson: float, thickness: float, base: str, length: float, width: f
                 felt[i, j] = felt[i, j - 1] if j else felt[i - 1, j]
                 continue
             touching = np.flatnonzero(f)
-            seen = np.concatenate([modes, basis])[:, touching]
-            grip = seen @ np.linalg.solve(M.take(touching, 0).take(touching, 1), seen.T)
-            rigid, way = np.linalg.eigh(grip[:3, :3])
-            held = rigid > POINTS * rigid[-1]
-            way = way[:, held]
-            inverse = (way / rigid[held]) @ way.T
-            felt[i, j, :, :3] = grip[3:, :3] @ inverse / (1.0, length, width)
-            relief = grip[3:, 3:] - grip[3:, :3] @ inverse @ grip[:3, 3:]
-            felt[i, j, SECOND, 3:] = relief[SECOND, SECOND]
+            if (key := touching.tobytes()) not in by_contact:
+                by_contact[key] = _felt(M, np.concatenate([modes, basis]), touching, length, width)
+            felt[i, j] = by_contact[key]
         felt[i, KNOTS - i :] = felt[i, KNOTS - i - 1]
     step = 1 / (KNOTS - 1)
     cells = np.empty((4, 4, 3, (KNOTS - 1) ** 2))
@@ -166,6 +161,21 @@ def pad_law(poisson: float, thickness: float, base: str, length: float, width: f
         corner = np.array(both).reshape(4, 4, KNOTS - 1, KNOTS - 1)
         cells[:, :, k] = np.einsum("ia,abxy,jb->ijxy", HERMITE, corner, HERMITE).reshape(4, 4, -1)
     return PadLaw(length, width, cells, felt)
+
+
+def _felt(M: np.ndarray, shapes: np.ndarray, touching: np.ndarray, length: float, width: float) -> np.ndarray:
+    """`felt` of a pad that touches with these patches, [power, 6]; `shapes`: three modes, then powers."""
+    found = np.zeros((len(shapes) - 3, 6))
+    seen = shapes[:, touching]
+    grip = seen @ np.linalg.solve(M.take(touching, 0).take(touching, 1), seen.T)
+    rigid, way = np.linalg.eigh(grip[:3, :3])
+    held = rigid > POINTS * rigid[-1]
+    way = way[:, held]
+    inverse = (way / rigid[held]) @ way.T
+    found[:, :3] = grip[3:, :3] @ inverse / (1.0, length, width)
+    relief = grip[3:, 3:] - grip[3:, :3] @ inverse @ grip[:3, 3:]
+    found[SECOND, 3:] = relief[SECOND, SECOND]
+    return found
 
 
 def _powers(x: np.ndarray, y: np.ndarray) -> np.ndarray:

@@ -135,11 +135,6 @@ def reference_shape(s: HingeSection) -> ElementShape:
     return ElementShape(low, high, arm, block(-half - float(s.body_length), -half, faces[1]))
 
 
-def reference_contour(s: HingeSection) -> Contour:
-    """The contour of `reference_shape`."""
-    return outline(reference_shape(s))
-
-
 def cut_element(contour: Contour, clamp_x: float, load_x: float) -> ElementShape:
     """The hinge shape of a part between clamp edge and load line.
 

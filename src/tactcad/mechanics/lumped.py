@@ -20,8 +20,6 @@ from statistics import NormalDist
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tactcad.mechanics import lumped
-
 from .section import Array
 
 
@@ -283,7 +281,7 @@ def coupling(
     """
     A = shares_between(x, y, length, width, thickness, poisson) / object_stiffness
     force = np.linalg.solve(np.diag(1 / K) + A, np.ones(len(K)))
-    alone = lumped.element_deflection(K, object_stiffness, 1.0)
+    alone = element_deflection(K, object_stiffness, 1.0)
     deflection = force / K
     ratio = (deflection / deflection[reference]) / (alone / alone[reference])
     return Coupling(float(force.sum() / (K * alone).sum()), ratio)

@@ -20,8 +20,7 @@ from math import pi, sqrt
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from tactcad.mechanics import gauge_signal, ladder, readout
-
+from . import gauge_signal, ladder
 from .gauge_signal import Gauge
 from .section import Array, HingeSection
 
@@ -191,17 +190,17 @@ def predict(
     CheckFailure
         If an element is out of the rung's range.
     """
-    gain = readout.volts_per_strain(gauge.factor, electronics)
+    gain = volts_per_strain(gauge.factor, electronics)
     per_mm = gauge_signal.foil_strain_per_deflection(s, gauge, rung)
     per_newton = gauge_signal.foil_strain_per_force(s, gauge, rung)
     strain = per_mm * np.asarray(deflection, dtype=float)
-    volts = readout.output(strain, gauge.factor, electronics)
+    volts = output(strain, gauge.factor, electronics)
     return Signal(
         gain * per_mm,
         gain * per_newton,
         strain,
-        volts - readout.output(0.0, gauge.factor, electronics),
-        readout.bridge_nonlinearity(gauge.factor * strain),
-        volts != readout.unlimited_output(strain, gauge.factor, electronics),
+        volts - output(0.0, gauge.factor, electronics),
+        bridge_nonlinearity(gauge.factor * strain),
+        volts != unlimited_output(strain, gauge.factor, electronics),
         2 * electronics.averaged_noise / (gain * per_newton),
     )

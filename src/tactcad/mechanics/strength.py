@@ -51,16 +51,6 @@ def yield_force_where_known(s: HingeSection, alloy: Alloy) -> Array:
     return force
 
 
-def yield_factor(s: HingeSection, alloy: Alloy, force: Array | float) -> Array:
-    """Yield strength over the fillet's stress under a force, N; below 1 the hinge does not stay elastic."""
-    return yield_force(s, alloy) / force
-
-
-def rated_force(s: HingeSection, alloy: Alloy, requested: Array | float, factor: float) -> Array:
-    """The lesser of the requested force and the force at yield over `factor`, N."""
-    return np.minimum(requested, yield_force(s, alloy) / factor)
-
-
 def elastic(s: HingeSection, alloy: Alloy, force: Array | float) -> np.ndarray:
     """Whether the hinge stays elastic under a force, N; if it does not, its computed strain is
     meaningless.

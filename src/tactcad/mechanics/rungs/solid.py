@@ -47,20 +47,11 @@ def _narrowness(s: HingeSection, k: plane.Constants) -> Array:
     return alone + both + k["ch"] * (t / s.arm_height) ** 3 * reach / s.width
 
 
-def width_factor(s: HingeSection, flat: plane.Parts, k: plane.Constants | None = None) -> Array:
-    """K3D/K2D: stiffness of the solid over that in plane stress."""
-    return flat.whole / curled(s, flat, k)
-
-
-def compliance(s: HingeSection) -> Array:
-    """Tip compliance of the solid, mm/N."""
-    return compliance_by(s)
-
-
-def compliance_by(s: HingeSection, data: dict | None = None) -> Array:
-    """The same by the constants in `data` (as data/ladder.json), else the shipped ones."""
+def compliance(s: HingeSection, data: dict | None = None) -> Array:
+    """Tip compliance of the solid, mm/N, by the constants in `data` (as data/ladder.json), else the shipped
+    ones."""
     flat = plane.parts(s, by_sides("root", s.two_sided, data))
     return curled(s, flat, by_sides("width", s.two_sided, data))
 
 
-RUNG = Rung("solid", 5, "design: the default", compliance_by, fitted=("plane", "width"))
+RUNG = Rung("solid", 5, "design: the default", compliance, fitted=("plane", "width"))
