@@ -50,7 +50,7 @@ NEED_SOLIDS = {
     "tactcad.checks.run",
     "tactcad.drawing.engine.picture",
     "tactcad.drawing.parts.solid_views",
-    "tactcad.export.part_formats.stl",  # loads trimesh when it runs
+    "tactcad.export.part_formats.usual",  # loads trimesh when it runs
     "tactcad.export.step_file",
     "tactcad.export.step_pmi",
     "tactcad.robot.robot_files",  # loads trimesh when it runs

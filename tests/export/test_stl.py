@@ -13,7 +13,7 @@ from trimesh.exchange.stl import export_stl
 from tactcad.cli.main import main
 from tactcad.costs.grades import ANGULAR, promised
 from tactcad.design.messages import CheckFailure
-from tactcad.export.part_formats.stl import check_stl, part_stl
+from tactcad.export.part_formats.usual import check_stl, part_stl
 from tactcad.scenes import make_scene
 from tactcad.solids import Meshing
 from tactcad.solids.build import build

@@ -234,12 +234,12 @@ def test_a_format_takes_its_module_beside_its_test(tree):
             "missing 6 required",
         ),
         (
-            "from dataclasses import replace\nfrom .stl import STL\n"
+            "from dataclasses import replace\nfrom .usual import STL\n"
             "F = replace(STL, kind='flat', path='flat.stl')\n",
             "format flat: 'flat.stl' has no folder, or no {part_no}",
         ),
         (
-            "import dataclasses as d\nfrom .stl import STL as S\nF = d.replace(S, place=7)\n",
+            "import dataclasses as d\nfrom .usual import STL as S\nF = d.replace(S, place=7)\n",
             "two formats are of one kind",
         ),
     ],

@@ -23,7 +23,7 @@ from tactcad.lab.array_estimate import estimate
 from tactcad.parts.array.hinge_section import thickness_elasticity
 from tactcad.parts.array.layout import Layout
 from tactcad.parts.rules import load
-from tactcad.review.causes import causes
+from tactcad.review.causes import Edit, causes
 from tactcad.review.consequences import KINDS, meaning
 from tactcad.review.effect import SensorEffect
 from tactcad.review.summary import MOST_LINES, effect_lines, lines, markdown
@@ -484,3 +484,10 @@ def test_what_the_sides_do_not_tell_cannot_be_failed_on(capsys):
     golden = str(ROOT / "exports" / "golden" / "soft-tissue.json")
     assert main(["diff", golden, golden, "--fail-on", "checks"]) == 2
     assert capsys.readouterr().err.startswith("tactcad: --fail-on: nothing to check on both sides")
+
+
+def test_rows_that_one_family_alone_has_are_told():
+    """As between an array of rows and one of cells, of which only the first states them."""
+    rows = [[4.0, 6.0]]
+    for old, new, said in ((None, rows, "(not stated) -> "), (rows, None, " -> (not stated)")):
+        assert said in str(Edit(("array", "row_arms"), old, new))

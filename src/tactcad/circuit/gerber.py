@@ -4,9 +4,9 @@ of places for the machine that fits the components. mm; y points up, from the lo
 
 from __future__ import annotations
 
-import csv
-import io
 from collections.abc import Iterable
+
+from tactcad.design.files import as_csv
 
 from .copper import LAYERS, PLANES, TOP, VIA, VIA_DRILL, BoardCopper, Point
 from .printed import INK, printed
@@ -116,12 +116,10 @@ def _drills(
 
 def places_csv(board: BoardCopper) -> bytes:
     """For machine-fitted components: designator, value, package, middle, turn. Unfitted ones are left out."""
-    text = io.StringIO(newline="")
-    writer = csv.writer(text)
-    writer.writerow(("designator", "value", "part_no", "package", "x_mm", "y_mm", "rotation", "side"))
+    rows = [("designator", "value", "part_no", "package", "x_mm", "y_mm", "rotation", "side")]
     for placed in board.placed:
         c, (x, y) = placed.component, placed.at
         if c.fitted and not placed.footprint.through:
             row = (c.designator, c.value, c.part_no, c.footprint, f"{x:.3f}", f"{board.height - y:.3f}")
-            writer.writerow((*row, placed.turn, "top"))
-    return text.getvalue().encode()
+            rows.append((*row, f"{placed.turn}", "top"))
+    return as_csv(rows)

@@ -5,11 +5,10 @@ supply in all.
 
 from __future__ import annotations
 
-import csv
-import io
 from collections import Counter
 from collections.abc import Iterator, Sequence
 
+from tactcad.design.files import as_csv
 from tactcad.parts.bought.electronic_parts import TO_CARD
 
 from .netlist import GROUND, Component, Netlist
@@ -32,12 +31,8 @@ Row = tuple[str, str, str, str, float, float]
 
 def harness_csv(circuit: Netlist, leads: Sequence[Lead]) -> bytes:
     """The table (RFC 4180, UTF-8)."""
-    text = io.StringIO(newline="")
-    writer = csv.writer(text)
-    writer.writerow(HEAD)
-    for *names, length, current in _rows(circuit, leads):
-        writer.writerow((*names, f"{length:g}", f"{current:.3g}"))
-    return text.getvalue().encode()
+    rows = ((*names, f"{length:g}", f"{current:.3g}") for *names, length, current in _rows(circuit, leads))
+    return as_csv([HEAD, *rows])
 
 
 def _rows(circuit: Netlist, leads: Sequence[Lead]) -> Iterator[Row]:

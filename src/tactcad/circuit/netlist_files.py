@@ -13,13 +13,12 @@ The list of leads runs from terminal to connector: colour, gauge of wire, cut le
 
 from __future__ import annotations
 
-import csv
-import io
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, fields
 from math import pi
 from uuid import NAMESPACE_OID, uuid5
 
+from tactcad.design.files import as_csv
 from tactcad.parts.array.layout import Layout
 from tactcad.parts.array.leads import boards, colours
 
@@ -290,14 +289,10 @@ def _connector_pin(layout: Layout, circuit: Netlist, c: Component) -> str:
 
 def wiring_csv(leads: Sequence[Lead]) -> bytes:
     """The list (RFC 4180, UTF-8)."""
-    text = io.StringIO(newline="")
-    writer = csv.writer(text)
     names = [f.name for f in fields(Lead)]
-    writer.writerow([LEADS.get(name, name) for name in names])
-    for lead in leads:
-        values = (getattr(lead, name) for name in names)
-        writer.writerow([f"{v:g}" if isinstance(v, float) else v for v in values])
-    return text.getvalue().encode()
+    values = ([getattr(lead, name) for name in names] for lead in leads)
+    rows = ([f"{v:g}" if isinstance(v, float) else v for v in row] for row in values)
+    return as_csv([[LEADS.get(name, name) for name in names], *rows])
 
 
 PINS = ("designator", "pin", "role", "net", "kind", "value", "part_no", "element", "board")
@@ -305,11 +300,9 @@ PINS = ("designator", "pin", "role", "net", "kind", "value", "part_no", "element
 
 def netlist_csv(netlist: Netlist) -> bytes:
     """The table (RFC 4180, UTF-8), components in the netlist's order; an open pin's net is blank."""
-    text = io.StringIO(newline="")
-    writer = csv.writer(text)
-    writer.writerow(PINS)
-    for c in netlist.components:
-        for pin in c.pins:
-            where = (c.element or "", c.board or "")
-            writer.writerow((c.designator, pin.number, pin.role, pin.net, c.kind, c.value, c.part_no, *where))
-    return text.getvalue().encode()
+    rows = (
+        (c.designator, p.number, p.role, p.net, c.kind, c.value, c.part_no, c.element or "", c.board or "")
+        for c in netlist.components
+        for p in c.pins
+    )
+    return as_csv([PINS, *rows])

@@ -110,14 +110,15 @@ def _print(layout: Layout, builds: Builds, lines: list[StackLine]) -> None:
 
     print(f"{layout.design.name}: {builds.count} arrays of each distribution, seed {builds.seed}")
     for which, share in builds.kept.items():
-        failed = builds.failures[which]
-        why = "; ".join(f"{n} miss: {requirement}" for requirement, n in sorted(failed.items(), key=_most))
+        failed = sorted(builds.failures[which].items(), key=lambda item: -item[1])
+        why = "; ".join(f"{n} miss: {requirement}" for requirement, n in failed)
         print(f"  {which:8} {100 * share:6.2f} % meet all requirements{f' ({why})' if why else ''}")
     low, high = builds.interval
     print(f"  yield    {100 * builds.share:6.2f} % ({100 * low:.4g} to {100 * high:.4g} %)")
     if builds.near is not None:
         print(f"  K        {100 * builds.near:6.2f} % have every K within {100 * NEAR:g} % of the drawn one")
-    named = {line.requirement.name: _with_unit(line) for line in lines}
+    told = (line.requirement for line in lines)
+    named = {r.name: f"{r.name} ({r.unit})" if r.unit else r.name for r in told}
     wide = max(map(len, named.values()), default=0)
     print(f"  {'requirement':{wide}} {'nominal':>9} {'worst case':>21} {'sigma':>8}  largest contributor")
     for line in lines:
@@ -150,12 +151,3 @@ def _reasons(layout: Layout, builds: Builds) -> Iterator[str]:
             drawn = not_reached(layout, (place,), hinge_section(layout, (place,)), ladder.DEFAULT_RUNG)
             near = f"rung {ladder.DEFAULT_RUNG} does not reach element {place.number} with its tolerances"
             yield f"E{place.number} has no stiffness: {drawn or near}"
-
-
-def _with_unit(line: StackLine) -> str:
-    r = line.requirement
-    return f"{r.name} ({r.unit})" if r.unit else r.name
-
-
-def _most(failed: tuple[str, int]) -> int:
-    return -failed[1]

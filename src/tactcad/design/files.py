@@ -6,12 +6,14 @@ hangs the command nor fills the memory. Writing: the whole file or nothing.
 
 from __future__ import annotations
 
+import csv
 import errno
+import io
 import json
 import os
 import stat
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
 from itertools import islice
 from math import isfinite
@@ -343,3 +345,10 @@ def refusal(where: str, error: OSError) -> InputError | CheckFailure:
     if error.errno in NO_ROOM:
         return CheckFailure(f"{where}: cannot be written: {reason}; nothing was changed")
     return InputError(where, f"cannot be written: {reason}; nothing was changed", legal="a writable place")
+
+
+def as_csv(rows: Iterable[Iterable[object]], end: str = "\r\n") -> bytes:
+    """Rows, the first of which names the columns, as CSV (RFC 4180, UTF-8)."""
+    text = io.StringIO(newline="")
+    csv.writer(text, lineterminator=end).writerows(rows)
+    return text.getvalue().encode()

@@ -25,6 +25,7 @@ from tactcad.circuit.netlist import Component, Netlist
 from tactcad.circuit.netlist_files import deck_bytes, kicad_bytes, netlist_csv, wiring_csv
 from tactcad.contour import circle, rectangle
 from tactcad.design.family import family_of
+from tactcad.design.files import as_csv
 from tactcad.design.messages import CheckFailure
 from tactcad.design.tree import CommonTables
 from tactcad.parts.bought.electronic_parts import Supply
@@ -205,17 +206,14 @@ def bill_csv(board: BoardCopper, supplies: Iterable[Supply]) -> bytes:
     for c in board.netlist.components:
         lines.setdefault((not c.fitted, c.part_no, c.value, c.footprint), []).append(c)
     bought = {s.part_no: s for s in supplies}
-    text = io.StringIO(newline="")
-    writer = csv.writer(text)
-    writer.writerow(BILL)
+    rows: list[tuple[object, ...]] = [BILL]
     for (off, part_no, value, package), components in sorted(lines.items()):
         names = " ".join(c.designator for c in components)
         line = bought.get(part_no)
         order = (line.manufacturer, line.mpn, line.designation) if line else ("", "", "")
         read = "true" if line and line.verified else "unread"
-        row = (part_no, names, len(components), "no" if off else "yes", value, package, *order, read)
-        writer.writerow(row)
-    return text.getvalue().encode()
+        rows.append((part_no, names, len(components), "no" if off else "yes", value, package, *order, read))
+    return as_csv(rows)
 
 
 def outline_dxf(board: BoardCopper) -> bytes:

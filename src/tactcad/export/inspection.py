@@ -9,12 +9,11 @@ back.
 
 from __future__ import annotations
 
-import csv
-import io
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from tactcad.design.family import family_of
+from tactcad.design.files import as_csv
 from tactcad.design.tree import CommonTables
 from tactcad.parts.language.description import Part
 from tactcad.parts.language.limits import FACES, Characteristic, Geometric
@@ -37,13 +36,7 @@ def inspection_bytes(layout: Any) -> bytes:
             name = (place.designator, part_no, m.name, "yes" if m.key else "")
             limits = (round(v, 6) for v in (m.nominal, m.lower, m.upper))  # 0.25 - 0.005 is a binary fraction
             rows.append((*head, *name, *limits, UNIT, "", "", m.where, m.how))
-    return _csv(rows)
-
-
-def _csv(rows: Iterable[Sequence[object]]) -> bytes:
-    text = io.StringIO(newline="")
-    csv.writer(text).writerows(rows)
-    return text.getvalue().encode()
+    return as_csv(rows)
 
 
 PART_COLUMNS = ("design", "revision", "part_no", "characteristic", *_LIMITS, "requirement", "share")
@@ -74,7 +67,7 @@ def part_inspection_bytes(
             limits = _limits(known[part_no], name)
             head = (identity.name, identity.of_part(part_no).revision, part_no, name)
             rows.append((*head, *limits[:3], UNIT, "", "", *limits[3:], requirement, f"{share:.3f}"))
-    return _csv(rows)
+    return as_csv(rows)
 
 
 def ranked(

@@ -72,7 +72,8 @@ def canonical(text: str, header: Header, schema: str = AP214) -> str:
         take(root)
     for root in sorted(styles, key=lambda n: (digests.get(n, ""), _leads_to(n, references, numbers))):
         take(root)
-    lines = [f"#{numbers[n]}={_renumbered(bodies[n], numbers)};" for n in order]
+    new = lambda m: f"#{numbers[int(m[1])]}" if m[1] else m[0]  # noqa: E731
+    lines = [f"#{numbers[n]}={_REFERENCE.sub(new, bodies[n])};" for n in order]
     return "\n".join([_header(header, schema), "DATA;", *lines, "ENDSEC;", "END-ISO-10303-21;", ""])
 
 
@@ -90,10 +91,6 @@ def _plain(body: str) -> str:
     body = _INSTANCE.sub(r"NEXT_ASSEMBLY_USAGE_OCCURRENCE('\1','\1'", body)
     body = _MEASURE.sub(r"MEASURE_WITH_UNIT(LENGTH_MEASURE(\1),", body)
     return _PLACEMENT.sub("PRODUCT_DEFINITION_SHAPE('','',", body)
-
-
-def _renumbered(body: str, numbers: dict[int, int]) -> str:
-    return _REFERENCE.sub(lambda m: f"#{numbers[int(m.group(1))]}" if m.group(1) else m.group(0), body)
 
 
 def _digests(

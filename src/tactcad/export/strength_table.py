@@ -3,11 +3,9 @@ load under the overload force."""
 
 from __future__ import annotations
 
-import csv
-import io
-
 import numpy as np
 
+from tactcad.design.files import as_csv
 from tactcad.design.tree import Design
 from tactcad.mechanics import ladder, strength
 from tactcad.parts.array.element import element_number
@@ -83,8 +81,4 @@ def strength_bytes(layout: Layout) -> bytes:
         }
         row |= {name: "" if state.refused else f"{float(value):.4g}" for name, value in figures.items()}
         rows.append(row | {"not_known_because": state.refused})
-    text = io.StringIO(newline="")
-    writer = csv.DictWriter(text, list(rows[0]))
-    writer.writeheader()
-    writer.writerows(rows)
-    return text.getvalue().encode()
+    return as_csv([rows[0], *(row.values() for row in rows)])

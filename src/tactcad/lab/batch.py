@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -13,7 +11,7 @@ import numpy as np
 
 from tactcad.design import csv_table
 from tactcad.design.csv_table import Field, Table, numeric, require_columns
-from tactcad.design.files import write_whole
+from tactcad.design.files import as_csv, write_whole
 from tactcad.design.messages import CheckFailure, InputError, one_of
 from tactcad.mechanics import ladder
 from tactcad.mechanics.accuracy import choose_each, expected_error_of
@@ -59,7 +57,7 @@ def estimate_file(
         stiffness, reasons = estimate_rows(section, rung)
         errors = np.broadcast_to(expected_error_of(section, rung), section.shape).ravel().tolist()
         added = [(k, rung, why, error) for k, why, error in zip(stiffness, reasons, errors)]
-        table = _table_bytes([*header, *ADDED], [row + _answer(*a) for row, a in zip(rows, added)])
+        table = as_csv([[*header, *ADDED], *(row + _answer(*a) for row, a in zip(rows, added))], "\n")
     else:
         if clash := set(ADDED_BY_ACCURACY) & set(header):
             column = header.index(clash.pop())
@@ -72,7 +70,7 @@ def estimate_file(
             [*row, *_answer(a.stiffness, a.model, a.reason, a.expected_error), str(a.mesh or "")]
             for row, a in zip(rows, answers)
         ]
-        table = _table_bytes([*header, *ADDED, *ADDED_BY_ACCURACY], whole)
+        table = as_csv([[*header, *ADDED, *ADDED_BY_ACCURACY], *whole], "\n")
     write_whole(target, table)
     return sum(not r for r in reasons), len(rows)
 
@@ -162,11 +160,3 @@ def _answer(stiffness: float, model: str, reason: str, error: float) -> list[str
         reason,
         "" if reason or math.isnan(error) else repr(error),
     ]
-
-
-def _table_bytes(header: list[str], rows: list[list[str]]) -> bytes:
-    text = io.StringIO(newline="")
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(header)
-    writer.writerows(rows)
-    return text.getvalue().encode()

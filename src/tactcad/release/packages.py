@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from math import ceil, floor
 
 from tactcad.checks.shop import Feed, Shop
+from tactcad.design.files import as_csv
 from tactcad.design.tree import CommonTables
 from tactcad.drawing.engine.boxes import part_box
 from tactcad.export import inspection
@@ -263,11 +264,8 @@ PACKAGES = (
 
 def table_bytes(rows: Sequence[Mapping[str, object]]) -> bytes:
     """The rows as CSV (RFC 4180, UTF-8), their columns in order of first appearance."""
-    text = io.StringIO(newline="")
-    writer = csv.DictWriter(text, list(dict.fromkeys(name for row in rows for name in row)), restval="")
-    writer.writeheader()
-    writer.writerows(rows)
-    return text.getvalue().encode()
+    names = list(dict.fromkeys(name for row in rows for name in row))
+    return as_csv([names, *([row.get(name, "") for name in names] for row in rows)])
 
 
 def table_rows(data: bytes) -> list[dict[str, str]]:

@@ -8,7 +8,6 @@ import dataclasses
 import html
 import json
 import re
-from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from importlib.resources import files
 from math import isfinite
@@ -66,14 +65,6 @@ class ReportTable:
     columns: tuple[tuple[str, str], ...]
     rows: tuple[tuple, ...]
     note: str = ""
-
-
-def tabulated(
-    title: str, items: Iterable[T], *columns: tuple[str, str, Callable[[T], Cell]], note: str = ""
-) -> ReportTable:
-    """A row for each item; a column is its name, its unit, and what an item's cell holds."""
-    rows = tuple(tuple(cell(item) for _, _, cell in columns) for item in items)
-    return ReportTable(title, tuple((name, unit) for name, unit, _ in columns), rows, note)
 
 
 @dataclass(frozen=True)

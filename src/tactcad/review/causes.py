@@ -37,7 +37,7 @@ class Edit:
         name = ".".join(self.path)
         if len(self.path) == 1:
             return f"[{name}] {'added' if self.old is ABSENT else 'removed'}"
-        if self.path == ("array", "row_arms"):
+        if self.path == ("array", "row_arms") and self.old is not ABSENT and self.new is not ABSENT:
             return f"{name}: {_arms(self.old, self.new)}"
         return f"{name}: {_stated(self.old)} -> {_stated(self.new)}"
 

@@ -16,7 +16,7 @@ from tactcad.design.messages import CheckFailure, InputError
 from tactcad.design.tree import CommonTables
 from tactcad.export.board_files import board_record
 from tactcad.export.difference import Change
-from tactcad.export.part_letters import lines_since
+from tactcad.export.golden_file import lines_since
 from tactcad.export.sides import Side, comparable
 from tactcad.parts.rules import refuse_broken
 

@@ -21,7 +21,7 @@ from tactcad.design.messages import CheckFailure
 from tactcad.design.tree import CommonTables, Design
 from tactcad.export.difference import SHARE, differences
 from tactcad.export.geometry import Record, all_scenes, geometry
-from tactcad.export.part_letters import with_letters
+from tactcad.export.golden_file import with_letters
 from tactcad.mechanics import readout
 from tactcad.mechanics.ladder import DEFAULT_RUNG
 from tactcad.parts.array.hinge_section import design_gauge, design_readout, hinge_section

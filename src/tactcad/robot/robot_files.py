@@ -105,7 +105,7 @@ def stl(part: Part, shapes: Shapes) -> bytes:
     import trimesh
     from trimesh.exchange.stl import export_stl
 
-    from tactcad.export.part_formats.stl import HEADING, check_stl
+    from tactcad.export.part_formats.usual import HEADING, check_stl
     from tactcad.solids.triangles import triangles
 
     points, faces = triangles(shapes.of(part), CHORD_MM, USUAL.angular)

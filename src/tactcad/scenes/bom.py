@@ -14,6 +14,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, fields
 from typing import Any
 
+from tactcad.design.files import as_csv
 from tactcad.design.text_values import as_number, as_whole
 from tactcad.design.tree import Identity
 from tactcad.parts.bought.electronic_parts import Supply
@@ -128,12 +129,8 @@ def _filled(*records: object, **told: object) -> BomRow:
 def csv_bytes(rows: Sequence[BomRow]) -> bytes:
     """The rows as CSV (RFC 4180, UTF-8), numbers by repr, truth values as true and false; what nobody read in
     a maker's own sheet as unread."""
-    text = io.StringIO(newline="")
-    writer = csv.writer(text)
-    writer.writerow(COLUMNS)
     told = (asdict(row) | {"source_verified": read_in_sheet(row)} for row in rows)
-    writer.writerows([_cell(value) for value in row.values()] for row in told)
-    return text.getvalue().encode()
+    return as_csv([COLUMNS, *(map(_cell, row.values()) for row in told)])
 
 
 def read_in_sheet(row: BomRow) -> bool | str:

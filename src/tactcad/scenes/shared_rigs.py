@@ -277,12 +277,7 @@ def place_force_axis(
     for sx, sy in CORNERS:
         at = (sx * GAUGE_SCREW_X, front + PLATE - UNDER, z + sy * GAUGE_SCREW_Z)
         b.screw(THREAD, LENGTH, at, (0, 1, 0), gauge_plate, plate)
-    b.step(
-        "Gauge on its axis",
-        (0, -150, AXIS_LIFT),
-        "Screw the gauge plate on the axis plate, beside the gauge. Zero the gauge only after its cable "
-        "is strapped to the post.",
-    )
+    b.step("Gauge on its axis", (0, -150, AXIS_LIFT), said("Gauge on its axis"))
     tip_z = touch + height
     if roller:
         r = standard_parts.dowel_diameter(present(rig.design.calibration).roller) / 2

@@ -144,8 +144,7 @@ def scene(design: PlanarDesign, _pose: object = None) -> Scene:
     b.step(
         "Upper spacer",
         (0, 0, 26),
-        "Lay the array's upper spacer on the foil, dry, against the same pins: it holds the foil down, and "
-        "carries the guide.",
+        said("Upper spacer"),
         sets=(f"{upper} on {foil}: along z", f"{upper} against DP1 DP2 DP3: along x and y, turn about z"),
         leaves=(f"{upper}: away from the pins",),
     )
@@ -153,8 +152,7 @@ def scene(design: PlanarDesign, _pose: object = None) -> Scene:
     b.step(
         "Foot plates",
         (0, 0, 32),
-        "Wet every island thinly around its hole, keep the beams dry, and lay the foot plate of its kind on "
-        "it, hole over hole, edges along the island's.",
+        said("Foot plates"),
         by=TWEEZED,
         sets=("foot plates on their islands: along z, turn about x and y",),
         leaves=("foot plates: along x and y, until the posts are in; turn about z, by eye",),

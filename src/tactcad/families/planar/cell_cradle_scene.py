@@ -78,12 +78,7 @@ def _mounted(rig: CradleLayout) -> Builder:
     for x, y in cradle.clamp_screws(rig):
         at = (x, y, rig.cover_top + cradle.BAR)
         b.screw(cradle.CLAMP_SCREW, rig.clamp_screw, at, (0, 0, -1), bar, block)
-    b.step(
-        "Clamp",
-        (0, 0, 45),
-        "Lay heel and clamp down, hold the array against its pins and tighten both screws in turn. The heel "
-        f"is {cradle.HEEL_LOWER:g} mm lower than the array, so that the clamp presses on the cover's border.",
-    )
+    b.step("Clamp", (0, 0, 45), said("Clamp", cradle=cradle))
     return b
 
 
@@ -122,8 +117,7 @@ def _hung(b: Builder, rig: CradleLayout, along: Axis, cell: CellPlace) -> tuple[
     b.step(
         "Cap on a pad",
         (0, 0, 20) if along == "z" else (0, -20, 0),
-        f"Read the chip first, the pad bare. Then push the cap on the pad of {cell.designator}, down to its "
-        "floor, without tilting it; tweezers of plastic, for the magnets draw steel.",
+        said("Cap on a pad", cell=cell),
         by=TWEEZED,
         sets=(f"{cap} on the pad: along z; along x and y, turn about x and y by its bore",),
         leaves=(f"{cap}: turns about the post",),

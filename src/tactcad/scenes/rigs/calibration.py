@@ -126,8 +126,7 @@ def calibration(design: Design, pose: Pose = REST) -> Scene:
     b.step(
         "Calibrate",
         (0, 0, 0),
-        f"Above a pad, set x by the edge of the pad to {c.load_point:g} mm; {c.step * 1e3:g} um steps to "
-        f"{c.travel * 1e3:g} um. {_limits(design)}",
+        said("Calibrate", c=c, step=c.step * 1e3, travel=c.travel * 1e3, limits=_limits(design)),
         elements=True,
         order=[raised(b, down=True)],
         needs=(Need((contact, "E1"), "the roller presses its pads"),),

@@ -226,8 +226,7 @@ def _guide(b: Builder, rig: GuideLayout, post: str, latched: bool) -> str:
     b.step(
         "End stop",
         (0, -50, 110),
-        f"Press the end stop's pin into the riser, below the rail's place, {STOP_DEPTH:g} mm deep: it keeps "
-        "the carriage on its rail.",
+        said("End stop", stop_depth=STOP_DEPTH),
         bench=True,
         tools=(PRESS, f"a sleeve {STOP_LENGTH - STOP_DEPTH:g} mm long as stop"),
     )
@@ -453,14 +452,7 @@ def _place_carried(
     for x, y in carrier_pattern(rig.array):
         at = (x, y, rig.foot_bottom + lift + under_carrier_screw(rig.design))
         b.screw(design.clamp.mount_thread, carrier_screw_length(design), at, (0, 0, -1), foot, "CA1")
-    b.step(
-        "Array under the foot",
-        (0, -140, -35),
-        "Screw the finished array (its own guide, leads on their sockets by guide wiring) under the foot. "
-        "Leads leave along x, sockets unplugged.",
-        elements=True,
-        bench=True,
-    )
+    b.step("Array under the foot", (0, -140, -35), said("Array under the foot"), elements=True, bench=True)
     under = PLATFORM_UNDER_HEAD
     z = rig.platform_top + lift
     platform = b.place("PF", rigs.platform(rig), (0, 0, z - PLATFORM))

@@ -44,8 +44,7 @@ def sample_stiffness(design: Design, pose: Pose = REST) -> Scene:
     b.step(
         "Tip",
         (0, -130, AXIS_LIFT - 40),
-        "Screw the flat tip on the gauge's shaft by hand, its long side along y; the jam nut against it "
-        "holds it so.",
+        said("Tip"),
         order=[*tip, Move(("JN1",), STILL, (STILL,), JAM_SPANNER)],
         tools=(JAM_SPANNER,),
         sets=("TI1 to FG1: all, by JN1",),

@@ -79,8 +79,7 @@ def wiring(design: Design, pose: Pose = REST) -> Scene:
     b.step(
         "Board plates",
         (0, 0, 0),
-        "Lay a board plate on the bench for each board, at the side of the row that it reads, its edge "
-        f"with the lead clamp's two threads towards the array's place.{_in_order(layout)}",
+        said("Board plates", order=_in_order(layout)),
         sets=("board plates on the bench: along z, turn about x and y",),
         leaves=("board plates: along x and y, turn about z",),
     )
@@ -94,8 +93,7 @@ def wiring(design: Design, pose: Pose = REST) -> Scene:
     b.step(
         "Stand-offs",
         (0, 0, 30),
-        f"Turn four stand-offs into each plate until they lie on it, and a little further by a {FLATS:g} mm "
-        "spanner.",
+        said("Stand-offs", flats=FLATS),
         order=[Move((name,), (0.0, 0.0, APPROACH + STUD), (STILL,), SPANNER) for _, name, _ in screws],
         tools=(SPANNER,),
         sets=("stand-offs in their plates: all, by their studs",),
@@ -116,8 +114,7 @@ def wiring(design: Design, pose: Pose = REST) -> Scene:
     b.step(
         "Array on its back",
         (0, 0, 60),
-        "Lay the array on the bench on its carrier, pads up, row 1 to the right (+x), so that each row's "
-        f"leads come out towards its board. {uncalibrated}Nothing may lie on the pads.",
+        said("Array on its back", uncalibrated=uncalibrated),
         order=[Move(tuple(p.designator for p in whole.placements), (0.0, 0.0, LIFTED), (STILL,))],
         sets=("array on the bench: along z, turn about x and y",),
         leaves=("array: along x and y, turn about z, by the leads' slack",),
