@@ -14,7 +14,7 @@ NOTEBOOKS = sorted((ROOT / "docs" / "notebooks").glob("*.ipynb"), key=lambda pat
 SAID = {
     "family": ("exponent", ("{4.0: 2.", "8.0: 2.")),
     "own-part": ("collision", ("OWN1", "CA1")),
-    "readings": ("object", ("sample", "3.84 ")),
+    "readings": ("object", ("sample", "3.84")),
     "sweep": ("read", ("K of element 4: 7.", "standard deviation 2.9")),
     "target": ("estimate", ("K N/mm",)),
 }  # by notebook: the cell whose output holds these
