@@ -195,6 +195,26 @@ def test_an_opening_that_runs_the_wrong_way_is_seen_wire_by_wire():
 
 
 @pytest.mark.cad
+@pytest.mark.parametrize(
+    "openings, valid",
+    [
+        ((rectangle(20, 0, 23, 3),), False),  # beside the outline: the signed volume agrees
+        ((rectangle(-5, -5, 5, 5), rectangle(-1, -1, 1, 1)), False),
+        ((rectangle(-5, -5, 5, 5), rectangle(-4, -4, 4, 4), rectangle(-1, -1, 1, 1)), False),
+        ((rectangle(-5, -5, 5, 5), rectangle(6, -1, 8, 1), rectangle(-8, -1, -6, 1)), True),
+    ],
+)
+def test_openings_lie_side_by_side_in_the_outline(openings, valid):
+    from tactcad.checks.on_solids.soundness import check_brep
+    from tactcad.solids.valid import is_clear_prism, is_valid
+
+    shape = prism(SQUARE, *openings)
+    assert is_clear_prism(shape) == is_valid(shape, False) == valid
+    part = Part("P", "plate", "milled", Material("steel", 7850.0), Extrusion(SQUARE, 0.5, openings))
+    assert ("brep-valid" in [f.check for f in check_brep(part, shape)]) is not valid
+
+
+@pytest.mark.cad
 def test_many_holes_make_the_same_solid_as_few(monkeypatch):
     """Bored and as openings: the closed form, and each other's surface, box and places of holes."""
     from tactcad.checks.on_solids.soundness import check_brep, check_step

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import heapq
 from bisect import bisect_right
+from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from itertools import combinations, product
 from math import atan2, cos, dist, inf, pi, sin, sqrt, tau
@@ -130,6 +131,36 @@ def keep_clear(segments: Sequence[Segment], least: float) -> bool:
     """Whether pieces with a common end meet there only, at an angle, and all others are at least that far
     (mm) from each other."""
     return all(_clear(segments[i], segments[j], least) for i, j in _close_pairs(segments, least))
+
+
+def bound_one_area(segments: Sequence[Segment]) -> bool:
+    """Whether pieces that keep clear of each other are one outline with openings side by side in it."""
+    outer, *openings = sorted(_loops(segments), key=lambda c: c.area, reverse=True)
+    within = [(*c.box, c) for c in openings]
+    for opening in openings:
+        x, y = opening.segments[0].start
+        if side(outer, (x, y)) != 1:
+            return False
+        around = (c for x0, y0, x1, y1, c in within if x0 < x < x1 and y0 < y < y1 and c is not opening)
+        if any(side(other, (x, y)) == 1 for other in around):
+            return False
+    return True
+
+
+def _loops(segments: Sequence[Segment]) -> Iterator[Contour]:
+    """Pieces joined at common ends, whichever way they run."""
+    at = defaultdict(list)
+    for s in segments:
+        at[s.start].append(s)
+        at[s.end].append(s)
+    waiting = dict.fromkeys(segments)
+    while waiting:
+        loop = [waiting.popitem()[0]]
+        while loop[-1].end != loop[0].start:
+            s = next(s for s in at[loop[-1].end] if s in waiting)
+            del waiting[s]
+            loop.append(s if s.start == loop[-1].end else s.reversed())
+        yield Contour(tuple(loop))
 
 
 def _clear(a: Segment, b: Segment, least: float) -> bool:

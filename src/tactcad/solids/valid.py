@@ -1,8 +1,8 @@
 """Whether the kernel holds a solid valid, in time that grows with the solid.
 
 The kernel compares every two wires of a face, and does so four times in a check: a foil of 144 cells takes
-half a minute each time. Of a prism a plane test shows that no two edges meet; the kernel then looks at one
-wire at a time.
+half a minute each time. Of a prism a plane test shows that no two edges meet and that openings lie in the
+outline, side by side; the kernel then looks at one wire at a time.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from OCP.TopAbs import TopAbs_FACE, TopAbs_FORWARD, TopAbs_SHELL, TopAbs_WIRE
 from OCP.TopLoc import TopLoc_Location
 from OCP.TopoDS import TopoDS_Compound, TopoDS_Face, TopoDS_Shape
 
-from tactcad.contour.inside import keep_clear
+from tactcad.contour.inside import bound_one_area, keep_clear
 
 from .occt import as_face, as_shell, subshapes
 from .prism_edges import prism_edges
@@ -26,17 +26,20 @@ CLEAR_MM = 1e-6
 
 def is_clear_prism(shape: TopoDS_Shape) -> bool:
     """Whether it is a prism along z whose edges keep clear of each other, and so passes nowhere through
-    itself; a plane test shows it in a hundredth of the kernel's time for a foil of thousands of edges."""
+    itself, and whose openings lie side by side in its outline; a plane test shows it in a hundredth of the
+    kernel's time for a foil of thousands of edges."""
     edges = prism_edges(shape)
+    if edges is None:
+        return False
     room = CLEAR_MM + 2.0 * ShapeAnalysis_ShapeTolerance().Tolerance(shape, 1)
-    return keep_clear(edges, room) if edges else False
+    return keep_clear(edges, room) and bound_one_area(edges)
 
 
 def is_valid(shape: TopoDS_Shape, clear_prism: bool) -> bool:
     """Whether the kernel calls a solid valid.
 
     Of a clear prism it is asked for the shell, for every wall, and for every wire of the two ends as a face
-    of its own. That openings lie inside the outline, and in none other, shows in the volume alone.
+    of its own.
     """
     if not clear_prism:
         return BRepCheck_Analyzer(shape).IsValid()
