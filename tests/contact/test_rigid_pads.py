@@ -122,7 +122,9 @@ def row_of(number: int, pitch: float, stop: float) -> Pads:
     [
         (3, 4.0, (1.0, 2.0), 0.1, 0.01),
         (3, 3.2, (0, 0), inf, 0.025),
-        (26, 3.03, (1.0, 0.3), inf, pressed.MANY_PADS),
+        (26, 3.2, (8.0, 0.3), inf, pressed.MANY_PADS),
+        (26, 3.2, (30.0, 0.0), inf, pressed.MANY_PADS),
+        (26, 3.02, (30.0, 0.9), inf, pressed.NEAR_PADS),
     ],
 )
 def test_many_pads_are_pressed_as_few(number, pitch, angle, stop, off):

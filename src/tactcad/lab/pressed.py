@@ -27,9 +27,10 @@ from tactcad.mechanics import lumped
 from tactcad.report.figures import Figure, Figures
 
 MOST_PATCHES = 14_400  # a hundred pads, of which the law costs as much; 0.8 GB if no two pairs lie alike
-# Growth of rung layer's stated error beyond them, by single patches of 52 to 100 pads: 0.2 % for level pads a
-# millimetre apart, 2.5 % at 0.03 mm; inclined by 1 to 3 degrees 0.6 and 5.0 %.
-MANY_PADS = 0.06
+# Growth of rung layer's stated error beyond them, for pads at least APART mm from each other, and nearer. Climbs
+# of 52 pads against single patches (gaps from 0.02 mm, up to 30 degrees, layers from 0.3 pads thick) ended at
+# 0.087 and 0.60; level pads a millimetre apart are off by 0.002.
+MANY_PADS, NEAR_PADS, APART = 0.1, 0.8, 0.2
 MOST_PADS = 2000  # by the law of whole pads: a matrix of 0.3 GB, and some copies
 SAME = 1e-6  # relative difference of stiffness below which two elements are no pair
 LARGEST_ANGLE = 30.0  # degrees; beyond it the inclined face's own sideways motion is no longer small
@@ -202,7 +203,7 @@ def _chosen(
         if rung != "springs":  # whose climbs were of tilted pads
             error += tilt_error(pads, body, pressed, angle)
         if rung == "layer" and len(pads.x) * PATCHES**2 > MOST_PATCHES:
-            error += MANY_PADS
+            error += MANY_PADS if _gap(pads) > APART - SAME else NEAR_PADS
         if within is None or error <= within:
             return rung, pressed, error
         best = min(best, error)
@@ -210,6 +211,13 @@ def _chosen(
         f"no rung is stated to keep the forces within {within:.3g}: the best of {', '.join(candidates)} "
         f"keeps {best:.2g} here"
     )
+
+
+def _gap(pads: Pads) -> float:
+    """Least distance of two pads, mm, along x or along y."""
+    along, across = np.abs(pads.x[:, None] - pads.x), np.abs(pads.y[:, None] - pads.y)
+    gap = np.maximum(along - pads.length, across - pads.width)
+    return float(gap[~np.eye(len(gap), dtype=bool)].min())
 
 
 def _on_body(pads: Pads, body: Body, load: float, angle: tuple[float, float], rung: str) -> Pressed:
