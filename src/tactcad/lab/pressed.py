@@ -27,9 +27,9 @@ from tactcad.mechanics import lumped
 from tactcad.report.figures import Figure, Figures
 
 MOST_PATCHES = 14_400  # a hundred pads, of which the law costs as much; 0.8 GB if no two pairs lie alike
-# Growth of rung layer's stated error beyond them, for pads at least APART mm from each other, and nearer. Climbs
-# of 52 pads against single patches (gaps from 0.02 mm, up to 30 degrees, layers from 0.3 pads thick) ended at
-# 0.087 and 0.60; level pads a millimetre apart are off by 0.002.
+# Growth of rung layer's stated error beyond them, for pads at least APART mm from each other, and nearer.
+# Climbs of 52 pads against single patches (gaps from 0.02 mm, up to 30 degrees, layers from 0.3 pads thick)
+# ended at 0.087 and 0.60; level pads a millimetre apart are off by 0.002.
 MANY_PADS, NEAR_PADS, APART = 0.1, 0.8, 0.2
 MOST_PADS = 2000  # by the law of whole pads: a matrix of 0.3 GB, and some copies
 SAME = 1e-6  # relative difference of stiffness below which two elements are no pair
