@@ -113,7 +113,8 @@ def replaced(result: dict, more: dict) -> dict:
     run |= {"load": more["machine"]["load"], "benchmarks": list(more["benchmarks"])}
     both = result["benchmarks"] | more["benchmarks"]
     ordered = {name: both[name] for name in BENCHMARKS if name in both}
-    return result | {"benchmarks": ordered, "further": [*result.get("further", []), run]}
+    earlier = [r for r in result.get("further", []) if not set(r["benchmarks"]) <= set(run["benchmarks"])]
+    return result | {"benchmarks": ordered, "further": [*earlier, run]}
 
 
 def blocks(result: dict) -> dict[str, str]:
