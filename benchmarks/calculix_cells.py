@@ -82,7 +82,8 @@ def lines_of(beam: FoilBeam, density: int) -> tuple[Array, Array, Array]:
 
 
 def beam_bricks(beam: FoilBeam, density: int) -> tuple[Array, Index]:
-    """Nodes (n, 3) of a beam along x about its middle, and 20-node bricks in CalculiX's order."""
+    """Nodes (n, 3) of a beam along x about its middle, and 20-node bricks in CalculiX's order; a bevelled
+    beam's density is even."""
     x, across, through = lines_of(beam, 2 * density)  # nodes in the middle of edges too
     x, across = (np.concatenate([-v[:0:-1], v]) for v in (x, across))
     into = np.maximum(np.abs(x) - (beam.length / 2.0 - beam.fillet), 0.0)
@@ -91,7 +92,8 @@ def beam_bricks(beam: FoilBeam, density: int) -> tuple[Array, Index]:
     grid = np.stack(
         [
             np.broadcast_to(x[:, None, None], shape),
-            np.broadcast_to((edge[:, None] * across)[:, :, None], shape),
+            (edge[:, None] - 2.0 * beam.bevel * np.abs(through) / beam.thickness)[:, None, :]
+            * across[:, None],
             np.broadcast_to(through, shape),
         ],
         axis=-1,

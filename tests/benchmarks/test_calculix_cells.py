@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import astuple
+from dataclasses import astuple, replace
 from pathlib import Path
 
 import calculix
@@ -22,7 +22,8 @@ from calculix_cells import (
 )
 
 from tactcad.families.planar import beam
-from tactcad.families.planar.cell import Cell
+from tactcad.families.planar.beam import FoilBeam
+from tactcad.families.planar.cell import Cell, roots
 
 needs_ccx = pytest.mark.skipif(calculix.executable() is None, reason="CalculiX (ccx) is not installed")
 DOCUMENT = (Path(__file__).parents[2] / "benchmarks" / "results" / "calculix_cells.md").read_text("utf-8")
@@ -86,6 +87,25 @@ def test_one_beam_by_a_coarse_mesh():
     pure = np.linalg.inv(cell.modes[0])
     k = [beam.stiffness(cell.beam)[m] for m in beam.MODES]
     assert np.diag(pure.T @ K @ pure) == pytest.approx(k, rel=0.02)
+
+
+@needs_ccx
+@pytest.mark.parametrize(
+    "etched", [FoilBeam(4.0, 0.4, 0.08, 0.1, 1.0, 0.3, 0.016), FoilBeam(2.2, 0.9, 0.08, 0.2, 1.0, 0.3, 0.016)]
+)
+def test_bevels_take_as_much_off_solids_as_off_the_closed_form(etched):
+    """Of planar-array's two beams, mode by mode, what a bevel leaves of the stiffness."""
+
+    def both(b):
+        cell = Cell(b, roots("straight", 3.0, 0.0, 0.0)[:1])
+        pure = np.linalg.inv(cell.modes[0])
+        solid = np.diag(pure.T @ by_calculix(cell, 2).stiffness @ pure)
+        return np.array([solid, [beam.stiffness(b)[m] for m in beam.MODES]])
+
+    solid, closed = both(etched) / both(replace(etched, bevel=0.0))
+    assert solid.max() < 0.99 and closed == pytest.approx(solid, rel=0.01)
+    plain = [m != "twist" for m in beam.MODES]
+    assert closed[plain] == pytest.approx(solid[plain], rel=beam.BEVELED)
 
 
 @pytest.mark.nightly

@@ -7,6 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from foil_elements import solved, stresses
+from skfem import Basis, ElementQuad2, MeshQuad, condense, solve
+from skfem.models.poisson import laplace, unit_load
 
 from tactcad.families.planar import beam
 from tactcad.families.planar.beam import MODES, FoilBeam
@@ -56,6 +58,33 @@ def test_stresses_converge():
         coarse, fine = (stresses(b, density)[1] for density in (2, 3))
         for mode in MODES:
             assert coarse[mode].max() == pytest.approx(fine[mode].max(), rel=0.01), mode
+
+
+def torsion_by_elements(w, t, c):
+    """Twice the integral of Prandtl's function, of a quarter on quadratic quadrilaterals."""
+    mesh = MeshQuad.init_tensor(np.linspace(0, 1, int(16 * w / t) + 1), np.linspace(0, 1, 17))
+    across, up = mesh.p
+    basis = Basis(MeshQuad(np.stack([across * (w / 2 - c * up), up * t / 2]), mesh.t), ElementQuad2())
+    on_surface = basis.get_dofs(
+        lambda x: np.isclose(x[0], w / 2 - 2 * c * x[1] / t) | np.isclose(x[1], t / 2)
+    )
+    load = unit_load.assemble(basis)
+    return 8 * load @ solve(*condense(laplace.assemble(basis), 2 * load, D=on_surface))
+
+
+@pytest.mark.parametrize("wide", [1.5, 5.0, 11.0])
+@pytest.mark.parametrize("bevel", [0.0, 0.2, 0.3])
+def test_section_of_a_beveled_beam(wide, bevel):
+    """Slices of the hexagon, and Poisson's equation."""
+    t, (u, weight) = 0.08, np.polynomial.legendre.leggauss(8)
+    z, dz = (u + 1) * t / 4, 2 * weight * t / 4  # both halves
+    slices = wide * t - 4 * bevel * z
+    by_slices = [(slices * dz).sum(), (slices * z**2 * dz).sum(), (slices**3 / 12 * dz).sum()]
+    b = FoilBeam(40 * t, wide * t, t, t, 1.0, 0.3, bevel * t)
+    assert beam.section(b, b.width) == pytest.approx(by_slices)
+    by_elements = torsion_by_elements(wide, 1.0, bevel) * t**4
+    most = 0.005 if wide < 2 else 0.001
+    assert beam.torsion_constant(b.width, t, b.bevel) == pytest.approx(by_elements, rel=most)
 
 
 def test_long_narrow_beams_are_beam_theory():

@@ -222,11 +222,12 @@ def test_arrays_as_made_have_the_stiffness_of_beams_as_cut(layout):
         b = e.kind.beam
         K = np.array([
             1 / replace(e.kind.cell, beam=replace(
-                b, thickness=t + dt, width=b.width + dw, length=b.length - dw, fillet=b.fillet - dw / 2
+                b, thickness=t + dt, width=b.width + dw, length=b.length - dw, fillet=b.fillet - dw / 2,
+                bevel=0.2 * (t + dt),
             )).compliance[2, 2]
             for dt, dw in drawn
         ])  # fmt: skip
-        assert found[:, e.number - 1] == pytest.approx(K, rel=0.01)
+        assert found[:, e.number - 1] == pytest.approx(K, rel=0.005)
         near &= np.abs(K * e.kind.cell.compliance[2, 2] - 1) <= 0.1
     assert known.built(1000).near == pytest.approx(near.mean(), abs=0.05)
     (stress,) = [r for r in known.requirements if "from yielding" in r.name]
@@ -237,6 +238,19 @@ def test_arrays_as_made_have_the_stiffness_of_beams_as_cut(layout):
         for kind in PlanarLayout(thick).used
     ]
     assert stress.value(worst)[0] == pytest.approx(np.array(by_hand) / d.material.yield_strength, rel=0.02)
+
+
+def test_etched_beams_are_beveled_and_those_cut_by_wire_are_not():
+    """K of a soft cell goes with w - 1.5 c, c = 0.2 t; the sheet says over what a width is measured."""
+    d = load(str(PLANAR))
+    d = replace(d, measuring=replace(d.measuring, fillet=0.2, slot=0.5))  # what wire can cut too
+    etched, wire = (
+        PlanarLayout(replace(d, planar=replace(d.planar, process=name))) for name in ("etched", "wire-cut")
+    )
+    soft, plain = (lay.kinds["measuring"].cell.stiffness[2, 2] for lay in (etched, wire))
+    assert soft / plain == pytest.approx(1 - 1.5 * 0.2 * 0.08 / 0.4, rel=3e-3)
+    said = [any("over the bevel" in note for note in parts.foil(lay).notes) for lay in (etched, wire)]
+    assert said == [True, False]
 
 
 def test_the_foil_s_measurements_can_be_taken(layout):

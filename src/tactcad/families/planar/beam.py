@@ -6,6 +6,8 @@ foil's plane and in it, each with even moments (bend) and with a guided end (she
          frame |\\_________________________/| island      s between the edges, w wide, t thick,
                | _________________________  |             fillets r at all four corners
                |/                         \\|
+
+Etching leaves bevels: w at half the thickness, 2 c less on either face, straight between them.
 """
 
 from __future__ import annotations
@@ -36,12 +38,15 @@ STRESSED = {
     "shear_in": ("root edge",),
 }
 KEPT = 256  # beams whose figures are kept: rules and searches ask for the same one again and again
+# What bevels add to the relative error of `stiffness` but twist's: by CalculiX, on eleven beams with bevels
+# of 0.2 t, at most 0.24 %; to twist's 1.2 %.
+BEVELED = 0.003
 KAPPA = 5.0 / 6.0  # Reissner's shear factor of a rectangle
 
 
 @dataclass(frozen=True)
 class FoilBeam:
-    """Length s, width w, thickness t and fillet radius r, mm; E, MPa, and Poisson's ratio."""
+    """Length s, width w, thickness t and fillet radius r, mm; E, MPa, and Poisson's ratio; bevel c, mm."""
 
     length: float
     width: float
@@ -49,6 +54,7 @@ class FoilBeam:
     fillet: float
     youngs_modulus: float
     poisson: float
+    bevel: float = 0.0
 
 
 gauss = cache(np.polynomial.legendre.leggauss)  # points and weights from -1 to 1
@@ -67,11 +73,20 @@ def sections(beam: FoilBeam, points: int = 24) -> tuple[Array, Array, Array]:
     return x, dx, width
 
 
-def torsion_constant(width: Array, thickness: float) -> Array:
-    """J = w t^3/3 (1 - 0.630 t/w (1 - t^4/(12 w^4))), mm4: Roark's Formulas for Stress and Strain, within
-    0.3 % of Saint-Venant's series for w >= t."""
-    q = thickness / width
-    return width * thickness**3 / 3.0 * (1.0 - 0.630 * q * (1.0 - q**4 / 12.0))
+def torsion_constant(width: Array, thickness: float, bevel: float = 0.0) -> Array:
+    """J = w t^3/3 (1 - k t/w (1 - t^4/(12 (w - c/2)^4))), mm4; k = 0.630 of a rectangle: Roark's Formulas for
+    Stress and Strain, within 0.3 % of Saint-Venant's series for w >= t. What a bevel c adds is fitted: within
+    0.2 % of elements of Poisson's equation for w >= 1.5 t, c <= 0.3 t."""
+    c = bevel / thickness
+    ends = (0.630 + c * (0.70 + 0.55 * c)) * (1.0 - (thickness / (width - bevel / 2.0)) ** 4 / 12.0)
+    return thickness**3 / 3.0 * (width - ends * thickness)
+
+
+def section(beam: FoilBeam, width: Any) -> tuple[Any, Any, Any]:
+    """Area, mm2, and second moments out of the foil's plane and in it, mm4, of a section that wide."""
+    w, t, c = width, beam.thickness, beam.bevel
+    within = t * (w**3 - c * (3.0 * w**2 - 4.0 * w * c + 2.0 * c**2)) / 12.0
+    return t * (w - c), t**3 * (w - 1.5 * c) / 12.0, within
 
 
 @lru_cache(KEPT)
@@ -81,11 +96,11 @@ def base(beam: FoilBeam) -> dict[str, float]:
     x, dx, w = sections(beam)
     E, t = beam.youngs_modulus, beam.thickness
     G = E / (2.0 * (1.0 + beam.poisson))
-    out, within = w * t**3 / 12.0, t * w**3 / 12.0
-    shear = np.sum(dx / (KAPPA * G * w * t))
+    area, out, within = section(beam, w)
+    shear = np.sum(dx / (KAPPA * G * area))
     return {
-        "axial": E * t / (2.0 * np.sum(dx / w)),
-        "twist": G / (2.0 * np.sum(dx / torsion_constant(w, t))),
+        "axial": E / (2.0 * np.sum(dx / area)),
+        "twist": G / (2.0 * np.sum(dx / torsion_constant(w, t, beam.bevel))),
         "bend_out": E / (2.0 * np.sum(dx / out)),
         "shear_out": 1.0 / (2.0 * (np.sum(x**2 * dx / (E * out)) + shear)),
         "bend_in": E / (2.0 * np.sum(dx / within)),
@@ -96,11 +111,12 @@ def base(beam: FoilBeam) -> dict[str, float]:
 def nominal_stress(beam: FoilBeam) -> dict[str, float]:
     """Beam theory's stress at the root's face per relative motion 1 of the ends (MPa/mm; MPa/rad): sections
     of the straight width."""
-    k, w, t, s = base(beam), beam.width, beam.thickness, beam.length
-    out, within = 6.0 / (w * t**2), 6.0 / (t * w**2)
+    k, t, s = base(beam), beam.thickness, beam.length
+    area, out, within = section(beam, beam.width)
+    twist, out, within = t / (4.0 * out), t / (2.0 * out), beam.width / (2.0 * within)
     return {
-        "axial": k["axial"] / (w * t),
-        "twist": 3.0 * k["twist"] / (w * t**2),
+        "axial": k["axial"] / area,
+        "twist": twist * k["twist"],
         "bend_out": out * k["bend_out"],
         "shear_out": out * k["shear_out"] * s / 2.0,
         "bend_in": within * k["bend_in"],
@@ -158,7 +174,7 @@ def stiffness(beam: FoilBeam) -> dict[str, float]:
     """Stiffness of every mode: N/mm; bending and twist N mm a radian.
 
     Beam theory times a factor that was fitted on solid elements (data/beam.json): clamped roots keep a wide
-    beam from curling and its ends from warping.
+    beam from curling and its ends from warping. Bevels hardly change it (`BEVELED`).
     """
     row, factors = terms(*groups(beam)), fit()["stiffness"]
     return {m: v * float(np.exp(row @ np.array(factors[m]))[0]) for m, v in base(beam).items()}
@@ -207,7 +223,9 @@ def stress(beam: FoilBeam) -> dict[str, float]:
     """Largest von Mises stress of the foil's face per relative motion 1 of the ends (MPa/mm; MPa/rad), up to
     0.3 fillet radii off the clamped edge.
 
-    Beam theory times what solid elements find over it, interpolated by the place where it is largest.
+    Beam theory times what solid elements find over it, interpolated by the place where it is largest. By
+    CalculiX, of beams with bevels of 0.2 t it is 1 to 3 % too high out of the foil's plane, 8 to 19 % in it;
+    at half the thickness, where the faces' fit has no place, up to 6 % too low in it.
     """
     k, plain, (names, points, c) = stiffness(beam), base(beam), _stresses()
     over = dict(zip(names, np.exp(spline(place(beam)[None], points) @ c)[0]))

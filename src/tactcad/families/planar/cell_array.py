@@ -152,11 +152,13 @@ def _below(arrays: Stacked) -> np.ndarray:
 
 
 def stiffer(arrays: Stacked, kind: Kind) -> np.ndarray:
-    """K of a kind of cells as made over the drawn one, (arrays, 1): as w t^3/s^3; a beam that is cut wider
-    is as much shorter."""
-    t, w, s = kind.thickness, kind.table.beam_width, kind.beam_length
-    grown = arrays.made[GROWN]
-    return np.asarray((1.0 + arrays.made[FOIL] / t) ** 3 * (1.0 + grown / w) / (1.0 - grown / s) ** 3)
+    """K of a kind of cells as made over the drawn one, (arrays, 1): as (w - 1.5 bevel) t^3/s^3; a beam that
+    is cut wider is as much shorter, and a bevel grows with the foil."""
+    t, s, bevel = kind.thickness, kind.beam_length, 1.5 * kind.bevel
+    foil, grown = arrays.made[FOIL], arrays.made[GROWN]
+    wide = kind.table.beam_width - bevel * t
+    wider = 1.0 + (grown - bevel * foil) / wide
+    return np.asarray((1.0 + foil / t) ** 3 * wider / (1.0 - grown / s) ** 3)
 
 
 def limits(

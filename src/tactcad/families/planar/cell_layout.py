@@ -31,6 +31,7 @@ class Kind:
     """A kind of cell with what follows from the design.
 
     opening   side of the square in the frame, mm
+    bevel     of the beams' edges, in thicknesses
     """
 
     name: str
@@ -39,6 +40,7 @@ class Kind:
     thickness: float
     youngs_modulus: float
     poisson: float
+    bevel: float
 
     @property
     def pinwheel(self) -> bool:
@@ -76,7 +78,8 @@ class Kind:
     @cached_property
     def beam(self) -> FoilBeam:
         t, metal = self.table, (self.youngs_modulus, self.poisson)
-        return FoilBeam(self.beam_length, t.beam_width, self.thickness, t.fillet, *metal)
+        bevel = self.bevel * self.thickness
+        return FoilBeam(self.beam_length, t.beam_width, self.thickness, t.fillet, *metal, bevel)
 
     @cached_property
     def cell(self) -> Cell:
@@ -191,7 +194,8 @@ class PlanarLayout:
     @cached_property
     def kinds(self) -> dict[str, Kind]:
         d, m, p = self.design, self.design.material, self.design.planar
-        same = round(p.pitch - p.web, 9), p.thickness, m.youngs_modulus, m.poisson
+        metal = m.youngs_modulus, m.poisson
+        same = round(p.pitch - p.web, 9), p.thickness, *metal, self.process.bevel
         return {name: Kind(name, getattr(d, name), *same) for name in ("measuring", "reference")}
 
     @cached_property

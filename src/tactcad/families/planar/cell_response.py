@@ -65,7 +65,8 @@ def stiffness_limit(layout: PlanarLayout) -> float:
     standard deviations of each."""
     t = layout.design.planar.thickness
     foil, cut = (1.0 + layout.design.foil_tolerance / t) ** 3 - 1.0, layout.process.tolerance(t)
-    return max(hypot(foil, cut / k.table.beam_width + 3.0 * cut / k.beam_length) for k in layout.used)
+    beams = (kind.beam for kind in layout.used)
+    return max(hypot(foil, cut / (b.width - 1.5 * b.bevel) + 3.0 * cut / b.length) for b in beams)
 
 
 def all_bends(layout: PlanarLayout, kinds: Sequence[Kind], force: Array) -> Array:

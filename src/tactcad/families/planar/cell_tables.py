@@ -45,7 +45,8 @@ class FoilLimit:
 
 @dataclass(frozen=True)
 class FoilProcess:
-    """Limits of foil cutting, mm: data/processes.csv. The tolerance is plus and minus on a width."""
+    """Limits of foil cutting, mm: data/processes.csv. The tolerance is plus and minus on a width, the bevel a
+    share of the thickness by which either edge stands back at both faces."""
 
     name: str
     thinnest: float
@@ -54,6 +55,7 @@ class FoilProcess:
     web: FoilLimit
     inside_radius: FoilLimit
     tolerance: FoilLimit
+    bevel: float
     source: str
 
     def place(self, length: float) -> float:
@@ -65,8 +67,8 @@ class FoilProcess:
 def _process(row: dict[str, str]) -> FoilProcess:
     pairs = ((row[f"{of}_share"], row[f"{of}_least"]) for of in ("slot", "web", "inside", "tolerance"))
     slot, web, inside, cut = (FoilLimit(float(share), float(least)) for share, least in pairs)
-    low, high = float(row["thinnest"]), float(row["thickest"])
-    return FoilProcess(row["name"], low, high, slot, web, inside, cut, row["source"])
+    low, high, bevel = (float(row[name]) for name in ("thinnest", "thickest", "bevel"))
+    return FoilProcess(row["name"], low, high, slot, web, inside, cut, bevel, row["source"])
 
 
 def _chip(row: dict[str, str]) -> Chip:

@@ -226,7 +226,8 @@ def foil(layout: PlanarLayout) -> Part:
         limits.append(within(f"beam width, {k.name}", k.table.beam_width, cut, True, sides))
         limits.append(within(f"beam length, {k.name}", k.beam_length, cut, between=ends))
     own, body = (*limits, spigot, bore), _plain(layout, t, slots)
-    note = (TABS, "do not bend, do not tumble; packed flat between cards")
+    over = ("widths measured over the bevel",) if process.bevel else ()
+    note = (TABS, *over, "do not bend, do not tumble; packed flat between cards")
     return _sheet(layout, "foil", "Foil", body, holes, own, "#c9ccd1", note, "element", sheet_material(d))
 
 

@@ -132,8 +132,8 @@ def stress_error() -> float:
     return max(e["climbed"] for e in beam.stress_errors().values())
 
 
-def stiffness_error() -> float:
-    return max(e["climbed"] for e in beam.fit()["errors"].values())
+def stiffness_error(bevel: float = 0.0) -> float:
+    return max(e["climbed"] for e in beam.fit()["errors"].values()) + (beam.BEVELED if bevel else 0.0)
 
 
 def rated_force(layout: PlanarLayout, kind: Kind) -> tuple[float, float]:
@@ -188,7 +188,7 @@ def rows(layout: PlanarLayout, _rung: str, force: float | None) -> list[CellEsti
             arm=kind.beam_length,
             stiffness=stiffness,
             shear_stiffness=float(1.0 / pad[0, 0]),
-            expected_error=stiffness_error(),
+            expected_error=stiffness_error(kind.bevel),
             force=load,
             sink=load / stiffness,
             stress=stress,
@@ -261,8 +261,9 @@ def run(args: argparse.Namespace, asked: Allowance, design: PlanarDesign) -> int
     ]
     print(*aligned([*zip(*columns)]), sep="\n")
     print(
-        f"K against solid elements: within {100 * stiffness_error():.2g} %; stress includes its own error of "
-        f"{100 * stress_error():.2g} % and the rated shear; noise is of one reading of {layout.chip.name}"
+        f"K against solid elements: within {100 * found[0].expected_error:.2g} %; stress includes its own "
+        f"error of {100 * stress_error():.2g} % and the rated shear; noise is of one reading of "
+        f"{layout.chip.name}"
     )
     unread = "unread" in layout.chip.source
     print(
