@@ -24,7 +24,7 @@ export: environment ## write the files of every design in hardware/ to exports/<
 test: environment ## every test but the slow and the nightly ones
 	$(BIN)/python -m pytest -m "not slow and not nightly" -n $(WORKERS) --dist worksteal
 
-slow: environment ## tests that start browsers, clusters and installs, or make whole releases and exports
+slow: environment ## tests that start browsers, clusters and installs, search long, or make whole releases and exports
 	$(BIN)/python -m pytest -m "slow and not nightly" -n $(WORKERS) --dist worksteal
 
 check: environment ## style, types, and every check of every design: all failures are printed, then it fails

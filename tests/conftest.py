@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import gc
 import os
+from collections import Counter
 
 import manifold3d
 import pytest
@@ -41,9 +42,18 @@ def one_thread_of_meshes():
     os.sched_setaffinity(0, cores)
 
 
+@pytest.hookimpl(tryfirst=True)  # before what is not asked for by its marks is left out
 def pytest_collection_modifyitems(items):
-    """Pages first: typing them takes one worker long, and at the end the other one would stand idle."""
+    """Pages first: typing them takes one worker long, and at the end the other one would stand idle. Of a
+    test `by_day(count, why)` all cases but the first are slow."""
     items.sort(key=lambda item: item.path.name != "test_pages.py")
+    seen: Counter[str] = Counter()
+    for item in items:
+        by_day = item.get_closest_marker("by_day")
+        if by_day and not item.get_closest_marker("nightly") and not item.get_closest_marker("slow"):
+            seen[test := item.nodeid.partition("[")[0]] += 1
+            if seen[test] > by_day.args[0]:
+                item.add_marker("slow")
 
 
 def pytest_collection_finish():

@@ -38,6 +38,7 @@ assert abs(back.volume - 42) < 1e-12, back.volume
 """
 
 
+@pytest.mark.slow  # loads both in a fresh process
 @pytest.mark.cad
 @pytest.mark.parametrize(
     "first, second",

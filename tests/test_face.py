@@ -149,6 +149,7 @@ def test_a_frame_where_pandas_is_there(monkeypatch):
     assert [row["number"] for row in answer.to_frame()] == list(range(1, 11))
 
 
+@pytest.mark.slow  # the example's two samples twice
 def test_readings_give_what_a_file_between_them_gives(tmp_path):
     readings, grasps = (str(ROOT / "hardware" / "examples" / f"{n}.csv") for n in ("calibration", "grasp"))
     calibration = tc.calibrate(readings)

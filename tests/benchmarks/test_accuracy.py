@@ -50,6 +50,7 @@ def keeps_its_promise(s, wanted, mesh):
     assert error <= answer.expected_error <= wanted, (answer.model, error)
 
 
+@pytest.mark.by_day(1, "solid elements each")
 @pytest.mark.parametrize("i", [0, 5])  # the other end of the row; sixty more by night
 def test_one_per_cent_is_kept_on_fresh_designs(i):
     print("seed", SEED)
@@ -64,6 +65,7 @@ def small(seed, count):
     return s.rows(np.flatnonzero(fits)[np.linspace(0, fits.sum() - 1, count).astype(int)])
 
 
+@pytest.mark.slow  # solid elements; by day tests/cli/test_accuracy_option.py
 def test_a_tenth_of_a_per_cent_is_kept_by_elements():
     """Twenty more by night."""
     print("seed", SEED)

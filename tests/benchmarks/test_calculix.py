@@ -34,6 +34,7 @@ def test_cps8_at_full_width_is_not_plane_stress(tmp_path, monkeypatch):
     assert 1.06 < K / solve_plane(SHAPES[True], E, NU, B, density=2).stiffness < 1.0 / (1.0 - NU**2)
 
 
+@pytest.mark.by_day(1, "a run of CalculiX each")
 @pytest.mark.parametrize("two", [True, False], ids=["two", "one"])
 def test_solid_agrees_with_twenty_node_bricks(two, tmp_path):
     K = calculix.solve_solid(plane_mesh(SHAPES[two], 2), E, NU, B, 1, tmp_path).stiffness

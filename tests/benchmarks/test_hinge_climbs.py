@@ -49,6 +49,7 @@ PASSED_BY_STRAIN = HingeSection.of(
 )
 
 
+@pytest.mark.slow  # a fine mesh of solid elements
 def test_a_design_that_passed_the_stated_error_of_stiffness():
     s = PASSED_BY_STIFFNESS
     error = 1.0 / float(ladder.compliance(s, "solid")) / solve(s, "fem-solid", 0.1).stiffness - 1.0
@@ -74,6 +75,7 @@ def tried(seed: int, tries: int, most: float = np.inf) -> None:
         assert not error > hinge_climbs.stated(goal), goal
 
 
+@pytest.mark.slow  # a search of its own
 def test_a_small_climb_stays_below_what_is_stated():
     tried(SEED, 3, 15.0)
 

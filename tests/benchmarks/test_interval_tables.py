@@ -21,6 +21,7 @@ KINDS = {s.what: s.lab for s in interval_tables.STUDIES}
 ALONE = [w for w, lab in KINDS.items() if not lab.cell_off and lab.runs > 1]
 
 
+@pytest.mark.by_day(3, "forty simulated labs each")
 @pytest.mark.parametrize("what", ALONE)
 def test_intervals_of_forty_labs_hold_as_often_as_they_say(what):
     """120 intervals of each quantity: within binomial bounds of probability 1e-4."""
@@ -34,6 +35,7 @@ def test_intervals_of_forty_labs_hold_as_often_as_they_say(what):
     assert (low <= held).all() and (held <= high).all(), held
 
 
+@pytest.mark.by_day(1, "simulated labs each")
 @pytest.mark.parametrize("off", [0.02, 0.05])
 def test_intervals_hold_at_the_ends_of_the_load_cell_s_limits(off):
     """The stiffest element, where the load cell counts most: 95 % of 60 labs, less what chance 1e-4 takes."""
@@ -45,6 +47,7 @@ def test_intervals_hold_at_the_ends_of_the_load_cell_s_limits(off):
     assert held >= binom.ppf(1e-4, 60, 0.95)
 
 
+@pytest.mark.by_day(1, "hundreds of simulated labs each")
 @pytest.mark.parametrize("noise", [Noise(), Noise(of_run=0.01)], ids=["noise", "runs differ"])
 def test_the_known_covariance_is_that_of_plain_fits(noise):
     """Slopes of 3000 simulated calibrations by equal weights scatter as the formula says, within 8 %."""

@@ -64,6 +64,7 @@ def test_json_and_table_name_every_failure():
     assert failure_table([Report("e", "A")]) == []
 
 
+@pytest.mark.slow  # checks a whole design by the kernel
 @pytest.mark.cad
 def test_all_designs_are_checked_though_one_is_refused(tmp_path, capsys):
     refused = tmp_path / "refused.toml"

@@ -209,6 +209,7 @@ def at_the_limit(changes: dict, path: str, piece: str, length: float) -> dict:
     return changes
 
 
+@pytest.mark.slow  # hundreds of pieces of a search
 @pytest.mark.cad
 def test_no_piece_near_the_limit_passes_the_rule_and_fails_the_check():
     """Any field that makes any piece short, moved until the piece is 0.001 mm long but for 1e-3 to 1e-6 mm.

@@ -219,6 +219,7 @@ def sheet(columns: int, rows: int, *odd: tuple[float, float]) -> Part:
     return Part("SHEET", "SHEET", "milled", STEEL, Extrusion(outer, 1.0, slots), holes)
 
 
+@pytest.mark.by_day(2, "a second each")
 @pytest.mark.parametrize("seed", range(6))
 def test_pairs_alike_have_the_verdict_that_each_has_alone(seed):
     random = np.random.default_rng(seed)

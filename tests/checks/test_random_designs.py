@@ -42,6 +42,7 @@ def draw(count: int, start: int, row_lengths: tuple[int, ...], rigs: float) -> C
     return counts
 
 
+@pytest.mark.slow  # checks whole designs by the kernel; by day those of test_rules.py
 def test_four_designs_drawn_over_the_whole_legal_range(record_property):
     counts = draw(4, CI_SEED, (1, 2, 3), rigs=0.15)
     record_property("random designs", f"seed {CI_SEED}, {counts}")

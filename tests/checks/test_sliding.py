@@ -67,6 +67,7 @@ def test_a_slope_an_arc_and_a_shaft():
     assert seen(made("FILE", ModelFile("x.step", "", 1.0, ((0, 0, 0), (1, 1, 1)))), 0, 0, 0) is None
 
 
+@pytest.mark.by_day(2, "a second each")
 @pytest.mark.cad
 @pytest.mark.parametrize("bar", [STEPPED, SHAFT], ids=["bar", "shaft"])
 @pytest.mark.parametrize("seed", range(3))

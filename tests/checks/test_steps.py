@@ -272,6 +272,7 @@ def test_a_drill_point_is_told_from_a_thread():
     assert found(one) == [] and [f.check for f in found(stuck)] == ["insertion"]
 
 
+@pytest.mark.by_day(1, "two seconds for long ones")
 @pytest.mark.parametrize("rows", [[[6.0]], [[4.0, 7, 6, 8] * 3, [8.0, 5, 4, 7] * 3]], ids=["one", "tie rods"])
 def test_hands_get_into_small_and_long_arrays(rows):
     """One element's strip is laid by tweezers; a long array's nuts, low over the fixture, want nut drivers:
@@ -331,6 +332,7 @@ def test_usual_ways_follow_from_the_placements():
     assert any("CA1 to EP1: all, by SC5 SC6" in said for said in sets)
 
 
+@pytest.mark.by_day(1, "a scene with all its steps each")
 @pytest.mark.parametrize("stage", STAGES, ids=lambda stage: f"{stage.size:g} mm")
 def test_every_stage_sold_can_be_screwed_down(monkeypatch, stage):
     """The largest stands 8 mm before the post: there its screws would stay covered."""

@@ -236,6 +236,7 @@ def test_a_shop_may_say_only_in_what_its_machining_differs(tmp_path):
     assert own.machining_source == {**SHOP.machining_source, "wall": "our own mill"}
 
 
+@pytest.mark.slow  # checks a whole array by the kernel twice
 @pytest.mark.cad
 def test_the_shop_s_machining_limits_reach_the_check(tmp_path, capsys):
     """A shop that wants 1 mm flags the end plate; one that wants no less than that fails it; a broken file

@@ -219,6 +219,7 @@ def test_the_gerber_files_show_the_copper_that_kicad_plots(converter, tmp_path):
         assert not (binary_erosion(b, iterations=2) & ~a).any()
 
 
+@pytest.mark.slow  # kinparse takes a second a netlist; by day KiCad reads the boards
 @pytest.mark.parametrize("converter", CONVERTERS)
 def test_kinparse_reads_a_boards_netlist(converter):
     from kinparse import parse_netlist

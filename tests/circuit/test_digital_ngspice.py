@@ -124,6 +124,7 @@ def test_a_bridge_is_warm_when_its_first_result_begins(late, tmp_path):
 LENT = 1e-5  # strain by which a board's own slope is taken
 
 
+@pytest.mark.by_day(1, "many runs of ngspice each")
 @pytest.mark.parametrize("changes", [{"readout.completion": "film-1"}, {"readout.power": "duty"}])
 def test_boards_within_their_tolerances_resolve_what_is_stated(changes, tmp_path):
     """400 boards of parts evenly spread over their tolerances, each read as it is, strained, and after its

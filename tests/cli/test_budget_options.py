@@ -181,6 +181,7 @@ def test_costs_are_published_with_their_machine():
     assert Path(grades.DATA).is_file()
 
 
+@pytest.mark.slow  # checks a whole array by the kernel twice
 @pytest.mark.cad
 def test_a_check_meshes_as_finely_as_asked_and_leaves_nothing_out(capsys):
     args = ["check", "soft-tissue", "--scene", "array", "--json"]

@@ -3,9 +3,12 @@
 import json
 
 import pytest
+from variants import TINY_TEXT
 
 from tactcad.cli.main import main
 from tactcad.design.load import find
+
+TWO = TINY_TEXT.replace("[[5]]", "[[5, 7]]")
 
 
 def test_the_shipped_array_goes_together(capsys):
@@ -27,10 +30,11 @@ def test_what_has_no_stiffness_says_null(tmp_path, capsys):
     def no_number(text):
         raise AssertionError(text)
 
-    text = find("macro-array").read_text().replace("hinge_thickness = 0.25", "hinge_thickness = 0.05")
+    text = TWO.replace("hinge_thickness = 0.25", "hinge_thickness = 0.05")
     (tmp_path / "thin.toml").write_text(text)
     main(["build", str(tmp_path / "thin.toml"), "--count", "5", "--json"])
     made = json.loads(capsys.readouterr().out, parse_constant=no_number)
+    assert len(made["elements"]) == 2
     for element in made["elements"]:
         assert element["stiffness"] == [None, None] and element["stop_closes_at_least"] is None
         assert element["stop_gap"][0] > 0
@@ -38,12 +42,12 @@ def test_what_has_no_stiffness_says_null(tmp_path, capsys):
 
 def test_what_has_no_stiffness_says_why(tmp_path, capsys):
     """In words: no nan, and for every element the field that keeps the estimator from it."""
-    text = find("macro-array").read_text().replace("hinge_thickness = 0.25", "hinge_thickness = 0.05")
+    text = TWO.replace("hinge_thickness = 0.25", "hinge_thickness = 0.05")
     (tmp_path / "thin.toml").write_text(text)
     main(["build", str(tmp_path / "thin.toml"), "--count", "5"])
     said = capsys.readouterr().out
     assert "nan" not in said
-    for n in range(1, 11):
+    for n in (1, 2):
         (why,) = (line for line in said.splitlines() if f"E{n} has no stiffness" in line)
         assert "element.hinge_thickness" in why or "element.hinge_length" in why
 

@@ -77,7 +77,9 @@ def test_a_column_in_another_unit_is_named_in_text_and_json(file, name, wrong, t
     table.write_text(Path(file).read_text().replace(name or "\0", wrong))
     calibrated(capsys, "--out", known)
     given = (
-        ["stiffness", "--calibration", known] if file == GRASP else ["calibrate", "--design", "macro-array"]
+        ["stiffness", "--coupling", "1", "--design", "macro-array", "--calibration", known]
+        if file == GRASP
+        else ["calibrate", "--design", "macro-array"]
     )
     assert main([*given, str(table)]) == 0
     text = capsys.readouterr().out

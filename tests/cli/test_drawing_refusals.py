@@ -36,6 +36,7 @@ def refused(place: Path, capsys, *arguments: str) -> tuple[int, str]:
     return status, captured.err.splitlines()[-1]
 
 
+@pytest.mark.by_day(1, "a whole release")
 @pytest.mark.parametrize("command", [("export", "--drawings"), ("release", "--sample")], ids=" ".join)
 def test_a_missing_font(command, place, capsys, monkeypatch):
     from tactcad.drawing.engine import ink
@@ -84,6 +85,7 @@ def test_plates_of_two_metres_are_drawn_whole(place):
         assert f">{2030 + more:g}<" in sheet.read_text(), part
 
 
+@pytest.mark.slow  # an export with sheets
 def test_a_sheet_that_is_too_small_for_a_part(place, capsys, monkeypatch):
     """The same refusal where the only scale left is one at which a plate of 58 mm cannot fit."""
     from tactcad.drawing.parts import compose

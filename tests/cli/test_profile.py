@@ -68,6 +68,7 @@ def fresh(folder, name):
 NIGHTLY = [pytest.mark.nightly, pytest.mark.cad]
 
 
+@pytest.mark.slow  # two builds in fresh processes
 @pytest.mark.parametrize(
     "arguments",
     [
@@ -130,6 +131,7 @@ sys.exit(f"loaded {found}" if found else 0)
     assert done.returncode == 0, done.stderr
 
 
+@pytest.mark.slow  # two exports in fresh processes
 @pytest.mark.cad
 @pytest.mark.parametrize("scene", ["array", pytest.param("grasping", marks=pytest.mark.nightly)])
 def test_export_builds_the_scenes_own_parts_each_once_and_solves_nothing(scene, tmp_path):

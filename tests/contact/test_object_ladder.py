@@ -147,6 +147,7 @@ def _generalised(contact: PadsOnBody, pressed) -> np.ndarray:
     return pressed.patches[4] @ contact.modes.T
 
 
+@pytest.mark.slow  # a search of its own
 def test_a_small_climb_stays_below_what_is_stated():
     """Of other seeds than the shipped data's."""
     data = errors()

@@ -117,6 +117,7 @@ def row_of(number: int, pitch: float, stop: float) -> Pads:
     return Pads(x, y, 2.0, 3.0, compliance, np.zeros(2 * number), np.full(2 * number, stop))
 
 
+@pytest.mark.by_day(3, "26 pads, seconds each")
 @pytest.mark.parametrize(
     ("number", "pitch", "angle", "stop", "off"),
     [

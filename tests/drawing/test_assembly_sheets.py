@@ -34,7 +34,7 @@ SCENES = [
     ("macro-array", "array"),
     pytest.param(("macro-array", "calibration"), marks=pytest.mark.nightly),
     pytest.param(("macro-array", "sample-stiffness"), marks=pytest.mark.nightly),
-    ("macro-array", "grasping"),
+    pytest.param(("macro-array", "grasping"), marks=pytest.mark.slow),  # seconds to lay out
 ]
 OTHERS = [
     pytest.param(("double-sample", "grasping"), marks=pytest.mark.nightly),

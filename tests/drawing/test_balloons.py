@@ -52,6 +52,7 @@ def _on(p, line) -> bool:
     return any(abs(dist(a, p) + dist(p, b) - dist(a, b)) < 1e-9 for a, b in zip(line, line[1:]))
 
 
+@pytest.mark.by_day(3, "half a second each")
 @pytest.mark.parametrize("seed", range(6))
 def test_random_views(seed):
     rng = np.random.default_rng(seed)

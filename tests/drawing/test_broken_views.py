@@ -54,6 +54,7 @@ def test_fields_are_those_of_the_standard(paper):
     assert (max(numbers), len(letters)) == FIELDS[paper.name]
 
 
+@pytest.mark.slow  # a sheet of two metres
 def test_a_two_metre_plate_is_shown_broken(design, long_parts):
     """Its length stands on a small sheet at a scale at which the whole would be longer than the sheet."""
     part = long_parts["Stop plate"]

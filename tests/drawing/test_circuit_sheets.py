@@ -150,6 +150,7 @@ def test_the_shipped_designs(name):
     everything_stands_there(read(name))
 
 
+@pytest.mark.by_day(4, "a sheet each")
 @pytest.mark.parametrize("what", OTHERS)
 def test_other_circuits(what):
     everything_stands_there(variant(OTHERS[what]))

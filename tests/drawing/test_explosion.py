@@ -108,6 +108,7 @@ def test_what_was_asked_to_come_farther_does_and_what_hangs_on_it_follows():
     assert [piece.placements[0].origin[2] for piece in moved] == [0.0, 10.0 + 40.0, 15.0 + 80.0]
 
 
+@pytest.mark.by_day(3, "a rig each")
 @pytest.mark.parametrize("seed", [None, *range(6)])
 def test_sub_assemblies_of_rigs_come_apart(seed):
     """Of the macro array and of drawn designs that keep every rule."""

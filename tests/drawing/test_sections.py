@@ -347,6 +347,7 @@ def test_without_a_place_for_it_the_sheet_goes_without(orders, monkeypatch):
     assert part_sheet(order) == plain
 
 
+@pytest.mark.slow  # processes; by day test_sheet_writers.py
 def test_equal_bytes_in_other_processes(orders, tmp_path):
     some = [orders[n] for n in ("holder-body", "tip-flat")]
     here = [hashlib.sha256(w.pdf + w.svg).hexdigest() for w in map(written, some)]

@@ -149,6 +149,7 @@ def test_an_export_agrees_with_its_design_and_with_the_golden_file(tmp_path, cap
         assert "an export holds no hole list" in out
 
 
+@pytest.mark.slow  # two whole exports
 @pytest.mark.cad
 def test_two_exports(exports, tmp_path, capsys):
     html = tmp_path / "changes.html"

@@ -143,6 +143,7 @@ def test_two_processes_write_equal_bytes_in_every_file_of_the_array(shipped, tmp
     assert_names_no_machine(other, "out-4242")
 
 
+@pytest.mark.slow  # a cold export of the shipped array and a rig in a fresh process
 def test_the_export_is_what_the_contract_says(shipped):
     folder = shipped / "out-1"
     assert check_manifest(folder) == []
@@ -180,28 +181,6 @@ def test_the_export_is_what_the_contract_says(shipped):
     rows = [row for bill in folder.glob("bom*.json") for row in json.loads(bill.read_text())["rows"]]
     for p in record["parts"]:  # scenes are built one after the other from the same parts
         assert p["qty"] == max(r["qty"] for r in rows if r["part_no"] == p["part_no"])
-
-
-def test_nothing_in_the_export_names_the_machine(shipped):
-    assert_names_no_machine(shipped, "out-1")
-
-
-def test_a_second_export_does_nothing_and_loads_nothing(shipped):
-    home = shipped
-    before = {p: p.lstat().st_mtime_ns for p in home.rglob("*") if "pycache" not in str(p)}
-    said, log = run(
-        "export",
-        "designs/paper.toml",
-        *TWO_SCENES,
-        "--out",
-        "out-1",
-        cwd=home,
-        HOME=str(home),
-        TACTCAD_CACHE=str(home / "cache"),
-    )
-    assert HEAVY & set(said["loaded"]) == set()
-    assert "nothing was rebuilt" in log and log.count("\n") == 1
-    assert {p: p.lstat().st_mtime_ns for p in before} == before
 
 
 # --- what a cut file says, measured in it ---
@@ -276,8 +255,8 @@ def area_of(segments: list[tuple]) -> float:
     return abs(twice) / 2 - holes
 
 
-def test_hinge_and_area_measured_in_the_cut_files(shipped):
-    folder, design = shipped / "out-1", variant()
+def test_hinge_and_area_measured_in_the_cut_files(one):
+    folder, design = one[0] / "out", variant(TWO_ARMS)
     volumes = {p.part_no: p.volume_mm3 for p in read_manifest(folder).parts}
     for place in Layout(design).elements:
         number = f"macro-array-element-a{place.arm:g}mm"
@@ -312,13 +291,14 @@ def mine(one, tmp_path, monkeypatch):
 
 
 def test_the_first_export_makes_everything_and_says_why(one):
-    _, done, notes = one
+    base, done, notes = one
+    assert_names_no_machine(base, "out")
     assert done.reasons == ("there is no earlier export",)
     assert len(done.made) == done.files - 5  # bills, tables of elements and manifest are written every time
     assert any("no earlier export" in line for line in notes.lines)
 
 
-def test_a_changed_arm_rebuilds_only_what_depends_on_it(mine, tmp_path):
+def test_a_changed_arm_rebuilds_only_what_depends_on_it(mine):
     before = contents(mine)
     done, notes = exported(variant({"array.row_arms": [[4.5, 6.0]]}), mine)
     assert done.reasons == ("design.array.row_arms[0][0] changed 4.0 -> 4.5",)
@@ -342,22 +322,35 @@ def test_a_changed_arm_rebuilds_only_what_depends_on_it(mine, tmp_path):
     same = set(before) & set(after) - set(done.made)
     same -= {"bom.csv", "bom.json", "inspection.csv", "strength.csv", "manifest.json"}
     assert len(same) > 20 and all(before[name] == after[name] for name in same)
-    whatever_is_made_anew_is_the_same(mine, tmp_path)
 
 
-def whatever_is_made_anew_is_the_same(out: Path, folder: Path) -> None:
+def again(out: Path, folder: Path, **more) -> tuple[dict, str]:
+    """That export once more, from a file, in a fresh process."""
+    (folder / "two.toml").write_text(TWO_ARMS_TEXT)
+    more |= {"cwd": folder, "TACTCAD_CACHE": os.environ["TACTCAD_CACHE"]}
+    return run("export", "two.toml", "--scene", "array", "--out", str(out), **more)
+
+
+def test_a_second_export_does_nothing_and_loads_nothing(mine, tmp_path):
+    before = {p: p.lstat().st_mtime_ns for p in mine.parent.rglob("*")}
+    said, log = again(mine, tmp_path)
+    assert HEAVY & set(said["loaded"]) == set()
+    assert "nothing was rebuilt" in log and log.count("\n") == 1
+    assert {p: p.lstat().st_mtime_ns for p in before} == before
+
+
+@pytest.mark.slow  # a whole export in a fresh process
+def test_whatever_is_made_anew_is_the_same(mine, tmp_path):
     """A comment in a copy of the source: a fresh process makes every file again, none from the cache, and
     with equal bytes."""
-    source = folder / "src"
+    out, source = mine, tmp_path / "src"
     shutil.copytree(Path(tactcad.__file__).parent, source / "tactcad")
-    (folder / "two.toml").write_text(TWO_ARMS_TEXT.replace("[[4, 6]]", "[[4.5, 6]]"))
-    arguments = {"cwd": folder, "source": source, "TACTCAD_CACHE": os.environ["TACTCAD_CACHE"]}
-    _, log = run("export", "two.toml", "--scene", "array", "--out", str(out), **arguments)
+    _, log = again(out, tmp_path, source=source)
     assert "nothing was rebuilt" in log, "the same code elsewhere is the same code"
     before = contents(out)
     with (source / "tactcad" / "contour" / "contour.py").open("a") as file:
         file.write("# touched\n")
-    said, log = run("export", "two.toml", "--scene", "array", "--out", str(out), **arguments)
+    said, log = again(out, tmp_path, source=source)
     assert "source of tactcad.contour changed" in log
     assert " 0 taken from the cache" in log
     assert "OCP" in said["loaded"]
@@ -387,6 +380,7 @@ def test_another_author_writes_headers_anew_and_builds_no_solid(mine):
     )
 
 
+@pytest.mark.slow  # a whole export
 def test_another_revision_is_in_every_name_and_file(mine):
     done, _ = exported(variant({**TWO_ARMS, "design.revision": "B"}), mine)
     names = [n for n in contents(mine) if n.startswith(("step/", "dxf/"))]
@@ -447,6 +441,7 @@ def test_a_damaged_export_is_noticed_and_made_whole(damage, mine):
     assert contents(mine) == good
 
 
+@pytest.mark.slow  # a cold export; by day test_a_library_of_another_version_rebuilds and test_cache.py
 def test_a_damaged_cache_is_noticed_and_made_whole(mine):
     good = contents(mine)
     cache = Path(os.environ["TACTCAD_CACHE"])

@@ -363,6 +363,7 @@ def settle(out: Path, noted: bool) -> None:
         assert not noted or list(out.parent.glob("macro-kept-*/meanwhile.txt"))
 
 
+@pytest.mark.by_day(1, "hundreds of processes each")
 @pytest.mark.parametrize(
     "how, meddled",
     [

@@ -33,12 +33,14 @@ def both(pads: Pads, body: Body, load: float, angle=(0.0, 0.0)):
     return PadsOnBody(pads, body).press(load=load, angle=angle), press_many(pads, body, load, angle)
 
 
+@pytest.mark.slow  # a long search for a rest
 def test_where_no_rest_is_found_it_is_said():
     """Corners of four pads touch a face a thousand times stiffer than their springs: no number is given."""
     with pytest.raises(CheckFailure, match="finds no rest of 4 pads"):
         press_many(rows(2), Body(1e4, 0.49, 0.7), 2.0, (0.0, 3.0))
 
 
+@pytest.mark.by_day(4, "half a second each")
 @pytest.mark.parametrize("E", MODULI)
 @pytest.mark.parametrize("thickness", THICKNESSES)
 def test_forces_are_whole_and_finite(E, thickness):

@@ -88,6 +88,7 @@ def test_angles_stay_open_over_the_whole_range():
         assert smallest > 20.0 and largest < 160.0
 
 
+@pytest.mark.by_day(2, "a mesh each")
 @BOTH
 @pytest.mark.parametrize("ratio", [2.0, 5.9, 12.0])
 def test_fillets_many_times_the_thickness_do_not_fold_the_mesh(ratio, two):
@@ -122,6 +123,7 @@ def test_stiffness_goes_with_size_and_strain_does_not(two, factor):
     assert little.readings.fillet_strain * factor**2 == pytest.approx(large.readings.fillet_strain, rel=1e-6)
 
 
+@pytest.mark.slow  # solid elements twice
 def test_jaw_sized_solid_is_the_large_one_over_25():
     large, jaw = REFERENCE.with_(two_sided=False), REFERENCE.with_(two_sided=False, **scaled(1 / 25))
     K, k = (converged_solid(reference_shape(s), *material(s)).stiffness for s in (large, jaw))

@@ -197,6 +197,7 @@ def contours(body) -> list[Contour]:
     return [body.profile] if isinstance(body, Revolution) else []
 
 
+@pytest.mark.by_day(4, "every scene of an extreme design each")
 @pytest.mark.parametrize("name", WHOLE)
 def test_every_part_of_every_scene_is_whole(name):
     require_whole(variant(WHOLE[name]))

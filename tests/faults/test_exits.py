@@ -52,15 +52,16 @@ def refused_design(work) -> Path:
     return work
 
 
+@pytest.mark.by_day(3, "a fresh process each")
 @pytest.mark.parametrize(
     "line, status",
     [
-        ("check bad.toml bad.toml | true", 1),  # of several designs those refused have failed the check
-        ("check bad.toml bad.toml >&-", 1),
-        ("check bad.toml 2>&1 | true", 2),
-        ("release --json --out zips bad.toml 2>&- | true", 2),
+        ("check bad.toml bad.toml >&-", 1),  # of several designs those refused have failed the check
         ("schema | head -1", 0),
         ("--help >&- 2>&-", 0),
+        ("check bad.toml bad.toml | true", 1),
+        ("check bad.toml 2>&1 | true", 2),
+        ("release --json --out zips bad.toml 2>&- | true", 2),
     ],
 )
 def test_nobody_reads(refused_design, line, status):
@@ -69,6 +70,7 @@ def test_nobody_reads(refused_design, line, status):
     assert "Traceback" not in done.stderr and "Exception ignored" not in done.stderr
 
 
+@pytest.mark.by_day(1, "an export in a fresh process each")
 @pytest.mark.parametrize("reader", ["2>&1 | head -1", "--json >&- 2>/dev/full"])
 def test_an_export_is_made_although_nobody_reads(bench, work, reader):
     done = in_shell(
@@ -78,6 +80,7 @@ def test_an_export_is_made_although_nobody_reads(bench, work, reader):
     assert contents(work / "out") == bench.files["A"]
 
 
+@pytest.mark.slow  # starts three processes
 def test_output_that_finds_no_room_is_an_error_of_its_own(refused_design):
     """The work is done all the same, and a refusal stays one."""
     done = in_shell("tactcad export A.toml --out out --json >/dev/full", refused_design)
@@ -88,6 +91,7 @@ def test_output_that_finds_no_room_is_an_error_of_its_own(refused_design):
     assert in_shell("tactcad check bad.toml >/dev/full", refused_design).returncode == 2
 
 
+@pytest.mark.slow  # exports in a fresh process
 def test_a_terminal_that_hung_up_is_no_error(bench, work):
     """The window was closed on a command that was told to ignore that: it goes on to its end."""
     import pty
@@ -161,6 +165,7 @@ def interrupted_imports(work: Path, moments: int, count: int) -> None:
     assert set(before) >= {p.name for p in work.iterdir()} - {"cold", "home", "tmp"}
 
 
+@pytest.mark.slow  # a cold export in a fresh process
 def test_interrupted_while_modules_are_loaded(work):
     interrupted_imports(work, 1, IMPORTS)
 
@@ -175,6 +180,7 @@ def test_interrupted_at_sixty_imports(work):
     interrupted_imports(work, 60, count)
 
 
+@pytest.mark.by_day(1, "an export in a fresh process each")
 @pytest.mark.parametrize("name", STATUS)
 def test_what_was_to_be_ignored_stays_ignored(bench, work, name):
     """As nohup and a shell's `&` ask for: the export is made."""
@@ -186,11 +192,12 @@ def test_what_was_to_be_ignored_stays_ignored(bench, work, name):
     assert contents(work / "out") == bench.files["A"]
 
 
+@pytest.mark.by_day(1, "an export in fresh processes each")
 @pytest.mark.parametrize(
     "name, group",
     [
-        ("SIGINT", True),  # a terminal's Ctrl-C goes to all of them
         ("SIGTERM", False),
+        ("SIGINT", True),  # a terminal's Ctrl-C goes to all of them
         *(
             pytest.param(*pair, marks=pytest.mark.nightly)
             for pair in (("SIGINT", False), ("SIGTERM", True), ("SIGHUP", True), ("SIGHUP", False))

@@ -259,6 +259,7 @@ def step_text(coded: str) -> str:
     return re.sub(r"''|\\\\|\\(X2|X4)\\((?:[0-9A-F]{4})+)\\X0\\", decoded, coded)
 
 
+@pytest.mark.slow  # a whole export with sheets
 def test_legal_text_is_escaped_in_every_kind_of_file(work):
     text = with_value("title", json.dumps(TITLE, ensure_ascii=False))
     for field, value in (("author", AUTHOR), ("organisation", ORGANISATION)):

@@ -73,6 +73,7 @@ def test_killed_at_fifty_random_moments(bench, tmp_path):
     kill_exports(bench, tmp_path, 50)
 
 
+@pytest.mark.slow  # starts helpers and kills; by day test_exits.py
 def test_killed_while_helpers_draw(bench, work):
     """The processes that draw sheets end with the export that was killed."""
     env = environment(work)

@@ -48,7 +48,8 @@ def in_own_mounts(script: str, *arguments: str | Path) -> list[str]:
 # --- disk full ---
 
 
-@pytest.mark.parametrize("most_bytes", [0, 1, 3_000, 12_000, 150_000])
+@pytest.mark.by_day(1, "two exports each")
+@pytest.mark.parametrize("most_bytes", [3_000, 0, 1, 12_000, 150_000])
 def test_no_file_larger_than_this(bench, exported, most_bytes):
     """What a quota does: any file, of export or cache, is refused at that size. Needs no rights."""
     out = exported / "exports" / "out"
@@ -97,6 +98,7 @@ print("as it should be")
 """
 
 
+@pytest.mark.slow  # mounts a disk, starts six exports
 def test_full_disk(work):
     """A disk of its own, filled until nothing is free, or a page, a quarter of an export, all of one but five
     pages."""
@@ -114,6 +116,7 @@ def test_full_disk(work):
     assert done.stdout == "as it should be\n", done.stderr
 
 
+@pytest.mark.slow  # a cold export in a fresh process
 def test_full_disk_for_the_cache_costs_time_only(bench, work):
     """The cache's disk is full from the start: a cold export is whole, and says what it could not keep."""
     command = in_own_mounts(SMALL_DISK, work / "disk", "64k")
@@ -131,8 +134,9 @@ def own(work: Path) -> dict[str, bytes]:
     return {path: data for path, data in contents(work).items() if not path.startswith("home/")}
 
 
+@pytest.mark.by_day(1, "a fresh process each")
 @pytest.mark.parametrize(
-    "command", ["calibrate", "diff", "estimate", pytest.param("validate", marks=pytest.mark.nightly)]
+    "command", ["estimate", "calibrate", "diff", pytest.param("validate", marks=pytest.mark.nightly)]
 )
 def test_no_room_for_a_single_file(work, command):
     """The other commands that write: no file, or the earlier one."""
@@ -158,6 +162,7 @@ def test_no_room_for_a_single_file(work, command):
     assert own(work) == before
 
 
+@pytest.mark.by_day(1, "a fresh process each")
 @pytest.mark.parametrize(
     "arguments", [["schema"], ["estimate", "A.toml"], ["diff", "A.toml", "B.toml", "--json"]], ids=" ".join
 )
@@ -238,6 +243,7 @@ def test_folder_without_permission(bench, exported):
     assert_tidy(out, exported)
 
 
+@pytest.mark.slow  # starts two processes
 def test_folder_that_is_gone(work):
     (work / "gone").mkdir()
     leave = ["sh", "-c", 'rmdir "$PWD" && exec "$@"', "sh", *MODULE]
@@ -253,6 +259,7 @@ def test_folder_that_is_gone(work):
 # --- others at the same files ---
 
 
+@pytest.mark.slow  # exports twice
 def test_output_file_open_elsewhere(bench, exported):
     """Who is half through a file of the old export reads that file to its end."""
     out = exported / "exports" / "out"
@@ -279,6 +286,7 @@ def together(commands: list[list[str]], cwd: Path, env: dict[str, str], refusal:
         assert (run.returncode == 0 or re.search(refusal, said)) and "Traceback" not in said, said
 
 
+@pytest.mark.slow  # starts four exports
 def test_four_exports_at_once_into_one_directory(bench, work):
     out = work / "exports" / "out"
     env = environment(work)
@@ -299,6 +307,7 @@ def test_two_exports_at_once_with_one_cold_cache(bench, work):
         assert_tidy(work / name / "out", work)
 
 
+@pytest.mark.slow  # starts exports; by day tests/export/test_cache.py
 def test_a_cache_beyond_its_bound_is_trimmed_by_the_next_export(bench, work):
     """Entries that look like 300 MB each (without taking it) were used long ago: they go, and those in use
     stay."""
@@ -315,6 +324,7 @@ def test_a_cache_beyond_its_bound_is_trimmed_by_the_next_export(bench, work):
     assert contents(work / "A" / "out") == bench.files["A"]
 
 
+@pytest.mark.slow  # a cold export; by day tests/export/test_pipeline.py
 def test_damaged_cache_entries_are_built_again(bench, work):
     """Every entry is damaged in one of five ways; no damage reaches the export, and all of it is said."""
     entries = sorted((work / "cache").glob("??/*"))

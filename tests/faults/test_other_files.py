@@ -19,13 +19,13 @@ BATCH = (
 )
 # kind of file -> the command that reads it, FILE where it stands
 READERS = {
+    "shop.toml": ["check", "A.toml", "--shop", "FILE", "--report", "report"],
+    "calibration.json": ["stiffness", "good-grasp.csv", "--calibration", "FILE", "--thickness", "6"],
     "batch.csv": ["estimate", "--batch", "FILE", "--out", "out.csv"],
     "readings.csv": ["calibrate", "FILE", "--out", "out.csv"],
     "grasp.csv": ["stiffness", "FILE", "--calibration", "good-calibration.csv"],
     "calibration.csv": ["stiffness", "good-grasp.csv", "--calibration", "FILE", "--thickness", "6"],
-    "calibration.json": ["stiffness", "good-grasp.csv", "--calibration", "FILE", "--thickness", "6"],
     "sheet.csv": ["estimate", "A.toml", "--inspection", "FILE"],
-    "shop.toml": ["check", "A.toml", "--shop", "FILE", "--report", "report"],
     "table1.csv": ["validate", "--table1", "FILE", "--out", "report"],
     "table2.csv": ["validate", "--table2", "FILE", "--out", "report"],
     "golden.json": ["diff", "FILE", "A.toml", "--html", "out.html"],
@@ -131,6 +131,7 @@ def not_files(work: Path, ending: str) -> list[str]:
     return [f"{name}{ending}" for name in ("./pipe", "loop", "zero", "null", "nowhere", "x" * 300)]
 
 
+@pytest.mark.by_day(3, "up to fifty commands each")
 @pytest.mark.parametrize("kind", READERS)
 def test_files_that_are_something_else(bench, good, tmp_path, kind):
     bench.write_designs(tmp_path)
@@ -158,6 +159,7 @@ def test_files_that_are_something_else(bench, good, tmp_path, kind):
     assert sorted(p.name for p in tmp_path.iterdir()) == sorted(before)
 
 
+@pytest.mark.slow  # every command
 def test_the_good_files_are_read(good, tmp_path, bench):
     """Or the tests above would show nothing. (`validate` and `check` with their own files are tested
     elsewhere.)"""
@@ -171,6 +173,7 @@ def test_the_good_files_are_read(good, tmp_path, bench):
         assert done.returncode == 0, (kind, done.stderr)
 
 
+@pytest.mark.slow  # forty commands on exports
 def test_an_export_that_was_tampered_with(exported, tmp_path):
     """`diff` takes no export whose files are not its manifest's, nor a manifest that is none."""
     folder = exported / "exports" / "out"

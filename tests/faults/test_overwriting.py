@@ -57,6 +57,7 @@ def good(name: str, inputs) -> bytes:
     return (work / ("batch.csv" if name == "estimate" else "B.toml")).read_bytes()
 
 
+@pytest.mark.slow  # thirty commands
 def test_files(inputs):
     """The output is the input: the very name, a link to it, a hard link, and the input a link to the
     output."""

@@ -23,6 +23,7 @@ def export(work: Path, design: str, *arguments: str) -> subprocess.CompletedProc
     )
 
 
+@pytest.mark.by_day(1, "three exports each")
 @pytest.mark.parametrize("how", ["mv", "cp -a", "cp -r"])
 def test_a_renamed_or_copied_export_stays_what_it_is(bench, exported, how):
     subprocess.run([*how.split(), "exports/out", "revA"], cwd=exported, check=True)
@@ -54,6 +55,7 @@ def fill_in(sheet: Path) -> None:
         csv.writer(file).writerows([header, *rows])
 
 
+@pytest.mark.by_day(1, "exports each")
 @pytest.mark.parametrize("design", ["A", "B"], ids=["unchanged", "changed"])
 def test_an_inspection_sheet_filled_in_inside_the_export_is_not_lost(bench, exported, design):
     out = exported / "exports" / "out"
@@ -86,6 +88,7 @@ def test_an_inspection_sheet_filled_in_inside_the_export_is_not_lost(bench, expo
     assert {p.name for p in (exported / "exports").iterdir()} == {"out", "out-kept-1"}
 
 
+@pytest.mark.slow  # exports twice
 def test_an_inspection_sheet_has_a_place_of_its_own(exported):
     """As docs/release.md says it."""
     (exported / "inspections").mkdir()
@@ -139,6 +142,7 @@ def killed_while_somebody_writes(bench, work: Path, kills: int) -> None:
     assert died, f"seed {SEED}"
 
 
+@pytest.mark.slow  # exports and kills, again and again
 def test_killed_while_somebody_writes_into_the_export(bench, exported):
     killed_while_somebody_writes(bench, exported, 4)
 
@@ -148,6 +152,7 @@ def test_killed_often_while_somebody_writes_into_the_export(bench, exported):
     killed_while_somebody_writes(bench, exported, 40)
 
 
+@pytest.mark.slow  # exports twice
 def test_foreign_siblings_of_an_export_are_left_alone(bench, work):
     """Folders, files and links that are called as an earlier tactcad called its own."""
     exports = work / "exports"

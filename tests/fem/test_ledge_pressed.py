@@ -72,6 +72,7 @@ def found() -> dict[float, tuple[float, float]]:
     return {arm: pressed(place) for arm, place in sorted(PLACES.items())}
 
 
+@pytest.mark.slow  # solid elements
 def test_pressing_the_plate_on_makes_no_element_stiffer_than_a_calibration_tells(found):
     """A short arm's body gives way most, so its K rises most; a hinge 5 um thicker makes 5 %."""
     rises = [rise for rise, _ in found.values()]

@@ -21,6 +21,7 @@ def test_reference_design_meets_three_codes():
     assert found.error < 1e-3
 
 
+@pytest.mark.slow  # three meshes of solid elements
 def test_refinement_comes_nearer_by_more_than_second_order():
     limit = converged_solid(TWO, E, NU, B).stiffness
     errors = [solve_solid(TWO, E, NU, B, density=d).stiffness / limit - 1 for d in (1, 2)]
@@ -29,6 +30,7 @@ def test_refinement_comes_nearer_by_more_than_second_order():
     assert errors[1] < 1e-3
 
 
+@pytest.mark.by_day(1, "solid elements each")
 @pytest.mark.parametrize("shape", [TWO, ONE], ids=["two", "one"])
 def test_narrow_strip_is_in_plane_stress_and_a_wide_plate_in_plane_strain(shape):
     stress, strain = (

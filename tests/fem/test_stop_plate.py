@@ -65,6 +65,7 @@ def rise(layout: Layout, step: float = 2.0) -> float:
     return float(f @ u)
 
 
+@pytest.mark.by_day(2, "solid elements each")
 @pytest.mark.parametrize(
     "changes, least, most",
     [

@@ -104,6 +104,7 @@ def test_common_slope_with_an_intercept_a_run_against_a_design_matrix():
     assert lines.leverage == pytest.approx(np.diag(hat), rel=1e-9)
 
 
+@pytest.mark.by_day(1, "hundreds of simulated labs each")
 @pytest.mark.parametrize(
     "noise",
     [
@@ -151,6 +152,7 @@ def lagging(share: float, noise: Noise, seed: int, back: bool = False) -> Calibr
     return replace(data, force=data.force + ahead * share * 4 * u * (1 - u) * full)
 
 
+@pytest.mark.by_day(1, "hundreds of simulated labs each")
 @pytest.mark.parametrize("noise", [Noise(), Noise(of_run=0.01)])
 def test_hysteresis_of_one_per_cent_is_found_said_and_covered(noise):
     """The true K is the chord's. Without the wider interval fewer than nine in ten hold where runs scatter

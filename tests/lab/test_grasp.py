@@ -192,6 +192,7 @@ def simulated_sensitivity(rng) -> Sensitivity:
     )
 
 
+@pytest.mark.slow  # 300 simulated labs; by day test_coverage_where_the_interval_is_not_bounded
 @pytest.mark.parametrize("x", [3.85, pytest.param(60.0, marks=pytest.mark.nightly)])
 def test_stated_intervals_hold_the_truth_as_often_as_they_say(x):
     """Calibration and grasp both simulated, 300 times: 95 % within binomial bounds of probability 1e-4."""
@@ -357,6 +358,7 @@ EVERY_RUN = {("half-space", 4.0), ("even, 5 %", 12.0), ("separate", 1.5)}
 KINDS_AND_OBJECTS = [(k, x) for k in ("half-space", "even, 5 %", "separate") for x in (1.5, 4.0, 12.0)]
 
 
+@pytest.mark.by_day(1, "a hundred simulated labs each")
 @pytest.mark.parametrize(
     "kind, x",
     [

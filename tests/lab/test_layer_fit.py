@@ -68,6 +68,7 @@ def held(h: float, E: float, angle: float, presses: int, each: int, seed: int) -
     return np.array(out, float), np.array(half)
 
 
+@pytest.mark.slow  # simulated labs
 def test_intervals_hold_the_modulus_of_simulated_labs():
     """Level and inclined, no. 5 not read: as often as 95 % allow, and within 15 % where E is 0.5 MPa."""
     both = [held(6.0, 0.5, angle, 4, 3, seed=3) for angle in (0.0, 2.0)]

@@ -554,6 +554,7 @@ def whole_ways(count: int, seed: int, folder) -> tuple[float, float]:
     return float(holds), float(width[0] / width[1])
 
 
+@pytest.mark.slow  # 24 simulated labs
 def test_from_logs_to_an_interval_that_holds(tmp_path):
     """A small one of the nightly two thousand; 20 of 20 within the band by chance of 0.95^20 would tell
     nothing, so only what is far off fails here."""

@@ -59,6 +59,7 @@ def test_readings_without_noise_count_alike():
     assert np.isfinite(w).all() and w.max() <= regression.RANGE * w.min()
 
 
+@pytest.mark.by_day(1, "hundreds of simulated labs each")
 @pytest.mark.parametrize(
     "sd", [(0.003, 0.0, 0.0), (0.003, 0.0, 0.01), (0.003, 0.0, 0.03)], ids=["even", "1 %", "3 %"]
 )

@@ -51,6 +51,7 @@ def test_finite_elements_agree_with_their_closed_forms(report):
     assert K["fem-solid"] == pytest.approx(K["solid"], rel=1.5e-2)
 
 
+@pytest.mark.slow  # the whole report again
 def test_same_data_give_equal_bytes(report, paper, array):
     again = validation.validate(paper, array)
     assert reporting.to_html(again) == reporting.to_html(report)
@@ -102,6 +103,7 @@ def test_examples_are_simulated_say_so_and_can_be_made_again(tmp_path):
         assert "SIMULATED" in file.read_text().splitlines()[0]
 
 
+@pytest.mark.slow  # the example's two samples three times
 def test_from_readings_to_object_stiffness(tmp_path, capsys):
     """The two commands one after the other on the shipped examples: the truth that their comments state."""
     table = tmp_path / "calibration.csv"

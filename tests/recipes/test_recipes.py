@@ -380,6 +380,7 @@ STIFF = Rung("stiff", 8, "the recipe's test", lambda s, data: plane.compliance_b
 """
 
 
+@pytest.mark.slow  # fits the whole ladder in a process
 def test_a_rung_takes_one_file_and_data_by_one_command(tree):
     def stiffness(model):
         done = tree.run("estimate", "--model", model, "--json")

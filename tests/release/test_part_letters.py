@@ -72,6 +72,7 @@ def rows(path: Path) -> list[dict[str, str]]:
     return list(csv.DictReader(path.read_text(encoding="utf-8").splitlines()))
 
 
+@pytest.mark.slow  # two whole exports with sheets
 @pytest.mark.cad
 def test_only_the_part_that_changed_has_the_new_letter(exports):
     c = exports / "c"
@@ -176,6 +177,7 @@ def test_a_golden_file_knows_since_when_a_part_is_as_it_is(tmp_path):
     assert {*issues["B"]["parts"]} == {*KEPT} - {"carrier"}
 
 
+@pytest.mark.slow  # a whole export
 def test_kept_letters_that_nothing_proves_are_told(tmp_path, capsys):
     """A copy of a design whose element is another now, which no golden file knows; then one that holds B."""
     file = tmp_path / "hardware" / "tiny.toml"

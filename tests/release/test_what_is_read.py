@@ -202,6 +202,7 @@ def made(name: str) -> dict[str, Part]:
     return {p.part_no.removeprefix(f"{name}-"): p for p in parts if p.process in PROCESSES}
 
 
+@pytest.mark.by_day(2, "all sheets of a design each")
 @pytest.mark.parametrize("name", DESIGNS)
 def test_material_and_finish_are_not_in_the_letters_of_the_headings(name):
     for number, part in made(name).items():

@@ -44,6 +44,7 @@ def test_a_thicker_hinge_adds_what_the_closed_form_says_and_nothing_else():
         assert found[d, "kept"] + went == pytest.approx(was[d].volume, rel=1e-9)
 
 
+@pytest.mark.slow  # the kernel on a whole array, twice
 def test_a_wider_pitch_moves_elements_and_no_material_is_lost():
     before = variant(base="soft-tissue")
     after = variant({"array.pitch": before.array.pitch + 0.5}, "soft-tissue")
@@ -119,6 +120,7 @@ def test_meshes_tell_material_apart_where_the_kernel_fails(no_boolean):
     assert apart.kept is None and volume(apart.added) == pytest.approx(40.0 * pi, rel=CHORD)
 
 
+@pytest.mark.by_day(1, "meshes of a whole array each")
 def test_a_hinge_5_um_thicker_is_found_by_meshes_too(no_boolean):
     before = variant()
     after = variant({"element.hinge_thickness": before.element.hinge_thickness + 0.005})

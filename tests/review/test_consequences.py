@@ -219,6 +219,7 @@ NIGHTLY = {
 }  # fmt: skip
 
 
+@pytest.mark.by_day(10, "half a second each")
 @pytest.mark.parametrize(
     "name", [pytest.param(n, marks=pytest.mark.nightly) if n in NIGHTLY else n for n in SEEDS]
 )
@@ -404,6 +405,7 @@ def rebuilt(folder: Path, seed_: int) -> str:
 SAME = "not compared: a golden file holds no design values\nno difference: "
 
 
+@pytest.mark.by_day(1, "a fresh process each")
 @pytest.mark.parametrize("seed_", [1, 2, *(pytest.param(n, marks=pytest.mark.nightly) for n in range(3, 21))])
 def test_a_rebuild_under_another_hash_seed_and_path_shows_nothing(tmp_path, seed_):
     assert rebuilt(tmp_path, seed_).startswith(SAME)

@@ -142,6 +142,7 @@ def test_a_revision_against_itself_shows_nothing(work, capsys):
     assert told["identical"] and causes(told) == []
 
 
+@pytest.mark.slow  # compares revisions in processes, again and again
 def test_what_is_not_committed_does_not_count_but_as_the_files_that_stand(work, capsys, monkeypatch):
     """A dirty tree, from another folder and with git's variables set, as in a hook."""
     work.write(DESIGN, THICKER.replace("arm_height = 2.6", "arm_height = 2.7"))
@@ -300,6 +301,7 @@ def test_no_other_code_than_the_present_one_runs(work, capsys):
     assert not Path(os.environ["RAN"]).exists()
 
 
+@pytest.mark.slow  # compares revisions in processes
 def test_where_the_code_does_not_run_its_golden_file_stands_for_it(work, capsys):
     with_code(work, 1.0)
     work.write("src/tactcad/__main__.py", "raise ImportError('a library of that time')")
@@ -339,6 +341,7 @@ def test_a_design_that_the_present_code_refuses_has_no_causes(work, capsys):
     assert len(told["meaning"]["together"]["elements"]) == 4
 
 
+@pytest.mark.by_day(1, "processes each")
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL])
 def test_an_interrupted_comparison_leaves_nothing(work, tmp_path, capsys, number):
     """Killed, the next run removes what is left."""

@@ -171,6 +171,7 @@ def test_check_flags_it_and_strict_fails_it():
         assert found.severity == severity and "array.row_arms = 10" in found.message
 
 
+@pytest.mark.slow  # checks a whole design by the kernel twice
 @pytest.mark.cad
 def test_check_strict_ends_with_status_1(tmp_path, capsys):
     from variants import table

@@ -143,6 +143,7 @@ def test_a_shipped_design(shipped, check):
     check(shipped)
 
 
+@pytest.mark.by_day(6, "a simulation each")
 @pytest.mark.parametrize("check", CHECKS)
 def test_a_random_design(random, check):
     check(random)

@@ -130,7 +130,7 @@ class ByHand:
 
 
 def test_pads_turns_and_ledges_are_those_of_rigid_bodies(macro):
-    parts = made(macro.variables, COUNT, "uniform", np.random.default_rng(3))
+    parts = made(macro.variables, COUNT // 10, "uniform", np.random.default_rng(3))
     a, hand = Assembled(macro.layout, parts), ByHand(macro.layout, parts)
     assert a.turn == pytest.approx(hand.turn, abs=2e-6)
     assert a.pads == pytest.approx(hand.pads(), abs=2e-5)
@@ -139,6 +139,7 @@ def test_pads_turns_and_ledges_are_those_of_rigid_bodies(macro):
     assert np.abs(a.turn).max() < 4e-3  # 3 um of steps, 10 of edge and pad, play and lean, over 17.5 mm
 
 
+@pytest.mark.slow  # thousands of arrays as rigid bodies, twice
 def test_yields_are_those_of_rigid_bodies(macro):
     """Limits moved to where half, 90 and 99 % of arrays keep them: within a point, from other parts; the
     spread of the pads and of the gaps within 5 %."""

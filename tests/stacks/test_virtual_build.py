@@ -34,6 +34,7 @@ def test_shipped_designs_go_together(name):
     assert check_assembly(load(name)) == []
 
 
+@pytest.mark.by_day(1, "a build each")
 @pytest.mark.parametrize("name", SHIPPED)
 def test_and_with_another_seed(name):
     assert sensor(load(name)).built(1000, 987654321).share >= LEAST_YIELD
@@ -64,6 +65,7 @@ BEFORE = {
 }  # fmt: skip
 
 
+@pytest.mark.by_day(4, "a build each")
 @pytest.mark.parametrize("what", BEFORE)
 def test_a_loose_limit_keeps_arrays_from_going_together(macro, what):
     name, low, high, requirement = BEFORE[what]

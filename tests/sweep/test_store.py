@@ -145,6 +145,7 @@ def test_fields_in_another_order_share_nothing(tmp_path):
     assert [r["number"] for r in one.values()] != [other[k]["number"] for k in one]
 
 
+@pytest.mark.slow  # three sweeps
 def test_a_study_kept_there_goes_on_from_any_folder(tmp_path):
     """The tables are those of a store in the folder; another folder finds all finished."""
     path, address = written(tmp_path), f"local://{tmp_path}/far"

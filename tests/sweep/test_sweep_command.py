@@ -97,6 +97,7 @@ def test_run_again_it_computes_nothing_and_gives_the_same_bytes(done):
     assert tables(folder / "out") == before and entries(folder / "out") == kept
 
 
+@pytest.mark.slow  # sweeps again and again
 def test_a_damaged_entry_is_computed_again(done, scheduler):
     folder, _ = done
     before = tables(folder / "out")

@@ -43,7 +43,7 @@ TIGHT = SMALL.partition("[elements]")[0].replace("pitch = 4", "pitch = 4\nlength
 
 @lru_cache
 def found(text: str = SMALL) -> Found:
-    return search(stands(parse_target(text, "t"))[-1], narrowest, within=0.02)
+    return search(stands(parse_target(text, "t"))[-1], narrowest, within=0.1)
 
 
 def test_bounds_are_told_with_whose_they_are_and_the_best_beyond():
@@ -61,7 +61,7 @@ def test_bounds_are_told_with_whose_they_are_and_the_best_beyond():
         )
     # as much as a search that knows nothing of the answer
     stepped = dict(relax.eased(got.candidate.stand.target))["elements.arms[1]"]
-    alone = search(stands(stepped)[0], narrowest, rules=refusals, within=1e-3)
+    alone = search(stands(stepped)[0], narrowest, rules=refusals, within=0.05)
     assert told["elements.arms[1]"].beyond == pytest.approx(7.7)
     assert told["elements.arms[1]"].half_width == pytest.approx(alone.half_width, rel=0.01)
     assert told["elements.arms[1]"].half_width < got.half_width
@@ -103,11 +103,12 @@ def test_a_base_is_compared_only_if_it_meets_the_target():
     assert [line.partition(":")[0] for line in base_breaks(fine)] == ["target.half_width"]
 
 
+@pytest.mark.by_day(1, "a search each")
 @pytest.mark.parametrize(("asked", "met"), [(None, None), (30.0, True)])  # missed: test_synthesise.py
 def test_met_is_null_unless_a_half_width_was_asked(tmp_path, capsys, answer_only, asked, met):
     wish = 'name = "small"' + (f"\nhalf_width = {asked}" if asked else "")
     (tmp_path / "t.toml").write_text(SMALL.replace('name = "small"', wish))
-    args = ["design", str(tmp_path / "t.toml"), "--out", str(tmp_path / "o"), "--within", "10%"]
+    args = ["design", str(tmp_path / "t.toml"), "--out", str(tmp_path / "o"), "--within", "20%"]
     assert main([*args, "--json"]) == 0
     told = json.loads(capsys.readouterr().out)
     assert told["met"] is met and ("no half-width was asked" in answer(told)) == (asked is None)
@@ -125,6 +126,7 @@ def test_a_bound_says_which_half_width_it_compares():
     assert bound_line(bound | {"half_width": None}).endswith("one step beyond, 44: no design there")
 
 
+@pytest.mark.slow  # a search and its alternatives
 def test_the_answer_is_written_before_what_follows_it(tmp_path, capsys, monkeypatch):
     (tmp_path / "t.toml").write_text(SMALL)
     out = tmp_path / "o"
@@ -162,6 +164,7 @@ def test_a_bound_beyond_which_nothing_is_legal_says_so():
     assert beyond(asdict(none)) == "no design there"
 
 
+@pytest.mark.by_day(1, "two searches each")
 @pytest.mark.parametrize(("room", "rods"), [("length = 52\nwidth = 40", False), ("length = 48", True)])
 def test_a_room_too_small_for_the_bases_clamp_takes_one_of_smaller_screws(room, rods):
     small = SMALL.replace("[room]", f"[room]\n{room}")
@@ -169,7 +172,7 @@ def test_a_room_too_small_for_the_bases_clamp_takes_one_of_smaller_screws(room, 
     assert not own.accepted
     smaller = compact(own)
     assert smaller.own_clamp == "M3" and smaller.base.clamp.screw == "M2"
-    got = search(stands(smaller)[0], narrowest, rules=refusals, within=1e-2)
+    got = search(stands(smaller)[0], narrowest, rules=refusals, within=0.1)
     assert got.accepted and clamping(Layout(got.design)).rod == rods
     assert SIZES["length"](Layout(got.design)) <= smaller.room.length < SIZES["length"](Layout(own.design))
     assert not all_refusals(got.design)

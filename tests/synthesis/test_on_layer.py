@@ -105,6 +105,7 @@ def better() -> MadeSensor:
     return MadeSensor(target_of(0.4, 1.4, "thickness = 10", 4.0, 10), read("better-array"))
 
 
+@pytest.mark.slow  # thirty simulated labs
 def test_what_is_expected_is_what_labs_say(better):
     """Half-widths of thirty simulated labs: their median is the expected one within 15 %, and their errors
     are as large as that says."""

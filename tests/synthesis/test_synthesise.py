@@ -26,7 +26,7 @@ from tactcad.synthesis.target import parse_target
 
 @lru_cache
 def small() -> Synthesis:
-    return attempt(parse_target(SMALL, "t"), arrays=400, within=0.01)
+    return attempt(parse_target(SMALL, "t"), arrays=400, within=0.1)
 
 
 def test_the_design_keeps_every_rule_and_says_where_its_values_are_from():
@@ -56,6 +56,7 @@ def test_yield_falls_as_more_is_asked():
     assert shares[0] == 0.0 and shares == sorted(shares) and shares[-1] > 0.95
 
 
+@pytest.mark.slow  # thousands of arrays, three times
 def test_variance_shares_add_up_to_one_where_causes_do_not_interact():
     shares = {s.cause: s for s in variance_shares(MadeSensor(small().target, small().found.design))}
     assert sum(s.first for s in shares.values()) == pytest.approx(1.0, abs=0.12)
@@ -93,7 +94,7 @@ def test_the_least_change_is_the_nearest_that_does():
 def test_the_command_writes_design_and_report(tmp_path, capsys, answer_only):
     (tmp_path / "small.toml").write_text(SMALL)
     out = tmp_path / "out"
-    args = ["design", str(tmp_path / "small.toml"), "--out", str(out), "--within", "5%"]
+    args = ["design", str(tmp_path / "small.toml"), "--out", str(out), "--within", "20%"]
     assert main([*args, "--json"]) == 0
     record = json.loads(capsys.readouterr().out)
     wanted = {"met", "yield", "yield_interval", "object_interval", "binding", "shares", "front"}
@@ -144,7 +145,7 @@ def test_an_impossible_target_ends_with_1_and_writes_nothing_but_the_best_when_a
     text = SMALL.replace('name = "small"', 'name = "small"\nhalf_width = 0.5')
     (tmp_path / "no.toml").write_text(text)
     out = tmp_path / "out"
-    command = ["design", str(tmp_path / "no.toml"), "--out", str(out), "--within", "5%", "--in", "30"]
+    command = ["design", str(tmp_path / "no.toml"), "--out", str(out), "--within", "20%", "--in", "30"]
     assert main([*command, "--json"]) == 1
     told = json.loads(capsys.readouterr().out)
     assert told["met"] is False and told["bounds"] and not out.exists()

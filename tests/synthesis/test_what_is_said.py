@@ -76,7 +76,7 @@ def test_fields_not_tried_are_not_said_to_have_been_tried():
 def test_best_that_writes_nothing_says_so(tmp_path, capsys, answer_only):
     (tmp_path / "t.toml").write_text(SMALL + "[stock]\nsheets = [0.2]\n")
     out = str(tmp_path / "o")
-    assert main(["design", str(tmp_path / "t.toml"), "--out", out, "--within", "5%", "--best"]) == 1
+    assert main(["design", str(tmp_path / "t.toml"), "--out", out, "--within", "20%", "--best"]) == 1
     said = capsys.readouterr().out
     assert f"{out}: not written: no candidate keeps every limit" in said and "not tried for time" in said
 
@@ -161,7 +161,7 @@ def test_a_least_change_is_of_a_design_that_passes_the_slow_checks(monkeypatch):
 def test_where_no_margin_is_enough_the_best_is_the_narrowest_and_keeps_every_limit():
     width = 100.0 * small().found.half_width
     asked = target(("target.half_width", round(1.02 * width, 3)), ("target.least", "cut"))
-    got = attempt(asked, arrays=200, within=0.01)
+    got = attempt(asked, arrays=200, within=0.1)
     assert not got.met and got.found.accepted and got.made.share > 0.0
     assert got.found.half_width == pytest.approx(small().found.half_width, rel=0.1)
     assert goal_of(asked, 2.0)(got.found.candidate) < FAR

@@ -37,6 +37,7 @@ def cells(request, tmp_path_factory) -> Simulated:
     return simulated(design, tmp_path_factory.mktemp("cache"))
 
 
+@pytest.mark.by_day(1, "a simulation each")
 @pytest.mark.parametrize("check", [check_plate, check_energy])
 def test_what_holds_of_every_family(cells, check):
     check(cells)

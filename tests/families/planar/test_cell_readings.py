@@ -136,6 +136,7 @@ def covered(tmp_path, draws: int, errors: Errors, arrays: int = 1, seed: int = 1
     return shares | {name: float(np.median(v, axis=0).max()) for name, v in over.items()}
 
 
+@pytest.mark.slow  # thirty simulated labs
 def test_intervals_hold_as_often_as_they_say(tmp_path):
     """30 draws of four cells, nine entries and three forces; the nightly one has 2000 and tighter bounds."""
     found = covered(tmp_path, 30, Errors(), 3)
@@ -184,6 +185,7 @@ def moduli(tmp_path, arrays: int, draws: int, E: float, angle: float, seed: int 
     return np.array(out)
 
 
+@pytest.mark.by_day(1, "a second each")
 @pytest.mark.parametrize("turn", [37.0, 127.0, 157.0])
 def test_four_cells_find_a_face_that_some_do_not_touch(turn):
     """4 degrees, forces almost without noise, by single patches: within 5 %; where two pads bear, it is said.

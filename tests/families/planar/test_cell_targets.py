@@ -161,6 +161,7 @@ def test_a_short_time_is_kept_or_its_overrun_said(file, tmp_path, capsys):
     assert "more than --in 0.01" in said.err and (tmp_path / "out" / "report.html").exists()
 
 
+@pytest.mark.slow  # two syntheses
 def test_without_a_half_width_asked_the_best_counts_as_met(file, tmp_path, capsys, monkeypatch):
     known = answer(file)
     monkeypatch.setattr(cell_targets, "search", lambda t, _: replace(known, target=t))
