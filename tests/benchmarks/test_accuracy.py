@@ -170,6 +170,7 @@ SHORT_ARM = REFERENCE.with_(  # drawn by benchmarks/budgets.py: mesh 2 errs by 0
 )
 
 
+@pytest.mark.slow  # solid elements, meshed finer and finer
 def test_solid_elements_keep_their_promise_at_a_short_arm():
     coarse, fine = (elements.stiffness(SHORT_ARM, "fem-solid", mesh) for mesh in (2, 3))
     promised = [float(accuracy.expected_error(SHORT_ARM, c)) for c in CANDIDATES if c.mesh]

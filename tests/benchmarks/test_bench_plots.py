@@ -21,6 +21,7 @@ CLUSTER = [
 ]
 
 
+@pytest.mark.by_day(2, "a plot each")
 @pytest.mark.parametrize("seed", range(6))
 def test_labels_stand_free_of_each_other_and_of_markers(seed):
     """By the renderer's own extents; the rungs' times as measured, and shuffled by up to half as much

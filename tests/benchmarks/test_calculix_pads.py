@@ -22,6 +22,7 @@ def stored(scene):
     return Compared(float(depth), float(fall), float(force), mesh, large, linear, told)
 
 
+@pytest.mark.by_day(1, "a run of CalculiX each")
 @pytest.mark.parametrize("scene", range(len(SCENES)))
 def test_large_meets_hyperelastic_bricks(scene):
     """Within 2 % and within what is stated, nearer than the linear layer; the rung's force is today's."""

@@ -274,6 +274,7 @@ def shifted(scene: Scene, designator: str, dx: float, dy: float, dz: float) -> S
     return changed(scene, designator, origin=(x + dx, y + dy, z + dz))
 
 
+@pytest.mark.by_day(4, "half a second each")
 @pytest.mark.parametrize(
     ("designator", "move", "found"),
     [

@@ -38,6 +38,7 @@ def test_a_gap_that_was_derived_holds_with_friction_and_without_whatever_frictio
     assert all(cut[f"{p.arm:g}"] <= stop_gap(smooth, p) for p in smooth.elements)
 
 
+@pytest.mark.by_day(3, "a design each")
 @pytest.mark.parametrize("name", FACING_ROWS)
 def test_a_stop_one_step_wider_passes_the_rated_deflection(name):
     """Gaps are no narrower than they must be, and the check and the rule see the next wider one, at every

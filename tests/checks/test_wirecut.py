@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 from parallel_curve import offset
+from variants import TINY_TEXT
 
 from tactcad.checks.described.wirecut import check_wirecut
 from tactcad.checks.shop import DEFAULT, load_shop
@@ -236,18 +237,18 @@ def test_a_shop_may_say_only_in_what_its_machining_differs(tmp_path):
     assert own.machining_source == {**SHOP.machining_source, "wall": "our own mill"}
 
 
-@pytest.mark.slow  # checks a whole array by the kernel twice
 @pytest.mark.cad
 def test_the_shop_s_machining_limits_reach_the_check(tmp_path, capsys):
     """A shop that wants 1 mm flags the end plate; one that wants no less than that fails it; a broken file
     ends with 2."""
-    path = tmp_path / "shop.toml"
+    path, tiny = tmp_path / "shop.toml", tmp_path / "tiny.toml"
+    tiny.write_text(TINY_TEXT, "utf-8")
     for least, status in (("0.5", 0), ("1.0", 1)):
         path.write_text(shop_text(wall=("wall = 0.8\nwall_least = 0.5", f"wall = 1.0\nwall_least = {least}")))
-        assert main(["check", "soft-tissue", "--scene", "array", "--shop", str(path)]) == status
+        assert main(["check", str(tiny), "--scene", "array", "--shop", str(path)]) == status
         assert "between screw_2 and dowel_hole" in capsys.readouterr().out
     path.write_text(path.read_text() + "drill = ")
-    assert main(["check", "soft-tissue", "--shop", str(path)]) == 2
+    assert main(["check", str(tiny), "--shop", str(path)]) == 2
     assert capsys.readouterr().err.count("\n") == 1
 
 

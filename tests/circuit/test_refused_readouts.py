@@ -135,6 +135,7 @@ def refused(design: str, field: str, value: str, legal: str, tmp_path, capsys) -
     assert [p.name for p in tmp_path.iterdir()] == ["design.toml"]
 
 
+@pytest.mark.by_day(12, "searches for what is legal")
 @pytest.mark.parametrize(
     ("changes", "path"),
     [

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 from scipy.stats import binomtest
+from variants import TINY_TEXT
 
 from tactcad.cli.main import main
 from tactcad.costs import grades
@@ -181,10 +182,10 @@ def test_costs_are_published_with_their_machine():
     assert Path(grades.DATA).is_file()
 
 
-@pytest.mark.slow  # checks a whole array by the kernel twice
 @pytest.mark.cad
-def test_a_check_meshes_as_finely_as_asked_and_leaves_nothing_out(capsys):
-    args = ["check", "soft-tissue", "--scene", "array", "--json"]
+def test_a_check_meshes_as_finely_as_asked_and_leaves_nothing_out(capsys, tmp_path):
+    (tmp_path / "tiny.toml").write_text(TINY_TEXT, "utf-8")
+    args = ["check", str(tmp_path / "tiny.toml"), "--scene", "array", "--json"]
     assert main(args) == 0
     usual = json.loads(capsys.readouterr().out)
     assert main([*args, "--within", "0.2%"]) == 0

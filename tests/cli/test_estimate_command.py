@@ -118,6 +118,7 @@ def test_batch_defaults_to_two_sided_and_takes_friction(tmp_path):
     assert stiff[0] / stiff[1] == pytest.approx(6 / (6 - 0.2 * 2.125))
 
 
+@pytest.mark.by_day(1, "elements")
 @pytest.mark.parametrize("rung", ["solid", "fem-plane"])
 def test_friction_leaves_strain_per_deflection_as_it_is(tmp_path, capsys, rung):
     """What rubs bends the hinge less by the newton, as much by the millimetre."""

@@ -271,6 +271,7 @@ SPREADSHEETS = {
 }
 
 
+@pytest.mark.by_day(7, "two commands each")
 @pytest.mark.parametrize("form", SPREADSHEETS)
 def test_spreadsheets_ways_of_writing_mean_the_same(form, tmp_path, capsys):
     lines = lambda document: {k: v for k, v in document.items() if k != "readings"}  # noqa: E731

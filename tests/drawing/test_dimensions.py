@@ -117,6 +117,7 @@ def rank(matrix: np.ndarray) -> int:
     )
 
 
+@pytest.mark.by_day(5, "every sheet of a design each")
 def test_no_dimension_is_missing_and_none_is_given_twice(some_plans):
     for plan in some_plans:
         rows = [row for d in stated(plan) for row in d.rows]
@@ -157,6 +158,7 @@ def told(text: str) -> float:
     return size + ((0.005 if size <= 3 else 0.008) if upper < 0 else (upper + lower) / 2)
 
 
+@pytest.mark.by_day(5, "a third of a second each")
 def test_the_part_can_be_made_from_what_its_sheet_says(some_plans):
     """Gauss and Newton from shaken coordinates: texts and conventions lead back to the part, wherever it
     lies."""

@@ -172,6 +172,7 @@ def test_a_contour_is_compared_as_a_curve():
     assert change.moved == pytest.approx(0.02, rel=1e-6)
 
 
+@pytest.mark.by_day(3, "a design's geometry each")
 @pytest.mark.parametrize(
     "spoil",
     [

@@ -27,6 +27,7 @@ def sheet_of(name):
     return design, parts, lines, list(csv.DictReader(io.StringIO(data.decode("ascii"), newline="")))
 
 
+@pytest.mark.by_day(1, "a design's parts each")
 def test_rows_are_the_parts_own_limits_each_once(made):
     design, parts, _, rows = made
     assert tuple(rows[0]) == PART_COLUMNS

@@ -369,6 +369,7 @@ def test_a_change_that_no_solid_depends_on_makes_the_stack_anew(mine):
     assert (done.made, done.built) == (("stack.csv", "stack.html", "inspection-parts.csv"), ())
 
 
+@pytest.mark.slow  # a whole export
 def test_another_author_writes_headers_anew_and_builds_no_solid(mine):
     done, _ = exported(variant({**TWO_ARMS, "design.author": "J\u00f6rg"}), mine)
     assert done.built == ()

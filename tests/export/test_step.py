@@ -210,6 +210,7 @@ SCENE_TAMPERING = {
 }
 
 
+@pytest.mark.by_day(3, "an assembly by the kernel each")
 @pytest.mark.parametrize("name", SCENE_TAMPERING)
 def test_a_tampered_assembly_is_not_let_out(name, macro_scene, macro_shapes, monkeypatch):
     write = step.written

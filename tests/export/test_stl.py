@@ -62,6 +62,7 @@ def read_by_the_kernel(path: Path) -> trimesh.Trimesh:
     return trimesh.Trimesh(points, faces)
 
 
+@pytest.mark.by_day(2, "meshes of a whole array each")
 @pytest.mark.parametrize("angular", ANGULAR[:5])
 def test_every_part_keeps_the_promise_against_the_kernels_volume(macro_shapes, angular, tmp_path):
     """All scenes' parts, by the kernel's reader; `tactcad export` and `check` hold each again."""

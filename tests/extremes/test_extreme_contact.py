@@ -40,7 +40,7 @@ def test_where_no_rest_is_found_it_is_said():
         press_many(rows(2), Body(1e4, 0.49, 0.7), 2.0, (0.0, 3.0))
 
 
-@pytest.mark.by_day(4, "half a second each")
+@pytest.mark.by_day(2, "half a second each")
 @pytest.mark.parametrize("E", MODULI)
 @pytest.mark.parametrize("thickness", THICKNESSES)
 def test_forces_are_whole_and_finite(E, thickness):

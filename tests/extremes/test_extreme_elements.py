@@ -38,6 +38,7 @@ def material(s):
 NIGHTLY = pytest.mark.nightly
 
 
+@pytest.mark.by_day(2, "a mesh each")
 @BOTH
 @pytest.mark.parametrize(
     "t,density",

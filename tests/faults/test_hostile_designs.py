@@ -86,6 +86,7 @@ def refuse(tmp_path, data: bytes, command: str = "export", name: str = "bad.toml
     return refused(done)
 
 
+@pytest.mark.by_day(10, "a process each")
 @pytest.mark.parametrize("name", HOSTILE_NAMES, ids=list(HOSTILE_NAMES.values()))
 def test_hostile_name(tmp_path, name):
     said = refuse(tmp_path, with_value("name", name).encode())
@@ -95,6 +96,7 @@ def test_hostile_name(tmp_path, name):
     assert len(said) < 400 and said.isprintable()
 
 
+@pytest.mark.by_day(1, "ten processes each")
 @pytest.mark.parametrize("field", ["title", "author", "organisation"])
 def test_hostile_lines(tmp_path, field):
     for n, value in enumerate(HOSTILE_LINES):
@@ -158,6 +160,7 @@ HOSTILE_FILES = {
 }
 
 
+@pytest.mark.by_day(12, "a process each")
 @pytest.mark.parametrize("name", HOSTILE_FILES)
 def test_hostile_file(tmp_path, name):
     data, expected = HOSTILE_FILES[name]

@@ -25,6 +25,7 @@ from tactcad.parts.rules import load
 
 RIGS = Path(__file__).parents[2] / "docs" / "rigs.md"
 LAYOUT = Layout(load("macro-array"))
+pytestmark = pytest.mark.slow  # meshes of five arms under a plate; by day test_leaf_clamp.py
 PLACES = {place.arm: place for place in LAYOUT.elements}
 
 

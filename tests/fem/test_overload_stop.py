@@ -126,7 +126,7 @@ def width_share(name: str) -> float:
     return result.readings.fillet_stress / result.flat.fillet_stress
 
 
-@pytest.mark.by_day(3, "elements each")
+@pytest.mark.by_day(2, "elements each")
 @pytest.mark.parametrize(("name", "arm"), KINDS)
 def test_no_hinge_passes_its_rated_deflection_under_the_whole_load(name, arm):
     """Plane stress, with the modulus that makes the plane arm as stiff as its width makes it: the factor

@@ -61,6 +61,7 @@ def designs():
 DESIGNS = list(designs())
 
 
+@pytest.mark.by_day(120, "as many designs by chance, 30 ms each")
 @pytest.mark.parametrize("rung", ladder.CLOSED_FORMS)
 @pytest.mark.parametrize("name,values,two", DESIGNS, ids=[d[0] for d in DESIGNS])
 def test_compliance_errs_by_few_ulp_times_its_condition(rung, name, values, two):

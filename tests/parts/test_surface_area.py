@@ -73,7 +73,7 @@ def test_a_part_with_openings():
     assert surface_area(part(body)) == pytest.approx(2 * (100 - 4 * pi) + 2 * (40 + 4 * pi))
 
 
-@pytest.mark.by_day(2, "the kernel on a whole design each")
+@pytest.mark.by_day(1, "the kernel on a whole design each")
 @pytest.mark.cad
 @pytest.mark.parametrize("name", [*FACING_ROWS, "jaw-array"])
 def test_the_kernel_measures_the_same_on_every_part(name):

@@ -102,6 +102,7 @@ def no_boolean(request, monkeypatch):
         monkeypatch.setattr(module, name, Fails(request.param))
 
 
+@pytest.mark.by_day(1, "meshes each")
 def test_meshes_tell_material_apart_where_the_kernel_fails(no_boolean):
     from build123d import Cylinder, Pos
     from OCP.BRepCheck import BRepCheck_Analyzer

@@ -32,6 +32,7 @@ def read(part: Part) -> list:
     return [*ezdxf.read(io.StringIO(dxf_bytes(part).decode())).modelspace()]
 
 
+@pytest.mark.by_day(2, "the kernel on a design each")
 @pytest.mark.parametrize("name", FACING_ROWS)
 def test_a_blank_holds_no_finished_hole_and_material_everywhere(name):
     blanks = [p for p in parts_of(name).values() if p.process in ("milled", "ground") and cut_section(p)]

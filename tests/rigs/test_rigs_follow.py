@@ -40,6 +40,7 @@ def array(count: int, sheet: float, **more: object) -> Design:
     return variant({**changes, **(NARROW if sheet < 3 else {}), **more})
 
 
+@pytest.mark.by_day(24, "every rig of a design each")
 @pytest.mark.parametrize("count, sheet", GRID)
 def test_every_rig_is_there_or_a_line_names_the_field(count, sheet):
     design = array(count, sheet)

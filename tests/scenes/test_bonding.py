@@ -140,6 +140,7 @@ def test_every_row_and_sheet_has_a_fixture_that_goes_together(rows, sheet):
     assert rig.pin_x[1] - rig.pin_x[0] >= 8.0 and rig.pin_depth >= 6.0
 
 
+@pytest.mark.by_day(2, "the kernel on a fixture each")
 @pytest.mark.parametrize("hinge", HINGES)
 def test_hinges_of_other_sizes_have_a_fixture_in_which_nothing_overlaps(hinge):
     design = variant({**ALONE, **HINGES[hinge]})

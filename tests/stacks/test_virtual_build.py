@@ -29,6 +29,7 @@ def macro():
     return sensor(load("macro-array"))
 
 
+@pytest.mark.by_day(2, "a build each")
 @pytest.mark.parametrize("name", SHIPPED)
 def test_shipped_designs_go_together(name):
     assert check_assembly(load(name)) == []

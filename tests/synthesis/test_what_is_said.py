@@ -158,6 +158,7 @@ def test_a_least_change_is_of_a_design_that_passes_the_slow_checks(monkeypatch):
     assert task.make() is None
 
 
+@pytest.mark.slow  # searches again and again
 def test_where_no_margin_is_enough_the_best_is_the_narrowest_and_keeps_every_limit():
     width = 100.0 * small().found.half_width
     asked = target(("target.half_width", round(1.02 * width, 3)), ("target.least", "cut"))

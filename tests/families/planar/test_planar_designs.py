@@ -208,6 +208,7 @@ def test_the_jaw_s_file_says_what_can_be_had_there():
     assert text in said and "{:.1f}, {:.1f}, {:.1f} and {:.1f} %".format(*errors[1]) in said
 
 
+@pytest.mark.by_day(1, "hundreds of arrays each")
 def test_arrays_as_made_have_the_stiffness_of_beams_as_cut(layout):
     """Foils and cuts drawn within their limits, each beam's own closed form: K of every cell, and how many
     arrays have all within 10 %. The stress on the stop is that of the thickest foil and the longest way."""
