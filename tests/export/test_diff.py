@@ -166,6 +166,7 @@ def test_two_exports(exports, tmp_path, capsys):
     assert text.count("<img ") == 2 * len(shown)
 
 
+@pytest.mark.slow  # two whole exports
 @pytest.mark.cad
 def test_an_altered_export_is_refused(exports):
     folder = exports[0].resolve()
@@ -179,6 +180,7 @@ def test_an_altered_export_is_refused(exports):
         bill.write_bytes(data)
 
 
+@pytest.mark.slow  # two whole exports
 @pytest.mark.cad
 def test_the_sides_records_stay_as_read(exports):
     side = read_side(str(SHIPPED))

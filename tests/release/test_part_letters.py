@@ -104,6 +104,7 @@ def test_only_the_part_that_changed_has_the_new_letter(exports):
     assert '(rev "B")' in (board / "tiny-board-1_B.kicad_pcb").read_text().splitlines()[2]
 
 
+@pytest.mark.slow  # two whole exports with sheets
 @pytest.mark.cad
 def test_files_under_a_kept_letter_are_those_of_that_revision(exports):
     kept = [p for p in (exports / "c").rglob("*") if re.search(r"_B\b", p.name) or "gerber" in str(p)]
@@ -129,6 +130,7 @@ def pasted(printed: str) -> str:
     return "".join(re.findall(r"(?s)\n\[design\.unchanged\..*?\n\]\n", printed))
 
 
+@pytest.mark.slow  # two whole exports with sheets
 @pytest.mark.cad
 def test_diff_says_the_lines_for_an_export_without_golden_file(exports, tmp_path, capsys):
     file = tmp_path / "c.toml"

@@ -124,6 +124,7 @@ def test_a_workers_refusal_reaches_the_client(tmp_path):
     )
 
 
+@pytest.mark.slow  # two sweeps in processes
 def test_fields_in_another_order_share_nothing(tmp_path):
     """Both studies hold the same designs, in another order: each row is its own design's."""
     head, thickness, rest = GRID.partition('[vary."element.hinge_thickness"]')

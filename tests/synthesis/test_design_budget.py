@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import json
 
+import pytest
 from small_target import SMALL
 
 from tactcad.cli.main import main
 
 
+@pytest.mark.slow  # a synthesis and 500 arrays
 def test_a_design_makes_as_many_arrays_as_its_interval_needs(tmp_path, capsys, answer_only):
     (tmp_path / "small.toml").write_text(SMALL)
     args = ["design", str(tmp_path / "small.toml"), "--out", str(tmp_path / "out")]

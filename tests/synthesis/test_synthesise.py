@@ -139,6 +139,7 @@ def test_a_synthesis_is_written_whole_or_not_at_all(tmp_path, monkeypatch):
     assert {p.name for p in tmp_path.iterdir()} == {"kept", "new"}
 
 
+@pytest.mark.slow  # searches three times
 def test_an_impossible_target_ends_with_1_and_writes_nothing_but_the_best_when_asked(
     tmp_path, capsys, answer_only, monkeypatch
 ):
