@@ -35,7 +35,7 @@ from tactcad.parts.bought.electronic_parts import converter_of
 from tactcad.parts.language.finding import SAME
 
 from .interval import bounds, motion
-from .knowledge import Elements, elements, knowledge, reading_noise
+from .knowledge import Elements, Knowledge, elements, knowledge, reading_noise
 from .target import ARM, THICKNESS, Target
 
 SLOT, RADIUS = 0.02, 0.01  # mm, steps
@@ -272,8 +272,9 @@ class Candidates:
         return self.yield_force / self.stand.base.rating.deflection_factor / self.elements.stiffness
 
     @cached_property
-    def steps(self) -> Array:
-        """Steps of a calibration, (candidates, 1): as many as the base design's and as every hinge bears."""
+    def borne(self) -> Array:
+        """Steps of a calibration that every hinge bears, of those that the base design makes, not rounded,
+        (candidates, 1)."""
         rig = self.stand.base.calibration
         if rig is None:
             return np.zeros((len(self.arm), 1))
@@ -283,15 +284,25 @@ class Candidates:
         most = min(rig.travel / rig.step, rig.load_cell_range / rig.step)
         full = self.elements.stiffness / soft * rig.step  # N a step
         bears = np.minimum(bears, rig.load_cell_range / full)
-        return np.floor(np.clip(bears.min(axis=1, keepdims=True), 0.0, most) + 1e-9)
+        return np.clip(bears.min(axis=1, keepdims=True), 0.0, most)
+
+    @property
+    def steps(self) -> Array:
+        """Steps of a calibration, (candidates, 1)."""
+        return np.floor(self.borne + 1e-9)
+
+    @cached_property
+    def known(self) -> Knowledge:
+        """Errors of the elements."""
+        s = self.stand
+        return knowledge(s.target, s.base, self.elements, np.maximum(self.steps, LEAST_STEPS))
 
     def feel(self) -> tuple[Array, Array, Array]:
         """Largest relative half-width over the object's range, largest force of each kind, N, and how deep
         pads press into a body, of every candidate."""
         s = self.stand
-        known = knowledge(s.target, s.base, self.elements, np.maximum(self.steps, LEAST_STEPS))
         grip = s.target.grasp
-        got = bounds(self.elements, self.count, known, s.points, s.noise, grip.force, grip.loads)
+        got = bounds(self.elements, self.count, self.known, s.points, s.noise, grip.force, grip.loads)
         width = got.half_width(s.points[..., 0]).max(axis=0)
         largest = motion(self.elements, self.count, s.points, grip.force, grip.loads).largest
         return width, largest.max(axis=0), np.zeros(len(self.arm))
@@ -311,8 +322,8 @@ class Candidates:
         return self.felt[1]
 
     @cached_property
-    def misses(self) -> dict[str, Array]:
-        """Relative excess of each candidate over each limit; 0 and below where the limit is kept."""
+    def of_kinds(self) -> dict[str, Array]:
+        """Relative excess of each kind over each limit of forces, (candidates, kinds)."""
         s, e = self.stand, self.elements
         grip, d = s.target.grasp, s.base
         tip = tip_compliance(self.section, e.stiffness, self.arm)
@@ -333,13 +344,20 @@ class Candidates:
             readout = design_readout(d)
             full = min(readout.highest, -readout.lowest)
         return {
-            "grasp.element_force": (self.largest_force / grip.element_force - 1.0).max(axis=1),
-            "strength": (self.largest_force * strong / self.yield_force - 1.0).max(axis=1),
-            "stop": (self.largest_force * soft / np.maximum(least_gap, 1e-6) - 1.0).max(axis=1),
-            "readout": (volts / full - 1.0).max(axis=1),
+            "grasp.element_force": self.largest_force / grip.element_force - 1.0,
+            "strength": self.largest_force * strong / self.yield_force - 1.0,
+            "stop": self.largest_force * soft / np.maximum(least_gap, 1e-6) - 1.0,
+            "readout": volts / full - 1.0,
+        }
+
+    @cached_property
+    def misses(self) -> dict[str, Array]:
+        """Relative excess of each candidate over each limit; 0 and below where the limit is kept."""
+        return {
+            **{name: miss.max(axis=1) for name, miss in self.of_kinds.items()},
             **self._resolution,
             **self.of_shape,
-            **({"grasp.force": self.felt[2] / LINEAR_REACH - 1.0} if s.on_layer else {}),
+            **({"grasp.force": self.felt[2] / LINEAR_REACH - 1.0} if self.stand.on_layer else {}),
         }
 
     @property

@@ -23,8 +23,8 @@ from tactcad.lab.calibration_file import Sensitivity
 from tactcad.lab.load_cell import RIGID
 from tactcad.mechanics.section import Array
 
-from .candidates import LEAST_STEPS, POINTS, Candidates, Stand, order
-from .knowledge import Knowledge, knowledge
+from .candidates import POINTS, Candidates, Stand, order
+from .knowledge import Knowledge
 from .target import Target
 
 LOADS = 4  # representatives of all loads that are read
@@ -169,34 +169,39 @@ class CandidatesOnLayer(Candidates):
     def feel(self) -> tuple[Array, Array, Array]:
         """Results on the body; for candidates that break other limits anyway, on springs and marked too
         deep."""
-        s, shape = self.stand, self.arm.shape
+        s = self.stand
         width, force, _ = super().feel()
         deep = np.full(len(width), UNTRIED)
-        known = knowledge(s.target, s.base, self.elements, np.maximum(self.steps, LEAST_STEPS))
         broken = sum(np.maximum(v, 0.0) for v in self.of_shape.values()) > 0.0
         usable = np.isfinite(self.elements.stiffness).all(axis=1) & self.known_as_made & ~broken
-        at, rows = poses(s.target, s.base), s.target.room.rows
+        at = poses(s.target, s.base)
         if s.tried:
             at = Poses(at.modulus[list(s.tried)], at.slope[list(s.tried)])
         for i in np.flatnonzero(usable):
-            dealt = order([int(n) for n in self.count[i]], rows, s.pattern)
-            kind = np.array([k for row in dealt for k in row])
-            pick = lambda of: np.broadcast_to(of, shape)[i, kind]  # noqa: B023, E731
-            x, y = s.places(tuple(len(row) for row in dealt))
-            arm = pick(self.arm) - s.base.element.pad_length / 2
-            K, V = pick(self.elements.stiffness), pick(self.elements.signal)
-            made = LayerGrasps(s.target, s.base, x, y, arm, K, V, of_elements(known, pick), s.noise)
             try:
-                got = made.expected(at)
+                widths, depths, of_kinds = self.pressed(int(i), at)
             except (InputError, np.linalg.LinAlgError):  # no stiffer than the load cell
                 width[i] = inf
                 continue
-            widths, depths = made.half_width(at, got), made.depth(at, got)
-            width[i], deep[i] = widths.max(), depths.max()
-            of_kinds = [got.force[:, kind == k].max(1, initial=0.0) for k in range(shape[1])]
-            force[i] = np.max(of_kinds, axis=1)
-            self.decided_by[int(i)] = tuple({int(np.argmax(each)) for each in (widths, depths, *of_kinds)})
+            width[i], deep[i], force[i] = widths.max(), depths.max(), of_kinds.max(axis=0)
+            decide = (widths, depths, *of_kinds.T)
+            self.decided_by[int(i)] = tuple({int(np.argmax(each)) for each in decide})
         return width, force, deep
+
+    def pressed(self, i: int, at: Poses) -> tuple[Array, Array, Array]:
+        """Half-width and depth of one candidate at every pose, [pose], and the largest force of each kind,
+        N, [pose, kind]."""
+        s, shape, known = self.stand, self.arm.shape, self.known
+        dealt = order([int(n) for n in self.count[i]], s.target.room.rows, s.pattern)
+        kind = np.array([k for row in dealt for k in row])
+        pick = lambda of: np.broadcast_to(of, shape)[i, kind]  # noqa: E731
+        x, y = s.places(tuple(len(row) for row in dealt))
+        arm = pick(self.arm) - s.base.element.pad_length / 2
+        K, V = pick(self.elements.stiffness), pick(self.elements.signal)
+        made = LayerGrasps(s.target, s.base, x, y, arm, K, V, of_elements(known, pick), s.noise)
+        got = made.expected(at)
+        of_kinds = [got.force[:, kind == k].max(1, initial=0.0) for k in range(shape[1])]
+        return made.half_width(at, got), made.depth(at, got), np.stack(of_kinds, axis=1)
 
 
 def others(stand: Stand, rng: np.random.Generator) -> Iterator[Stand]:
