@@ -25,7 +25,7 @@ from tactcad.families.planar import cell_commands, cell_grasp, cell_response
 from tactcad.families.planar.cell_layout import CellPlace, PlanarLayout
 from tactcad.families.planar.cell_matrices import Matrices
 from tactcad.families.planar.cell_pads import side
-from tactcad.families.planar.sensor import pad_compliance
+from tactcad.families.planar.sensor import chip_matrix, pad_compliance
 from tactcad.mechanics.lumped import shares_between
 from tactcad.parts.rules import load
 
@@ -109,7 +109,7 @@ def felt(layout: PlanarLayout, rise: Array, seed: int = 1) -> cell_commands.Cell
     n, loads = len(cells), np.array(LOADS)
     force = np.zeros((n, len(loads), 3))
     force[..., 2] = np.outer(rise / rise.sum(), loads)
-    own = np.stack([cell_response.matrix(layout, e.kind) for e in cells])
+    own = np.stack([chip_matrix(layout, e.kind) * cell_response.DOWN for e in cells])
     others = cell_response.neighbours(layout, cells).reshape(n, 3, n, 3)
     field = np.einsum("nij,nsj->nsi", own, force) + np.einsum("nimj,msj->nsi", others, force)
     field += cell_response.all_bends(layout, [e.kind for e in cells], force)

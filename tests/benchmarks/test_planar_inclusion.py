@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import planar_inclusion as lump
 import pytest
+
+from tactcad.families.planar.cell_layout import PlanarLayout
+from tactcad.parts.rules import load
 
 X, Y, WIDTH = np.array([0.0, 8.0, 0.0, 8.0]), np.array([0.0, 0.0, 8.0, 8.0]), 2.127
 
@@ -25,3 +30,10 @@ def test_elements_with_and_without_a_lump():
 def test_mesh_lines_hold_pads_and_lump():
     lines = lump.lines(np.array([-4.0, 4.0]), 1.0, 4.0)
     assert {-5.0, -3.0, 3.0, 5.0, 2.5, 5.5, 0.0, -12.0, 12.0} <= set(lines.tolist())
+
+
+def test_readings_behind_the_picture_hold_the_forces():
+    layout = PlanarLayout(load(str(Path(__file__).parents[2] / "hardware" / "planar-array.toml")))
+    seen = lump.felt(layout, np.ones(36))
+    sums = seen.forces.force[..., 2].sum(axis=0)
+    assert sums == pytest.approx(lump.LOADS, rel=0.05)
