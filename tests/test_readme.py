@@ -83,6 +83,7 @@ def test_estimate_shown_is_the_one_printed(capsys, monkeypatch):
     assert in_order(quoted(f"macro-array {revision}, 7075-T6"), printed)
 
 
+@pytest.mark.slow  # a fit over all layers in a process
 def test_object_stiffness_shown_is_the_one_printed(tmp_path, capsys, monkeypatch):
     monkeypatch.chdir(ROOT)
     calibrate, stiffness = (

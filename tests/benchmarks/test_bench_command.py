@@ -52,7 +52,7 @@ def follows_schema(result: dict) -> None:
 LONG = ("detail", "element", "export", "rungs", "scaling", "sheets", "step")
 
 
-@pytest.mark.by_day(2, "a benchmark each")
+@pytest.mark.by_day(1, "a benchmark each")
 @pytest.mark.cad
 @pytest.mark.parametrize(
     "name", [pytest.param(b, marks=pytest.mark.nightly) if b in LONG else b for b in BENCHMARKS]

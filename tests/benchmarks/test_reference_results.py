@@ -56,6 +56,7 @@ def test_benchmarks_page_lets_one_choose():
     assert "full" in table and "envelope" in table and "rad" in table
 
 
+@pytest.mark.slow  # all plots
 def test_every_plot_is_made_from_the_reference_results():
     made = images(figures(RESULT))
     assert {

@@ -101,6 +101,7 @@ def test_what_no_field_helps_says_so():
     ].startswith("no value alone")
 
 
+@pytest.mark.slow  # rigidity of a whole scene again and again
 def test_what_helps_is_looked_for_where_no_stop_would_help_too():
     """A row of 500: the whole range of the overload force is tried, up to where no gap protects the hinge."""
     design = variant({"array.row_arms": [[4] * 500] * 2})

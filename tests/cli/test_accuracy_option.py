@@ -69,6 +69,7 @@ def test_more_than_can_be_kept_is_refused_with_status_one(capsys):
     )
 
 
+@pytest.mark.slow  # solid elements
 def test_a_tenth_of_a_per_cent_is_solved_by_solid_elements(capsys, tmp_path):
     two = tmp_path / "two.toml"  # of different arms
     two.write_text(TINY_TEXT.replace("[[5]]", "[[5, 7]]"), "utf-8")

@@ -39,6 +39,7 @@ def test_bricks_are_exact_where_strain_is_even():
     assert u @ (stiffness(basis, body) @ u) == pytest.approx(expected, rel=1e-9)
 
 
+@pytest.mark.slow  # solid elements
 def test_elements_do_not_lock_and_meet_the_layer():
     """The coarse mesh errs alike at nu 0.3 and 0.4999; elements that lock stiffen by tens of per cent."""
     over = [

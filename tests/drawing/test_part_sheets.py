@@ -286,6 +286,7 @@ print(json.dumps([status, sorted({m.split(".")[0] for m in sys.modules})]))
 """
 
 
+@pytest.mark.slow  # a whole export with drawings
 def test_export_with_drawings(tmp_path, monkeypatch):
     """Every part made here has its PDF and SVG in the manifest, each names the file it is made from with the
     hash that the manifest has for it; the same again rebuilds nothing and loads neither kernel nor PDF

@@ -390,6 +390,7 @@ def test_another_revision_is_in_every_name_and_file(mine):
     assert done.built == ()
 
 
+@pytest.mark.slow  # a whole export
 def test_a_library_of_another_version_rebuilds(mine, monkeypatch):
     version = export_inputs.metadata.version
     monkeypatch.setattr(

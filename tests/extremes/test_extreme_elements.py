@@ -208,6 +208,7 @@ def test_extreme_hinges_by_elements_and_by_the_closed_form(change, two):
     assert found.stiffness == pytest.approx(float(ladder.stiffness(s, "plane")), rel=6e-3)
 
 
+@pytest.mark.slow  # four panels of plots
 def test_picture_has_its_four_panels():
     few = fem_extremes.Extremes(
         tuple(

@@ -273,6 +273,7 @@ def fuzz(reader: Reader, place: Path, examples: int) -> dict[str, int]:
     return counts
 
 
+@pytest.mark.by_day(8, "changed files by the dozen each")
 @pytest.mark.parametrize("name", NAMES)
 def test_a_file_changed_by_chance_is_read_or_refused(readers, tmp_path, record_property, name):
     counts = fuzz(readers[name], tmp_path, FEW)

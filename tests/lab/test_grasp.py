@@ -225,6 +225,7 @@ def test_says_when_the_data_do_not_bound_the_object():
     )
 
 
+@pytest.mark.slow  # a simulated lab
 def test_coverage_where_the_interval_is_not_bounded():
     """For an object far stiffer than the elements the unbounded interval still holds it 95 times in 100."""
     held = 0
@@ -274,6 +275,7 @@ def test_forces_of_the_wrong_sign_or_size_are_noted_and_change_no_ratio():
     assert f"(no. 1: {50 * np.ptp(LOAD) * share[0] / share.sum():.3g} N)" in note
 
 
+@pytest.mark.slow  # a simulated lab
 def test_presses_of_any_array_are_believed_and_wrong_units_are_not():
     """20 arrays from 0.03 to 150 N/mm, pressed on anything, any two or more of their elements read."""
     rng = np.random.default_rng(3)

@@ -197,6 +197,7 @@ def test_a_fit_is_where_more_stages_lead(monkeypatch):
     assert np.abs(few.modulus[:, 0] - many.modulus[:, 0]).max() < 0.03 * half.min()
 
 
+@pytest.mark.slow  # a simulated lab
 def test_layers_of_unknown_thickness_are_all_covered():
     """The true K_obj of the single pad on 6 mm is within the interval over all layers, and each one's is."""
     reading, known = one_lab()

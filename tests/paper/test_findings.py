@@ -113,6 +113,7 @@ def findings_5(paper, array):
     return " ".join(table2.findings(s, paper, table2.witnesses(s, r, e)))
 
 
+@pytest.mark.slow  # the paper's fit again for changed tables
 def test_table_2_findings_follow_the_data(paper, array):
     as_printed = findings_5(paper, array)
     assert "too large by a factor" in as_printed and "lies far outside the interval" in as_printed

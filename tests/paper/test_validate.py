@@ -19,6 +19,7 @@ ROOT = Path(__file__).parents[2]
 CALIBRATION, GRASP = ROOT / "hardware/examples/calibration.csv", ROOT / "hardware/examples/grasp.csv"
 
 
+@pytest.mark.slow  # all pictures of the report
 def test_report_has_ten_sections_with_findings_tables_and_pictures(report):
     assert len(report.sections) == 10
     for section in report.sections:

@@ -447,6 +447,7 @@ def checked(design: Design) -> list[str]:
     return [str(f) for f in found if f.severity == "fail" and not f.check.startswith("tiny-")]
 
 
+@pytest.mark.slow  # whole builds
 @pytest.mark.cad
 # no shrinking: each example is a whole check, and a failing one says itself what is wrong
 @settings(

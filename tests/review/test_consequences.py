@@ -219,7 +219,7 @@ NIGHTLY = {
 }  # fmt: skip
 
 
-@pytest.mark.by_day(10, "half a second each")
+@pytest.mark.by_day(4, "half a second each")
 @pytest.mark.parametrize(
     "name", [pytest.param(n, marks=pytest.mark.nightly) if n in NIGHTLY else n for n in SEEDS]
 )

@@ -41,6 +41,7 @@ def folder(tmp_path_factory) -> Path:
     return work / "full" / "robot"
 
 
+@pytest.mark.slow  # a whole export
 def test_the_manifest_lists_them(folder):
     listed = json.loads((folder.parent / "manifest.json").read_text())["files"]
     own = {f["path"] for f in listed if f["kind"] == "robot"}

@@ -58,6 +58,7 @@ def judged(wanted, first, folder):
     return kept
 
 
+@pytest.mark.slow  # ten designs moved together
 def test_of_the_first_ten_eight_go_together(tmp_path):
     """The small part of the night's forty, of which it has two of the four that do not."""
     assert judged(10, 20261122, tmp_path) >= 8

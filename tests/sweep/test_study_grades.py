@@ -81,6 +81,7 @@ def test_what_has_nothing_to_pick_or_no_known_error_is_refused(tmp_path):
         with_allowance(study(tmp_path), Allowance(None, 0.01), 2)
 
 
+@pytest.mark.slow  # a sweep by elements
 def test_a_sweep_within_an_error_says_its_budget(tmp_path):
     path = written(tmp_path, SMALL, what='["plane", "strength"]', count="8")
     done = swept(path, "--out", tmp_path / "out", "--workers", "1", "--within", "1%", "--json")

@@ -41,6 +41,7 @@ def rows(folder) -> list[dict[str, str]]:
     return list(csv.DictReader(io.StringIO((folder / "out" / "results.csv").read_text())))
 
 
+@pytest.mark.slow  # an estimate in a process for every row
 def test_every_row_is_what_estimate_says_of_that_design(done, tmp_path, capsys):
     folder, _ = done
     study = read_study(folder / "study.toml")
@@ -165,6 +166,7 @@ def test_words_and_whole_arrays_vary_too(tmp_path, scheduler):
     assert math.isclose(float(table[0]["solid.E2.stiffness"]), float(table[2]["solid.E2.stiffness"]))
 
 
+@pytest.mark.slow  # virtual builds
 def test_yield_is_what_build_says(tmp_path, capsys, scheduler):
     text = SMALL.replace('"sobol"', '"list"').replace("count = 24", "")
     text = text.partition("[vary")[0] + (

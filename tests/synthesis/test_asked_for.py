@@ -68,6 +68,7 @@ def test_a_pitch_that_no_design_file_can_say_is_refused_at_reading():
         small(("pitch = 4", "pitch = 50"))
 
 
+@pytest.mark.slow  # a search
 def test_a_design_that_its_own_reader_refuses_is_never_accepted():
     target = small()
     (stand,) = stands(target)

@@ -46,6 +46,7 @@ def found(text: str = SMALL) -> Found:
     return search(stands(parse_target(text, "t"))[-1], narrowest, within=0.1)
 
 
+@pytest.mark.slow  # searches
 def test_bounds_are_told_with_whose_they_are_and_the_best_beyond():
     got = found()
     told = {field: bound(got, field) for field in touched(got)}
@@ -67,6 +68,7 @@ def test_bounds_are_told_with_whose_they_are_and_the_best_beyond():
     assert told["elements.arms[1]"].half_width < got.half_width
 
 
+@pytest.mark.slow  # searches
 def test_bounds_that_nobody_wrote_are_told_as_defaults_and_room_by_the_fields_that_decide():
     got = found(TIGHT)
     told = [each for each in (bound(got, field) for field in touched(got)) if each]

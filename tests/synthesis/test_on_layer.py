@@ -130,6 +130,7 @@ def test_forces_are_those_of_single_patches(better):
         assert got.force[0].sum() == pytest.approx(made.target.grasp.force, rel=1e-3)
 
 
+@pytest.mark.slow  # four searches on a body
 def test_a_known_thickness_helps_and_an_inclination_costs(better):
     """Where the thickness is only known within 5 %, K_obj is less sure, the modulus yet less."""
     target = better.target.with_("object.thickness_limits", 5.0)

@@ -94,6 +94,7 @@ def test_interval_covers_a_recast_layer():
     assert F.min() > 0.0 and 0.90 < inside < 0.995
 
 
+@pytest.mark.slow  # virtual builds
 def test_made_arrays_and_variance_shares_have_them():
     asked = target()
     fine = {"hinge_thickness": 0.0005, "hinge_length": 0.001, "fillet_radius": 0.001}

@@ -115,6 +115,7 @@ def test_a_base_is_named_by_its_field_and_found_from_the_targets_folder(tmp_path
             parse_target(based(name), "t", tmp_path)
 
 
+@pytest.mark.slow  # virtual builds
 def test_shares_state_their_sampling_error_and_no_cause_has_more_alone_than_with_others():
     sensor = small().sensor
     one, *others = (variance_shares(sensor, COUNT // 16, seed) for seed in range(8))
@@ -149,6 +150,7 @@ def test_rigs_that_do_not_take_the_array_are_told(monkeypatch):
     assert b"scene grasping left out" in report_page(replace(small()))
 
 
+@pytest.mark.slow  # a search under all checks
 def test_a_least_change_is_of_a_design_that_passes_the_slow_checks(monkeypatch):
     width = 100.0 * small().found.half_width
     missed = replace(small(), target=target(("target.half_width", round(0.8 * width, 3))), met=False)

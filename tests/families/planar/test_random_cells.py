@@ -125,6 +125,7 @@ def verdict(number: int) -> str:
     return "made"
 
 
+@pytest.mark.slow  # twenty designs built
 def test_twenty_planar_designs_are_refused_in_one_line_or_made():
     verdicts = [verdict(n) for n in range(20)]
     assert verdicts.count("made") >= 3, verdicts
