@@ -9,8 +9,9 @@ distance that follows from how well the last step was foretold. Each start goes 
 down again. At each angle it first looks for arrays that are their own mirror image along and across the
 rows, on pads of every size and with fewer elements; then the elements go their own ways, and kicks of random
 size follow, for a pad that loses contact makes a step in the half-width that no derivative shows. The numbers
-are then rounded to what a drawing states, and searched again under all rules. A search is ended by processor
-time, so that other work on the machine does not change it.
+are then rounded to what a drawing states, and searched again under all rules. If a start does not keep every
+limit, the table names the one that it misses most, and by how much. A search is ended by processor time, so
+that other work on the machine does not change it.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ import multiprocessing
 import time
 from collections.abc import Iterator
 from concurrent.futures import ProcessPoolExecutor
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 from math import inf
 from typing import NamedTuple
@@ -36,7 +37,7 @@ from tactcad.mechanics.register import ladder_data
 from tactcad.synthesis import bounds
 from tactcad.synthesis.candidates import LEAST_STEPS, POINTS, RADIUS, SLOT, Candidates, Stand, stands
 from tactcad.synthesis.made_arrays import MadeSensor
-from tactcad.synthesis.on_layer import AROUND, CLEAR, CandidatesOnLayer, Poses, poses
+from tactcad.synthesis.on_layer import AROUND, CLEAR, CandidatesOnLayer
 from tactcad.synthesis.search import Found, refusals, search, valued
 from tactcad.synthesis.synthesise import ARRAYS_ON_BODY, goal_of
 from tactcad.synthesis.target import ARM, THICKNESS, Target, read_target
@@ -90,13 +91,10 @@ class AtPoses(CandidatesOnLayer):
 
     def feel(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         width, force, _ = Candidates.feel(self)
-        at, few = poses(self.stand.target, self.stand.base), [*self.stand.tried]
-        if few:
-            at = Poses(at.modulus[few], at.slope[few])
-        self.widths, self.depths = np.full((2, len(width), len(at.modulus)), inf)
+        self.widths, self.depths = np.full((2, len(width), len(self.at.modulus)), inf)
         for i in np.flatnonzero(np.isfinite(self.elements.stiffness).all(axis=1)):
             try:
-                self.widths[i], self.depths[i], of_kinds = self.pressed(int(i), at)
+                self.widths[i], self.depths[i], of_kinds = self.pressed(int(i))
             except (InputError, np.linalg.LinAlgError):
                 continue
             force[i] = of_kinds.max(0)
@@ -140,7 +138,6 @@ class Space:
     pad: float
     elements: int = 10
     mirrored: bool = True
-    looked: list[int] = field(default_factory=lambda: [0])
 
     @cached_property
     def stand(self) -> Stand:
@@ -169,9 +166,8 @@ class Space:
     @cached_property
     def limits(self) -> tuple[np.ndarray, np.ndarray]:
         base, out = self.stand.base, []
-        clears = (
-            self.pad + base.element.pad_root_radius + base.gauge.carrier_arm_side
-        )  # by rule gauge_fits_face
+        # by rule gauge_fits_face
+        clears = self.pad + base.element.pad_root_radius + base.gauge.carrier_arm_side
         for end, row in enumerate(self.stand.limits):
             arm = max(row[0] * ARM, clears)
             hinge = [arm] * self.free + [np.log(row[1] * THICKNESS)] * self.free
@@ -197,7 +193,6 @@ class Space:
     def values(self, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Half-width at every pose and excess over every limit, of rows of numbers."""
         parts = []
-        self.looked[0] += len(x)
         for place in dict.fromkeys(map(tuple, x[:, -3:])):  # those on one stand at a time
             rows = np.flatnonzero((x[:, -3:] == place).all(1))
             pitch, gap, force = map(float, place)
@@ -352,7 +347,6 @@ def best_of(ends: list[End]) -> End:
 
 def up(target: Target, angle: float, before: list[End], rng: np.random.Generator) -> list[End]:
     """The best mirrored array at an angle, and the best; from the two of the angle before."""
-
     tried = []
     for pad in PADS:
         of = Space(target, angle, pad)
@@ -418,14 +412,14 @@ def row_of(angle: int, starts: tuple[Found, ...]) -> tuple:
     """Of the table."""
     best = min(starts, key=lambda found: (not found.accepted, found.goal))
     stand = best.candidate.stand
-    on, kept = [], float("nan")
+    on, kept = [], "none"
     if best.accepted:
         on = [name for name in bounds.touched(best) if name not in NOT_TOLD]
-        kept = MadeSensor(stand.target, best.design).kept_by(KEPT, ARRAYS_ON_BODY)
+        kept = f"{100 * MadeSensor(stand.target, best.design).kept_by(KEPT, ARRAYS_ON_BODY):.3g}"
     return (
         angle,
         "; ".join(said(one) for one in starts),
-        f"{100 * kept:.3g}",
+        kept,
         int(best.candidate.total[0]),
         int(best.candidate.different[0]),
         f"{stand.base.element.pad_length:g}",

@@ -169,17 +169,13 @@ class CandidatesOnLayer(Candidates):
     def feel(self) -> tuple[Array, Array, Array]:
         """Results on the body; for candidates that break other limits anyway, on springs and marked too
         deep."""
-        s = self.stand
         width, force, _ = super().feel()
         deep = np.full(len(width), UNTRIED)
         broken = sum(np.maximum(v, 0.0) for v in self.of_shape.values()) > 0.0
         usable = np.isfinite(self.elements.stiffness).all(axis=1) & self.known_as_made & ~broken
-        at = poses(s.target, s.base)
-        if s.tried:
-            at = Poses(at.modulus[list(s.tried)], at.slope[list(s.tried)])
         for i in np.flatnonzero(usable):
             try:
-                widths, depths, of_kinds = self.pressed(int(i), at)
+                widths, depths, of_kinds = self.pressed(int(i))
             except (InputError, np.linalg.LinAlgError):  # no stiffer than the load cell
                 width[i] = inf
                 continue
@@ -188,9 +184,15 @@ class CandidatesOnLayer(Candidates):
             self.decided_by[int(i)] = tuple({int(np.argmax(each)) for each in decide})
         return width, force, deep
 
-    def pressed(self, i: int, at: Poses) -> tuple[Array, Array, Array]:
-        """Half-width and depth of one candidate at every pose, [pose], and the largest force of each kind,
-        N, [pose, kind]."""
+    @cached_property
+    def at(self) -> Poses:
+        """Poses that are tried."""
+        at, tried = poses(self.stand.target, self.stand.base), list(self.stand.tried)
+        return Poses(at.modulus[tried], at.slope[tried]) if tried else at
+
+    def pressed(self, i: int) -> tuple[Array, Array, Array]:
+        """Half-width and depth of one candidate at every pose that is tried, [pose], and the largest force of
+        each kind, N, [pose, kind]."""
         s, shape, known = self.stand, self.arm.shape, self.known
         dealt = order([int(n) for n in self.count[i]], s.target.room.rows, s.pattern)
         kind = np.array([k for row in dealt for k in row])
@@ -199,9 +201,9 @@ class CandidatesOnLayer(Candidates):
         arm = pick(self.arm) - s.base.element.pad_length / 2
         K, V = pick(self.elements.stiffness), pick(self.elements.signal)
         made = LayerGrasps(s.target, s.base, x, y, arm, K, V, of_elements(known, pick), s.noise)
-        got = made.expected(at)
+        got = made.expected(self.at)
         of_kinds = [got.force[:, kind == k].max(1, initial=0.0) for k in range(shape[1])]
-        return made.half_width(at, got), made.depth(at, got), np.stack(of_kinds, axis=1)
+        return made.half_width(self.at, got), made.depth(self.at, got), np.stack(of_kinds, axis=1)
 
 
 def others(stand: Stand, rng: np.random.Generator) -> Iterator[Stand]:
