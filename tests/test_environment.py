@@ -42,6 +42,7 @@ assert abs(back.volume - 42) < 1e-12, back.volume
 @pytest.mark.cad
 @pytest.mark.parametrize(
     "first, second",
+    # slow: loads both kernels in another process
     [("build123d", "cadquery"), pytest.param("cadquery", "build123d", marks=pytest.mark.slow)],
 )
 def test_both_share_one_kernel_in_either_order(first, second):

@@ -29,7 +29,7 @@ def test_it_is_committed_without_outputs(path):
     assert path.stem in {*SAID, *ELSEWHERE}
 
 
-@pytest.mark.slow
+@pytest.mark.slow  # starts a Jupyter kernel
 @pytest.mark.cad
 @pytest.mark.parametrize("name", SAID)
 def test_it_runs_and_says_what_it_is_about(name, tmp_path):

@@ -130,7 +130,7 @@ def fill_in(sheet: Path) -> None:
         csv.writer(file).writerows([head, *rows])
 
 
-@pytest.mark.slow
+@pytest.mark.slow  # runs every command of the documentation
 @pytest.mark.cad
 @pytest.mark.parametrize("page", TYPED, ids=lambda page: page.stem)
 def test_every_command_of_a_page_runs_in_order(page, folder):

@@ -42,7 +42,7 @@ def test_solid_agrees_with_twenty_node_bricks(two, tmp_path):
     assert K == pytest.approx(limit, rel=4e-3)  # the mesh's own error, see the plane's at density 2
 
 
-@pytest.mark.slow
+@pytest.mark.slow  # starts CalculiX
 @pytest.mark.parametrize("nu, h, depth", [(0.49, 2.0, 0.4), (0.45, 4.0, 0.4), (0.3, 1.0, 0.3)])
 def test_a_deep_punch_agrees_with_hyperelastic_rings(nu, h, depth, tmp_path):
     """CAX8R on a mesh twice as fine; ours on the shipped one."""

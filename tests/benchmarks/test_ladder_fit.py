@@ -19,7 +19,7 @@ def shipped():
     return samples.shipped()
 
 
-@pytest.mark.slow
+@pytest.mark.slow  # half a minute of fitting
 def test_command_gives_the_shipped_constants_again(tmp_path, capsys):
     assert main([str(tmp_path)]) == 0
     again, data = json.loads((tmp_path / "ladder.json").read_text()), ladder_data()

@@ -286,7 +286,7 @@ def test_hands_get_into_small_and_long_arrays(rows):
         assert ("tool-room", "NU1") in {(f.check, f.part) for f in found(other)}
 
 
-@pytest.mark.slow
+@pytest.mark.slow  # 24 elements moved past all parts
 def test_a_long_array_comes_past_the_guide():
     """Slid up and off to be weighed, its end plate met the heads of the rail's screws."""
     long = variant({"array.row_arms": [[4.0, 7, 6, 8] * 3, [8.0, 5, 4, 7] * 3]})

@@ -90,7 +90,7 @@ def test_kicad_finds_a_track_that_is_missing_and_one_that_is_too_near(tmp_path):
     assert "clearance" in report and "unconnected" in report
 
 
-@pytest.mark.slow
+@pytest.mark.slow  # starts KiCad
 @pytest.mark.parametrize("wires", [2, 3])
 @pytest.mark.parametrize(
     ("changes", "channels"),
@@ -194,7 +194,7 @@ def rendered(file: Path) -> np.ndarray:
     return copper[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1]
 
 
-@pytest.mark.slow
+@pytest.mark.slow  # starts KiCad and draws its layers
 @pytest.mark.parametrize("converter", ["card", pytest.param("AD7124-8", marks=pytest.mark.nightly)])
 def test_the_gerber_files_show_the_copper_that_kicad_plots(converter, tmp_path):
     """KiCad plots the board file by its own, pygerber draws both: they differ at edges alone, by a dot."""

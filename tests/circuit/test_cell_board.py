@@ -63,7 +63,7 @@ CLOSE_BOARDS = [  # rows, columns, pitch, buses, border, side
 ]  # fmt: skip
 
 
-@pytest.mark.slow
+@pytest.mark.slow  # starts KiCad
 @pytest.mark.parametrize(
     "values", [*CLOSE_BOARDS[:8], *(pytest.param(v, marks=pytest.mark.nightly) for v in CLOSE_BOARDS[8:])]
 )
@@ -80,7 +80,7 @@ def test_kicad_finds_nothing_on_boards_of_a_small_pitch(values, tmp_path):
     )
 
 
-@pytest.mark.slow
+@pytest.mark.slow  # starts KiCad
 @pytest.mark.parametrize(
     "changes",
     [

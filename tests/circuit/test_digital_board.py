@@ -45,7 +45,7 @@ def test_kicad_finds_nothing(tmp_path):
     checked(board, tmp_path)
 
 
-@pytest.mark.slow
+@pytest.mark.slow  # starts KiCad
 @pytest.mark.parametrize(
     ("completion", "connection"), [("foil-0.01", "two-wire"), ("film-0.1", "three-wire")]
 )

@@ -433,7 +433,7 @@ def resolved(design, count: int, worst: bool, tmp_path) -> float:
     return 2 * float(np.hypot(*(np.mean(part**2) ** 0.5 for part in parts)))
 
 
-@pytest.mark.slow
+@pytest.mark.slow  # hundreds of boards in ngspice
 @pytest.mark.parametrize(
     ("changes", "worst"),
     [

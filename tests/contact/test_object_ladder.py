@@ -49,7 +49,7 @@ def test_elements_do_not_lock_and_meet_the_layer():
     assert 0 < over[0] < 0.03 and over[1] == pytest.approx(over[0], abs=0.02)
 
 
-@pytest.mark.slow
+@pytest.mark.slow  # solid elements on the shipped mesh
 @pytest.mark.parametrize("nu, base", [(0.3, "bonded"), (0.4999, "bonded"), (0.49, "frictionless")])
 def test_the_shipped_mesh_is_the_layer_on_a_pad_and_beside_it(nu, base):
     body = Body(1.0, nu, 4.0, base)
@@ -104,7 +104,7 @@ def test_newtons_matrix_is_the_derivative_of_the_forces():
     assert rings.forces(u)[1] @ v == pytest.approx(change, abs=1e-6 * np.abs(change).max())
 
 
-@pytest.mark.slow
+@pytest.mark.slow  # finite strain on a fine mesh
 def test_a_strip_is_squeezed_by_the_closed_form_and_large_forgets_its_tilt():
     """One axis stretched, the others held, as above; level strips are what large goes by, one whose edge
     falls by half of its depth is pushed back up to 1 % harder."""

@@ -138,7 +138,7 @@ def test_drawn_arcs_are_the_contour_s():
 
 
 @pytest.mark.cad
-@pytest.mark.slow
+@pytest.mark.slow  # a whole export
 def test_an_export_agrees_with_its_design_and_with_the_golden_file(tmp_path, capsys):
     """Kernel and DXF on one side, closed forms on the other."""
     first = tmp_path / "whole"
@@ -203,7 +203,7 @@ def assert_offline(text: str) -> None:
     assert "url(" not in text and "@import" not in text
 
 
-@pytest.mark.slow
+@pytest.mark.slow  # a page of two whole designs
 def test_a_page_of_designs_whose_names_are_no_text(tmp_path):
     """Names of files are bytes: what is no UTF-8 in them is shown as escapes."""
     mine = Path(os.fsdecode(bytes(tmp_path) + b"/a\xff.toml"))

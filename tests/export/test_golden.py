@@ -228,7 +228,7 @@ def test_accept_writes_a_new_revision_and_refuses_the_rest(tmp_path):
 
 
 @pytest.mark.cad
-@pytest.mark.slow
+@pytest.mark.slow  # all checks, three times
 def test_commands_from_first_file_to_new_revision(tmp_path, capsys):
     """What a user does: golden, change, check fails, new letter, golden, check passes."""
     hardware = tmp_path / "hardware"

@@ -132,7 +132,7 @@ def shipped(tmp_path_factory) -> Path:
     return export_in_a_home_of_its_own(home, "1", "Pacific/Auckland", "C", *TWO_SCENES)
 
 
-@pytest.mark.slow
+@pytest.mark.slow  # an export with a cold cache in another process
 def test_two_processes_write_equal_bytes_in_every_file_of_the_array(shipped, tmp_path):
     """But for those that speak of all scenes together, which test_surroundings.py compares."""
     other = export_in_a_home_of_its_own(tmp_path, "4242", "America/St_Johns", "C.UTF-8", *TWO_SCENES[:2])

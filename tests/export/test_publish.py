@@ -369,8 +369,8 @@ def settle(out: Path, noted: bool) -> None:
     [
         ("exchange", True),
         ("two-renames", False),
-        pytest.param("exchange", False, marks=pytest.mark.slow),
-        pytest.param("two-renames", True, marks=pytest.mark.slow),
+        pytest.param("exchange", False, marks=pytest.mark.slow),  # a process for every file operation
+        pytest.param("two-renames", True, marks=pytest.mark.slow),  # a process for every file operation
     ],
 )
 def test_killed_before_every_single_file_operation(tmp_path, how, meddled):

@@ -138,6 +138,7 @@ def test_every_option_of_what_needs_none_is_tried():
         assert {action.option_strings[-1] for action in options(command)} <= tried, command
 
 
+# slow: the long commands in an installation of their own
 @pytest.mark.parametrize("lines", [WORK, pytest.param(LONG, marks=pytest.mark.slow)], ids=["quick", "long"])
 def test_what_needs_none_works_and_writes_nothing_at_home(base, lines):
     work, env = base

@@ -62,7 +62,7 @@ def kill_exports(bench, folder: Path, kills: int) -> None:
     assert early >= kills / 2, f"seed {SEED}: only {early} of {kills} kills came before the end"
 
 
-@pytest.mark.slow
+@pytest.mark.slow  # two exports with a cold cache
 def test_killed_at_two_random_moments(bench, tmp_path):
     """Both with a cold cache; warm ones are in test_kill_matrix.py."""
     kill_exports(bench, tmp_path, 2)

@@ -35,6 +35,7 @@ def worst_error(rung, count, seed):
     return np.abs(errors).max()
 
 
+# slow: solid elements on a fine mesh
 @pytest.mark.parametrize("rung,count", [("plane", 40), pytest.param("solid", 3, marks=pytest.mark.slow)])
 def test_closed_forms_keep_their_promise_on_fresh_designs(rung, count):
     assert worst_error(rung, count, SEED) < PROMISE

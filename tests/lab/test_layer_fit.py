@@ -90,7 +90,7 @@ def least(h: float, E: float, angle: float, load_known: bool = False) -> float:
     return labs.least_half_width(of, h, E, K, K_V, READ, height, slope, SPREAD, thickness, load_known)
 
 
-@pytest.mark.slow
+@pytest.mark.slow  # simulated labs
 def test_half_widths_are_near_those_of_a_lab_that_knows_all_variances():
     """On 6 mm and 0.3 MPa, inclined by 3 degrees: at most 1.3 times, even of one that trusts the loads, which
     the fit does not; level on 10 mm even that lab does not keep 10 %."""

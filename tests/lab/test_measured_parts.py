@@ -91,7 +91,7 @@ def test_a_sheet_without_thickness_is_refused_in_one_line(tmp_path, capsys):
 
 
 @pytest.mark.cad
-@pytest.mark.slow
+@pytest.mark.slow  # an export with sheets
 def test_the_export_is_issued_again(tmp_path, capsys):
     path, out = sheet(tmp_path, thick(2.96)), tmp_path / "out"
     arguments = [

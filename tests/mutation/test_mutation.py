@@ -35,7 +35,7 @@ def test_every_check_is_in_the_table():
     assert not [m.label for m in every if not mutants.tests_of(m)]
 
 
-@pytest.mark.slow
+@pytest.mark.slow  # writes the source of every mutant
 def test_every_mutant_is_another_program():
     for mutant in mutants.every():
         mutant.source()

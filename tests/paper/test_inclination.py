@@ -17,7 +17,7 @@ def found(paper, array):
     return inclination.study(paper, array, reference_stiffness.study(paper))
 
 
-@pytest.mark.slow
+@pytest.mark.slow  # a search with 144 patches a pad
 def test_angles_agree_with_those_of_single_patches(found, paper, array):
     """Love's closed form, an integral for the layer, and a least-squares search of scipy's from a level face:
     both angles of every sample are the stated ones within a twentieth of their intervals, and so are the
@@ -51,7 +51,7 @@ def test_angles_agree_with_those_of_single_patches(found, paper, array):
         assert (np.abs(own.x - stated) < 0.05 * half).all()
 
 
-@pytest.mark.slow
+@pytest.mark.slow  # the fit of all samples
 def test_the_f_test_is_that_of_the_sums_of_squares(found):
     """Two angles a sample against none."""
     level, inclined = found.level, found.inclined

@@ -500,6 +500,7 @@ def test_designs_that_once_were_let_pass_and_did_not_build(changes):
     "rows",
     [
         *([1], [3], [5, 5], [1, 7], [7, 1], [20, 20], [50, 50]),
+        # slow: scenes of 500 and 1,000 elements
         *(pytest.param(rows, marks=pytest.mark.slow) for rows in ([500], [500, 500])),
     ],
 )

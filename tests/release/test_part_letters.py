@@ -283,7 +283,7 @@ def test_a_new_design_keeps_no_letters(tmp_path, capsys):
 
 
 @pytest.mark.cad
-@pytest.mark.slow
+@pytest.mark.slow  # a whole release
 def test_a_release_lists_each_part_with_its_letter(tmp_path):
     file = tmp_path / "hardware" / "tiny.toml"
     file.parent.mkdir()

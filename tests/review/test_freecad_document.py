@@ -123,7 +123,7 @@ freecad_is_here = pytest.mark.skipif(
 
 @pytest.mark.cad
 @freecad_is_here
-@pytest.mark.slow
+@pytest.mark.slow  # starts FreeCAD
 def test_freecad_opens_its_document_and_takes_it_apart(tmp_path):
     """Texts of the design are shown as they stand: none is a formula or markup. `make review` holds every
     shipped design's document against its export."""
@@ -176,7 +176,7 @@ os._exit(0)
 """
 
 
-@pytest.mark.slow
+@pytest.mark.slow  # starts FreeCAD's window program
 @pytest.mark.cad
 @freecad_is_here
 def test_the_macro_makes_the_document_again_and_keeps_the_eye(tmp_path, monkeypatch):

@@ -26,6 +26,7 @@ pytestmark = pytest.mark.cad
 SHIPPED = ("macro-array", *sorted({*FACING_ROWS} - {"macro-array"}))
 RANDOM = [
     *range(3),
+    # slow: 17 more of a kind, simulated in MuJoCo
     *(pytest.param(seed, marks=pytest.mark.slow) for seed in range(3, 20)),
     *(pytest.param(seed, marks=pytest.mark.nightly) for seed in range(20, 50)),
 ]
@@ -43,7 +44,9 @@ def drawn(number: int):
 
 
 @pytest.fixture(
-    scope="module", params=[*SHIPPED[:1], *(pytest.param(s, marks=pytest.mark.slow) for s in SHIPPED[1:])]
+    # slow: the first by day: each is simulated in MuJoCo
+    scope="module",
+    params=[*SHIPPED[:1], *(pytest.param(s, marks=pytest.mark.slow) for s in SHIPPED[1:])],
 )
 def shipped(request, tmp_path_factory) -> Simulated:
     return simulated(load(request.param), tmp_path_factory.mktemp("cache"))

@@ -30,7 +30,9 @@ FAST = ("one row", "two rows")
 
 @pytest.mark.cad
 @pytest.mark.parametrize(
-    "rows", [rows if rows in FAST else pytest.param(rows, marks=pytest.mark.slow) for rows in sorted(ROWS)]
+    # slow: few by day: all checks on solids
+    "rows",
+    [rows if rows in FAST else pytest.param(rows, marks=pytest.mark.slow) for rows in sorted(ROWS)],
 )
 def test_the_stack_stands_in_it_and_its_screws_are_reached(rows):
     design = variant(ROWS[rows])
@@ -47,7 +49,7 @@ def test_the_stack_stands_in_it_and_its_screws_are_reached(rows):
 
 
 @pytest.mark.cad
-@pytest.mark.slow
+@pytest.mark.slow  # steps of two scenes on solids, twice each
 @pytest.mark.parametrize(
     ("rocks", "scene", "lies"),
     [

@@ -291,6 +291,7 @@ def test_a_part_in_the_way_is_seen(tmp_path):
 
 
 @pytest.mark.slow  # whole assemblies simulated
+# slow: whole assemblies simulated
 @pytest.mark.parametrize("design", [FIRST, *(pytest.param(d, marks=pytest.mark.slow) for d in DESIGNS[1:])])
 def test_every_scene_goes_together_from_its_files(design, tmp_path):
     found = whole(design, tmp_path)

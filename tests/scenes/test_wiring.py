@@ -37,7 +37,9 @@ CAP = "ISO4762-M3x"
 
 @pytest.mark.cad
 @pytest.mark.parametrize(
-    "kind", [k if k == "one row" else pytest.param(k, marks=pytest.mark.slow) for k in sorted(KINDS)]
+    # slow: one kind by day: all checks on solids
+    "kind",
+    [k if k == "one row" else pytest.param(k, marks=pytest.mark.slow) for k in sorted(KINDS)],
 )
 def test_it_goes_together(kind):
     scene = make_scene(variant(KINDS[kind]), "wiring")

@@ -34,7 +34,7 @@ def test_chance_explains_nothing():
     assert first_order_share(rng.random(500), rng.random(500)) < 0.05
 
 
-@pytest.mark.slow
+@pytest.mark.slow  # a sweep of 128 designs on a cluster
 def test_the_page_stands_alone(tmp_path, scheduler, capsys):
     path = written(tmp_path, count="128")
     assert swept(path, "--out", tmp_path / "out", "--scheduler", scheduler).returncode == 0
@@ -78,7 +78,7 @@ def test_another_table_than_the_manifests_is_refused(tmp_path, capsys):
     assert "results.parquet: altered since the sweep wrote it" in capsys.readouterr().err
 
 
-@pytest.mark.slow
+@pytest.mark.slow  # a sweep of 128 designs on a cluster
 def test_words_have_shares_too(tmp_path, scheduler):
     """Two forms of hinge, and a thickness that hardly varies: the form decides all."""
     words = '[vary."element.sides"]\nvalues = ["one", "two"]\n[vary."design.title"]\nvalues = ["A"]\n'

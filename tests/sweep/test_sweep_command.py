@@ -178,7 +178,7 @@ def test_yield_is_what_build_says(tmp_path, capsys, scheduler):
     assert float(rows(tmp_path)[0]["yield"]) == json.loads(capsys.readouterr().out)["yield"]
 
 
-@pytest.mark.slow
+@pytest.mark.slow  # exports on a cluster
 @pytest.mark.cad
 def test_exports_are_kept_until_they_are_gone(tmp_path):
     """In this machine's own processes, which may start those that an export needs."""
@@ -204,7 +204,7 @@ def test_exports_are_kept_until_they_are_gone(tmp_path):
     assert manifest.exists()
 
 
-@pytest.mark.slow
+@pytest.mark.slow  # starts two clusters
 def test_two_sweeps_of_one_process(tmp_path):
     """The first leaves Dask's settings as the second needs them."""
     script = (

@@ -158,7 +158,7 @@ def test_an_exact_calibration_leaves_the_noise_of_the_readings():
     assert got.met and got.found.half_width < got.wanted < 4.0 * got.found.half_width
 
 
-@pytest.mark.slow
+@pytest.mark.slow  # several searches
 def test_the_gauge_is_chosen_where_a_converter_is_to_tell_a_small_force():
     """Within small's room 120 ohm at 1.09 V tell 0.8 mN or more, 350 ohm at 1.84 V six tenths of that."""
 
@@ -187,7 +187,7 @@ def test_duty_is_offered_where_noise_is_what_is_left():
     assert two.smallest_output / told[1] < 0.75 * one.smallest_output / told[0] and told[1] > 1.6 * told[0]
 
 
-@pytest.mark.slow
+@pytest.mark.slow  # several searches
 def test_duty_is_chosen_where_it_alone_tells_the_force():
     """With steady temperature and leads 1.09 V tell 0.066 mN in small's room; a duty tells less."""
 

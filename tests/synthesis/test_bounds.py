@@ -205,7 +205,7 @@ def test_sizes_are_those_of_the_box_around_all_parts():
     assert rods
 
 
-@pytest.mark.slow
+@pytest.mark.slow  # a search of 20 s
 def test_a_newcomers_box_is_met_by_two_commands(tmp_path, capsys):
     """README's own: 2 x 6 elements of steel in 40 x 40 mm, as all parts' box has it, and no rule broken."""
     target = Path(__file__).parents[2] / "hardware" / "targets" / "small-steel.toml"

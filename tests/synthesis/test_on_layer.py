@@ -182,7 +182,7 @@ def test_bodies_that_are_refused(old, new, message):
 
 
 # a minute each: three in CI (with and without a known thickness, and a half-space), the other seven by night
-@pytest.mark.slow
+@pytest.mark.slow  # as said above
 @pytest.mark.parametrize(  # two to three minutes each: one in CI, which is to stay within 45
     "case", [pytest.param(c, marks=[] if n == 4 else pytest.mark.nightly) for n, c in enumerate(TEN)]
 )
@@ -202,7 +202,7 @@ def test_the_stated_half_width_covers_the_layer(case):
         assert (np.abs(seen[:, 0]) < stated).mean() > 0.86  # 52 of 60: one in a thousand where 95 % hold
 
 
-@pytest.mark.slow
+@pytest.mark.slow  # bricks under ten pads
 @pytest.mark.parametrize(
     ("elements", "load", "most"), [(4, 2.04, 0.8), pytest.param(10, 3.4, 2.0, marks=pytest.mark.nightly)]
 )

@@ -208,7 +208,7 @@ def test_four_cells_find_a_face_that_some_do_not_touch(turn):
     assert np.radians(found.angle[0, :, 0]) == pytest.approx(slope, abs=0.005)
 
 
-@pytest.mark.slow
+@pytest.mark.slow  # 40 simulated labs
 def test_a_layer_s_modulus_is_held_by_four_cells(tmp_path):
     """40 labs: as often as 95 % allow. Loads taken for readings had made it 88 % of 200."""
     found = moduli(tmp_path, 20, 40, 0.3, 1.0)

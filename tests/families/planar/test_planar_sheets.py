@@ -78,7 +78,7 @@ def test_the_jaw_s_foil_by_hand():
     assert any("6 cells as X" in run and "6 as Z" in run for run in [" ".join(runs)])
 
 
-@pytest.mark.slow
+@pytest.mark.slow  # a sheet of 36 cells
 def test_the_bench_array_s_foil_names_its_holes_and_datums():
     """36 cells, holes counted; limits of dowel holes as the process and their places ask: pin 2.008, play
     0.002, places of 0.013 * 57.4/25 = 0.030 and 0.02, cut 0.013: 2.073, up to the next 5 um."""
