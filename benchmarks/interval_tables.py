@@ -15,14 +15,14 @@ from math import inf
 from pathlib import Path
 
 import numpy as np
+from example_readings import Noise, truth
 from labs import CELL, OBJECTS, QUANTITIES, STEPS, Lab, Touch, intervals, known_widths, touched, true_values
 from scipy.special import betaincinv
 from tables import lines
 from tables import renewed as with_tables
 
 from tactcad.lab.load_cell import LoadCell
-from tactcad.lab.simulate import Noise, Truth
-from tactcad.paper.examples import truth
+from tactcad.paper.grasp_figures import Truth
 
 SEED = 20261122
 LABS = 500  # of every row; twice as many for events of one in a hundred

@@ -7,9 +7,10 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
+from example_readings import READING_NOISE, SAMPLES, Noise, calibration_rows
 
 from tactcad.design.load import DEFAULT_DESIGN
-from tactcad.lab import pads, simulate
+from tactcad.lab import pads
 from tactcad.lab.calibration import ElementCalibration, calibrate
 from tactcad.lab.calibration_file import Sensitivity
 from tactcad.lab.combine import DISAGREE, Interval, Slopes, combine
@@ -17,8 +18,7 @@ from tactcad.lab.grasp import common_slopes, evaluate
 from tactcad.lab.load_cell import LoadCell, series_removed
 from tactcad.lab.readings import CalibrationReadings, GraspReadings
 from tactcad.lab.regression import KNOWN, t_quantile
-from tactcad.lab.simulate import Noise, Truth
-from tactcad.paper.examples import READING_NOISE, SAMPLES
+from tactcad.paper.grasp_figures import Truth
 
 LEVEL = 0.95
 CELL = 57.04  # N/mm, the paper's
@@ -40,7 +40,7 @@ class Lab:
 
     def readings(self, truth: Truth, rng: np.random.Generator) -> CalibrationReadings:
         cell = self.cell.stiffness * (1 + self.cell_off * rng.choice([-1, 1]))
-        rows = simulate.calibration_rows(truth, cell, STEPS, self.runs, self.noise, rng, self.gap)
+        rows = calibration_rows(truth, cell, STEPS, self.runs, self.noise, rng, self.gap)
         number = rows[:, :2].astype(int).T
         return CalibrationReadings(*number, *rows[:, 2:].T, np.arange(len(rows)))
 

@@ -32,7 +32,7 @@ def follow(commands: str, shown: list[str], folder: Path) -> None:
     """Type the commands in `folder`; they end well, and the lines shown are printed in their order."""
     path = f"{Path(sys.executable).parent}:{os.environ['PATH']}"
     done = subprocess.run(
-        ["sh", "-e", "-c", commands],
+        ["sh", "-e", "-c", commands.replace("CHECKOUT", str(ROOT))],
         cwd=folder,
         env=os.environ | {"PATH": path},
         stdout=subprocess.PIPE,

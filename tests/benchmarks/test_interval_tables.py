@@ -8,11 +8,11 @@ from pathlib import Path
 import interval_tables
 import numpy as np
 import pytest
+from example_readings import Noise
 from labs import Lab, intervals, known_widths, slope_covariance, true_values
 from scipy.stats import binom
 
 from tactcad.lab.regression import fit_lines
-from tactcad.lab.simulate import Noise
 
 DOCUMENT = Path(__file__).parents[2] / "benchmarks" / "results" / "intervals.md"
 ARRAY = interval_tables.chosen(interval_tables.THREE)

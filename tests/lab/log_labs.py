@@ -8,10 +8,10 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
+from example_readings import truth
 
 from tactcad.circuit.element_signals import design_readout
-from tactcad.lab.simulate import Truth, approach
-from tactcad.paper.examples import truth
+from tactcad.paper.grasp_figures import Truth, approach
 from tactcad.parts.array.bridge_figures import drift
 from tactcad.parts.array.layout import Layout
 from tactcad.parts.rules import load

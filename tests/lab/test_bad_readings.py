@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from example_readings import Noise, calibration_rows
 
 from tactcad.cli.main import main
 from tactcad.design import csv_table
@@ -16,8 +17,8 @@ from tactcad.export.inspection import COLUMNS
 from tactcad.lab import batch, calibration, calibration_file, readings, regression
 from tactcad.lab.inspection_sheet import read_sheet
 from tactcad.lab.load_cell import LoadCell
-from tactcad.lab.simulate import Noise, Truth, calibration_rows
 from tactcad.mechanics.section import REQUIRED
+from tactcad.paper.grasp_figures import Truth
 from tactcad.parts.array.layout import Layout
 from tactcad.parts.rules import load
 

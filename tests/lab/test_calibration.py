@@ -6,15 +6,16 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from example_readings import Noise, calibration_rows
 from scipy.stats import binom, norm
 from scipy.stats import t as t_distribution
 
 from tactcad.design.messages import CheckFailure, InputError
-from tactcad.lab import calibration, calibration_file, readings, regression, simulate
+from tactcad.lab import calibration, calibration_file, readings, regression
 from tactcad.lab.column_units import against_design
 from tactcad.lab.load_cell import LoadCell
 from tactcad.lab.readings import CalibrationReadings
-from tactcad.lab.simulate import Noise, Truth
+from tactcad.paper.grasp_figures import Truth
 from tactcad.parts.rules import load
 
 CELL = 57.04
@@ -24,7 +25,7 @@ TRUTH = Truth(np.array([4, 8]), np.array([5.78, 80.38]), np.array([-3.8, -9.0]),
 
 
 def simulated(noise, seed=0, runs=3, truth=TRUTH, steps=STEPS, cell=CELL) -> CalibrationReadings:
-    rows = simulate.calibration_rows(truth, cell, steps, runs, noise, np.random.default_rng(seed))
+    rows = calibration_rows(truth, cell, steps, runs, noise, np.random.default_rng(seed))
     return CalibrationReadings(
         rows[:, 0].astype(int), rows[:, 1].astype(int), *rows[:, 2:].T, np.arange(len(rows)) + 2
     )

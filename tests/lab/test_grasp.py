@@ -8,21 +8,22 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from example_readings import Noise, calibration_rows, truth
 from scipy.stats import binom
 
 from tactcad.design.messages import InputError
-from tactcad.lab import calibration, grasp, readings, simulate
+from tactcad.lab import calibration, grasp, readings
 from tactcad.lab.calibration_file import Sensitivity
 from tactcad.lab.combine import combine, scatter
 from tactcad.lab.load_cell import LoadCell
 from tactcad.lab.readings import CalibrationReadings, GraspReadings
 from tactcad.mechanics import lumped
 from tactcad.mechanics.lumped import shares_between
-from tactcad.paper import examples
+from tactcad.paper.grasp_figures import Truth, approach, grasp_signals
 
 CELL = 57.04
 LOAD = 3.235 + 0.980665 * np.arange(8)
-TRUTH = simulate.Truth(
+TRUTH = Truth(
     np.array([1, 2, 3, 4]),
     np.array([80.0, 38.0, 12.0, 6.0]),
     np.array([-9.0, -7.3, -4.9, 3.8]),
@@ -46,7 +47,7 @@ def exact(truth=TRUTH) -> Sensitivity:
 
 
 def grasped(x, noise=0.0, seed=0, heights=None, truth=TRUTH, load=LOAD) -> GraspReadings:
-    signal = simulate.grasp_signals(truth, load, x, noise, np.random.default_rng(seed), heights)
+    signal = grasp_signals(truth, load, x, noise, np.random.default_rng(seed), heights)
     return GraspReadings(1, truth.element, load, np.zeros(len(load), int), signal)
 
 
@@ -64,7 +65,7 @@ def test_elements_that_have_each_others_zeros_are_refused():
 
 
 def test_swapped_channels_are_refused_without_zeros_by_the_one_exchange_that_makes_elements_agree():
-    nine = examples.truth()
+    nine = truth()
     known = replace(exact(nine), stiffness_se=0.005 * nine.stiffness, dof=np.full(9, 6.0))
     read = grasped(3.85, 1e-4, truth=nine)
     assert grasp.evaluate(read, known).combined.estimate == pytest.approx(3.85, rel=0.02)
@@ -171,7 +172,7 @@ def test_all_elements_together_are_the_pairs_least_squares_with_their_full_covar
 
 
 def simulated_sensitivity(rng) -> Sensitivity:
-    rows = simulate.calibration_rows(TRUTH, CELL, 0.025 * np.arange(7), 3, simulate.Noise(), rng)
+    rows = calibration_rows(TRUTH, CELL, 0.025 * np.arange(7), 3, Noise(), rng)
     made = calibration.calibrate(
         CalibrationReadings(
             rows[:, 0].astype(int), rows[:, 1].astype(int), *rows[:, 2:].T, np.arange(len(rows))
@@ -200,7 +201,7 @@ def test_stated_intervals_hold_the_truth_as_often_as_they_say(x):
     trials, combined, pairs = 300, 0, np.zeros(3)
     for _ in range(trials):
         known = simulated_sensitivity(rng)
-        signal = simulate.grasp_signals(TRUTH, LOAD, x, 5e-4, rng, rng.normal(0, 0.005, 4))
+        signal = grasp_signals(TRUTH, LOAD, x, 5e-4, rng, rng.normal(0, 0.005, 4))
         found = grasp.evaluate(GraspReadings(1, TRUTH.element, LOAD, np.zeros(8, int), signal), known)
         combined += found.combined.low <= x <= found.combined.high
         pairs += [p.object.low <= x <= p.object.high for p in found.pairs]
@@ -216,7 +217,7 @@ def test_says_when_the_data_do_not_bound_the_object():
     )
     soft = grasp.evaluate(grasped(0.01, 0.02, seed=2), exact()).combined
     assert soft.low == 0 and "from above only" in soft.verdict
-    twins = simulate.Truth(
+    twins = Truth(
         TRUTH.element[:2], np.array([10.0, 10.0]), TRUTH.signal_per_deflection[:2], TRUTH.zero_signal[:2]
     )
     assert (
@@ -281,7 +282,7 @@ def test_presses_of_any_array_are_believed_and_wrong_units_are_not():
     rng = np.random.default_rng(3)
     for n in rng.integers(2, 30, 20):
         K = 10 ** (rng.uniform(-0.7, 0.7, n) + rng.uniform(-0.8, 1.5))
-        truth = simulate.Truth(np.arange(1, n + 1), K, 10 ** rng.uniform(-3, 1, n), np.zeros(n))
+        truth = Truth(np.arange(1, n + 1), K, 10 ** rng.uniform(-3, 1, n), np.zeros(n))
         load, x = np.arange(1, 9) * 0.01 * K.sum(), K.mean() * 10 ** rng.uniform(-2, 4)
         read = rng.permutation(n)[: int(rng.integers(2, n + 1))]
         right = grasped(x, 1e-6, truth=truth, load=load)
@@ -319,7 +320,7 @@ def test_an_unknown_reference_is_refused():
 
 def test_the_array_carries_the_load_and_late_pads_carry_none():
     heights = np.array([0.0, 0.05, -0.3, 0.01])
-    z, d = simulate.approach(LOAD, TRUTH.stiffness, 5.0, heights)
+    z, d = approach(LOAD, TRUTH.stiffness, 5.0, heights)
     assert (TRUTH.stiffness[:, None] * d).sum(0) == pytest.approx(LOAD, rel=1e-12)
     assert ((z[None, :] + heights[:, None] <= 0) == (d == 0)).all() and (d[2, 0] == 0)
 

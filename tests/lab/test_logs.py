@@ -7,6 +7,7 @@ import json
 import re
 from dataclasses import replace
 
+import example_readings
 import log_labs as labs
 import numpy as np
 import pytest
@@ -568,19 +569,16 @@ def test_two_thousand_logs_hold_at_their_level(tmp_path):
     assert 0.93 <= holds <= 0.97 and width <= 1.3
 
 
-def test_the_example_log_is_what_the_examples_module_writes(tmp_path, capsys):
-    from tactcad.paper import examples
-
-    examples.write(tmp_path)
-    for name in ("grasp-log.csv", "grasp-map.toml"):
-        assert (tmp_path / name).read_bytes() == (EXAMPLES / name).read_bytes()
+def test_the_example_log_is_what_its_script_writes(tmp_path, capsys):
+    example_readings.write(tmp_path)
+    assert (tmp_path / "grasp-log.csv").read_bytes() == (EXAMPLES / "grasp-log.csv").read_bytes()
     cal = str(tmp_path / "elements.csv")
     assert main(["calibrate", str(EXAMPLES / "calibration.csv"), "--out", cal]) == 0
     log = [str(EXAMPLES / "grasp-log.csv"), "--map", str(EXAMPLES / "grasp-map.toml")]
     capsys.readouterr()
     assert main(["stiffness", *log, "--calibration", cal, "--coupling", "0", "--json"]) == 0
     one = json.loads(capsys.readouterr().out)["samples"][0]
-    assert one["combined"]["low"] < examples.SAMPLES[0] < one["combined"]["high"]
+    assert one["combined"]["low"] < example_readings.SAMPLES[0] < one["combined"]["high"]
     assert main(["readings", *log, "--out", str(tmp_path / "r.csv")]) == 0
     capsys.readouterr()
     assert (

@@ -8,11 +8,12 @@ import json
 import re
 from pathlib import Path
 
+import example_readings
 import pytest
 
 from tactcad.cli.main import main
 from tactcad.design.messages import InputError
-from tactcad.paper import examples, validation
+from tactcad.paper import validation
 from tactcad.report import report as reporting
 
 ROOT = Path(__file__).parents[2]
@@ -98,7 +99,7 @@ def test_a_design_without_the_paper_s_elements_is_refused(paper, array):
 
 
 def test_examples_are_simulated_say_so_and_can_be_made_again(tmp_path):
-    examples.write(tmp_path)
+    example_readings.write(tmp_path)
     for file in (CALIBRATION, GRASP):
         assert (tmp_path / file.name).read_text() == file.read_text()
         assert "SIMULATED" in file.read_text().splitlines()[0]

@@ -11,6 +11,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from example_readings import Noise, calibration_rows
 
 from tactcad.design.tree import Design
 from tactcad.lab.calibration import calibrate
@@ -19,10 +20,10 @@ from tactcad.lab.combine import Interval, combine, hull
 from tactcad.lab.grasp import common_slopes
 from tactcad.lab.load_cell import LoadCell
 from tactcad.lab.readings import CalibrationReadings, GraspReadings
-from tactcad.lab.simulate import Noise, Truth, approach, calibration_rows
 from tactcad.mechanics import gauge_signal, ladder, strength
 from tactcad.mechanics.readout import volts_per_strain
 from tactcad.mechanics.section import HingeSection
+from tactcad.paper.grasp_figures import Truth, approach
 from tactcad.parts.array.hinge_section import design_alloy, design_gauge, design_readout, hinge_section
 from tactcad.parts.array.layout import Layout
 from tactcad.parts.array.leads import longest_lead_resistance

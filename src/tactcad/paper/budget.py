@@ -14,7 +14,6 @@ from math import inf, log, log10, nan, radians, tan
 import numpy as np
 
 from tactcad.fem.bonded_leaf import stiffness
-from tactcad.lab.simulate import approach
 from tactcad.mechanics import gauge_signal, ladder, lumped, readout
 from tactcad.mechanics.as_built import COMMON, half_widths
 from tactcad.mechanics.lumped import coupling
@@ -27,7 +26,7 @@ from tactcad.report import plots as d
 from tactcad.report.figures import percent, sig
 from tactcad.report.report import Picture, ReportSection, ReportTable
 
-from .grasp_figures import elements_in_parallel
+from .grasp_figures import approach, elements_in_parallel
 from .prose import drawn, effect_text, saying, section, table
 
 

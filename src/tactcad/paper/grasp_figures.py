@@ -9,7 +9,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.special import fdtrc
 
-from tactcad.lab.simulate import Truth, approach, grasp_signals
 from tactcad.mechanics import ladder, lumped
 from tactcad.paper.array_model import ArrayModel
 from tactcad.paper.published import Published
@@ -20,6 +19,70 @@ from tactcad.report.report import Picture, ReportSection, ReportTable
 from .prose import drawn, saying, section, table
 
 REPEATS = 400  # simulated grasps for the error bars
+
+
+@dataclass(frozen=True)
+class Truth:
+    """The simulated array's true values; arrays, [element]."""
+
+    element: np.ndarray  # numbers
+    stiffness: np.ndarray  # K, N/mm
+    signal_per_deflection: np.ndarray  # K_v, V/mm
+    zero_signal: np.ndarray  # V_0, V
+
+
+def approach(
+    load: np.ndarray, stiffness: np.ndarray, object_stiffness: float, pad_height: np.ndarray | None = None
+) -> tuple[np.ndarray, np.ndarray]:
+    """Approach and deflections of elements in parallel on one sample.
+
+    By equation (1) an element in contact deflects by (z + h) x/(K + x), with z the approach and x the
+    object's stiffness under one pad; one that is not yet in contact carries no load. The forces add up to
+    the load.
+
+    Parameters
+    ----------
+    load : array, [load]
+        N.
+    stiffness : array, [element]
+        K, N/mm.
+    object_stiffness : float
+        x, N/mm.
+    pad_height : array, [element], optional
+        h: height of each pad over the plane, mm; by default all are level.
+
+    Returns
+    -------
+    z : array, [load]
+        mm.
+    deflection : array, [element, load]
+        mm.
+    """
+    h = np.zeros_like(stiffness) if pad_height is None else pad_height
+    share = object_stiffness / (stiffness + object_stiffness)
+    rate = stiffness * share
+    order = np.argsort(-h, kind="stable")  # the pads touch in this order
+    sorted_rate, sorted_h = rate[order], h[order]
+    # approach with the first n pads touching, and the one at which the next would touch
+    candidate = (load[:, None] - np.cumsum(sorted_rate * sorted_h)) / np.cumsum(sorted_rate)
+    following = np.append(-sorted_h[1:], np.inf)
+    z = candidate[np.arange(len(load)), np.argmax(candidate <= following, axis=1)]
+    return z, share[:, None] * np.maximum(z[None, :] + h[:, None], 0.0)
+
+
+def grasp_signals(
+    truth: Truth,
+    load: np.ndarray,
+    object_stiffness: float,
+    noise: float,
+    rng: np.random.Generator,
+    pad_height: np.ndarray | None = None,
+) -> np.ndarray:
+    """Signals (V) of a grasp, [element, load]: those of `approach`'s deflections, with a standard deviation
+    of `noise` (V, of the averaged reading)."""
+    _, deflection = approach(load, truth.stiffness, object_stiffness, pad_height)
+    clean = truth.zero_signal[:, None] + truth.signal_per_deflection[:, None] * deflection
+    return clean + noise * rng.standard_normal(clean.shape)
 
 
 @dataclass(frozen=True)

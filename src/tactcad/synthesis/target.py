@@ -37,7 +37,6 @@ from tactcad.design.text_values import parse_toml
 from tactcad.design.tree import Array, Design, Element, Identity, Rating, Sheet, Tolerance
 from tactcad.lab.calibration import RUN_SCATTER
 from tactcad.lab.pads import SOFT
-from tactcad.lab.simulate import Noise
 
 ARM, THICKNESS = 0.1, 0.005  # mm, steps that a drawing states and a shop's wire can tell apart
 LEAST = ("width", "kinds", "room", "cut", "tolerance")
@@ -195,8 +194,8 @@ class Known:
     run_scatter: float = given(
         Number("", 0, 0.2, "calibrated: standard deviation of a slope from run to run, relative"), RUN_SCATTER
     )
-    force_noise: float = given(Number("N", 0, 10, "calibrated: of one reading"), Noise.force)
-    displacement_noise: float = given(Number("mm", 0, 0.1, "calibrated: of one reading"), Noise.displacement)
+    force_noise: float = given(Number("N", 0, 10, "calibrated: of one reading"), 0.003)
+    displacement_noise: float = given(Number("mm", 0, 0.1, "calibrated: of one reading"), 0.0005)
     gauge_factor: float = given(
         Number("", 0, 0.2, "drawn or inspected: half-width of each gauge's own sensitivity, relative"), 0.02
     )

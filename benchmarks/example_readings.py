@@ -1,27 +1,93 @@
-"""Writes the example readings: `python -m tactcad.paper.examples DIR`. Simulated, and the files say so.
+"""Simulated readings of a calibration, for tests of the intervals and for the files of hardware/examples:
+`python benchmarks/example_readings.py hardware/examples` writes them.
 
-Truth: Table 1's stiffnesses and sensitivities. Two samples, one soft and one far stiffer than every element.
+Truth of the examples: Table 1's stiffnesses and sensitivities. Two samples, one soft and one far stiffer than
+every element.
 """
 
 from __future__ import annotations
 
 import sys
-from importlib.resources import files
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
-from tactcad.lab.simulate import Noise, Truth, approach, calibration_rows, grasp_signals
 from tactcad.paper import published
+from tactcad.paper.grasp_figures import Truth, approach, grasp_signals
+from tactcad.synthesis.target import Known
 
 SEED = 20260102
-NOISE = Noise()
 READING_NOISE = 0.0002  # V, of ten averaged samples
 SAMPLES = (3.85, 3000.0)  # N/mm
 PAD_HEIGHT = 0.005  # mm, standard deviation
 LOADS = 8  # weights added to the moving weight
 LOG_RATE, LOG_STEP, LOG_CHANGE = 10.0, 4.0, 0.8  # Hz; s of a step, and of it while the load changes
 LOG_DRIFT, LOG_NOISE = 0.0004, 0.0005  # V: of a channel over the log, and of one sample
+
+
+@dataclass(frozen=True)
+class Noise:
+    """Standard deviations."""
+
+    force: float = Known.force_noise  # N, of a reading
+    displacement: float = Known.displacement_noise  # mm, of a reading
+    signal: float = 0.0005  # V, of a reading
+    of_reading: float = 0.0  # relative: of a reading's force, and of its signal's change
+    of_run: float = 0.0  # relative: of a run's slopes
+
+
+def calibration_rows(
+    truth: Truth,
+    load_cell: float,
+    displacement: np.ndarray,
+    runs: int,
+    noise: Noise,
+    rng: np.random.Generator,
+    gap: float = 0.0,
+) -> np.ndarray:
+    """Readings of a calibration: in every run the stage presses load cell and element in series.
+
+    Parameters
+    ----------
+    truth : Truth
+    load_cell : float
+        Stiffness of the load cell, N/mm.
+    displacement : array, [step]
+        Of the stage, mm.
+    runs : int
+    noise : Noise
+    rng : numpy.random.Generator
+    gap : float
+        Largest way through air before contact, mm; each run's is drawn from 0 to this.
+
+    Returns
+    -------
+    array, [reading, 5]
+        Element, run, displacement (mm), force (N), signal (V).
+    """
+    share = load_cell / (load_cell + truth.stiffness)
+    shape = (len(truth.element), runs, len(displacement))
+    more = rng.spawn(1)[0]  # a generator of its own, so that a gap or relative noise leaves the other draws
+    pressed = np.maximum(displacement - gap * more.random((*shape[:2], 1)), 0.0)
+    deflection = share[:, None, None] * (pressed + noise.displacement * rng.standard_normal(shape))
+    true_force = truth.stiffness[:, None, None] * deflection * _factors(noise, shape, more)
+    force = true_force + noise.force * rng.standard_normal(shape)
+    change = truth.signal_per_deflection[:, None, None] * deflection * _factors(noise, shape, more)
+    signal = truth.zero_signal[:, None, None] + change + noise.signal * rng.standard_normal(shape)
+    element, run, step = np.broadcast_arrays(
+        truth.element[:, None, None], np.arange(1, runs + 1)[None, :, None], displacement[None, None, :]
+    )
+    return np.column_stack([a.ravel() for a in (element, run, step, force, signal)])
+
+
+def _factors(noise: Noise, shape: tuple[int, int, int], rng: np.random.Generator) -> np.ndarray:
+    """Factors on the true force or signal, one part drawn for each run, one for each reading."""
+    of_run = 1 + noise.of_run * rng.standard_normal((*shape[:2], 1))
+    return of_run * (1 + noise.of_reading * rng.standard_normal(shape))
+
+
+NOISE = Noise()
 
 
 def truth() -> Truth:
@@ -41,7 +107,7 @@ def calibration_csv(rng: np.random.Generator) -> str:
     displacement = step * np.arange(round(travel / step) + 1)
     rows = calibration_rows(truth(), cell, displacement, int(figure["calibration_runs"]), NOISE, rng)
     lines = [
-        "# SIMULATED readings, not measured ones (python -m tactcad.paper.examples).",
+        "# SIMULATED readings, not measured ones (benchmarks/example_readings.py).",
         f"# Truth: the paper's Table 1; load cell {cell:g} N/mm in series; noise {NOISE.force * 1e3:g} "
         f"mN, {NOISE.displacement * 1e3:g} um, {NOISE.signal * 1e3:g} mV.",
         "element,run,displacement_um,force_N,signal_V",
@@ -58,7 +124,7 @@ def grasp_csv(rng: np.random.Generator) -> str:
     array = truth()
     height = PAD_HEIGHT * rng.standard_normal(len(array.element))
     lines = [
-        "# SIMULATED readings, not measured ones (python -m tactcad.paper.examples).",
+        "# SIMULATED readings, not measured ones (benchmarks/example_readings.py).",
         f"# Truth: the paper's Table 1; sample 1 is {SAMPLES[0]:g} N/mm, sample 2 {SAMPLES[1]:g} N/mm "
         f"under one pad; pad heights +-{PAD_HEIGHT * 1e3:g} um, noise {READING_NOISE * 1e3:g} mV.",
         "sample,load_N,element,signal_V",
@@ -93,7 +159,7 @@ def grasp_log(rng: np.random.Generator) -> str:
     dead = np.zeros(len(time))
     columns = [by_number.get(n, dead) for n in range(1, 11)]
     lines = [
-        "# SIMULATED log, not a measured one (python -m tactcad.paper.examples).",
+        "# SIMULATED log, not a measured one (benchmarks/example_readings.py).",
         f"# Truth: the paper's Table 1 on {SAMPLES[0]:g} N/mm under one pad; drift +-{LOG_DRIFT * 1e3:g} mV, "
         f"noise {LOG_NOISE * 1e3:g} mV a sample.",
         "Time (s);Fz (N);" + ";".join(f"Dev1/ai{i}" for i in range(len(columns))),
@@ -106,13 +172,12 @@ def grasp_log(rng: np.random.Generator) -> str:
 
 
 def write(folder: Path) -> None:
-    """calibration.csv, grasp.csv, grasp-log.csv and grasp-map.toml."""
+    """calibration.csv, grasp.csv and grasp-log.csv."""
     rng = np.random.default_rng(SEED)
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "calibration.csv").write_text(calibration_csv(rng), "utf-8")
     (folder / "grasp.csv").write_text(grasp_csv(rng), "utf-8")
     (folder / "grasp-log.csv").write_text(grasp_log(rng), "utf-8")
-    (folder / "grasp-map.toml").write_bytes((files("tactcad.paper") / "data" / "grasp-map.toml").read_bytes())
 
 
 if __name__ == "__main__":
