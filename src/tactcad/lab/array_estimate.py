@@ -137,10 +137,8 @@ def _by_closed_form(
         gauge = strain.gauge(section, 1.0, grid, rung)
     except CheckFailure:  # the grid reaches onto a two-sided hinge's fillets: only the gauge has no estimate
         gauge = np.array(np.nan)
-    if rung in ladder.FITTED:
-        stress, face = strain.peak_stress(section, 1.0), strain.face_stress(section, 1.0)
-    else:  # these rungs have no fillet
-        stress = face = peak * section.youngs_modulus
+    stress = strain.leaf_stress(section, 1.0, rung)
+    face = strain.face_stress(section, 1.0) if rung in ladder.FITTED else stress
     strains = _PerNewton(*(np.broadcast_to(x, section.shape) for x in (gauge, peak, stress, face)))
     return _estimates(layout, places, section, K, strains, expected_error_of(section, rung), errors, force)
 
@@ -231,6 +229,7 @@ def _estimates(
 ) -> list[ElementEstimate]:
     alloy, rating = design_alloy(layout.design), layout.design.rating
     stiffness_error = np.broadcast_to(stiffness_error, len(places))
+    rated_deflection = strength.rated_deflection(alloy.yield_strength / per_newton.fillet_stress, K, rating)
     rows = []
     for i, place in enumerate(places):
         stress = float(per_newton.fillet_stress[i])
@@ -263,7 +262,7 @@ def _estimates(
                 yield_force=yield_force,
                 yield_deflection=yield_force / float(K[i]),
                 rated_force=min(force, yield_force / rating.yield_factor),
-                rated_deflection=yield_force / rating.deflection_factor / float(K[i]),
+                rated_deflection=float(rated_deflection[i]),
                 expected_error=_known(stiffness_error[i]),
             )
         )

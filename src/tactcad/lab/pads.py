@@ -17,9 +17,9 @@ from tactcad.lab.readings import GraspReadings
 from tactcad.mechanics import gauge_signal, ladder, readout
 from tactcad.mechanics.lumped import shares_between
 from tactcad.mechanics.strength import tip_compliance
-from tactcad.parts.array.hinge_section import design_gauge, design_readout, hinge_section, not_reached
+from tactcad.parts.array.hinge_section import arms, design_gauge, design_readout, hinge_section, not_reached
 from tactcad.parts.array.layout import Layout
-from tactcad.parts.array.stop_gap import stop_gap
+from tactcad.parts.array.stop_gap import stop_gaps
 from tactcad.parts.rules import load
 
 SOFT = 0.49  # Poisson's ratio of rubber and tissue as layers: the paper's samples
@@ -152,11 +152,11 @@ def springs_of(design: Design) -> tuple[Pads, np.ndarray]:
         raise CheckFailure(why)
     K = np.broadcast_to(ladder.stiffness(section, ladder.DEFAULT_RUNG), len(at))
     x, y = places(layout)
-    away = np.sign(x) / np.array([p.load_arm for p in at])  # hinges lie outside the pads
+    away = np.sign(x) / section.load_arm  # hinges lie outside the pads
     move = np.stack([np.ones(len(at)), -away, np.zeros(len(at))], axis=1)
     compliance = move[:, :, None] * move[:, None, :] / K[:, None, None]
-    tip = tip_compliance(section, K, np.array([p.arm for p in at]))
-    stop = np.array([stop_gap(layout, p) for p in at]) / tip / K
+    tip = tip_compliance(section, K, arms(layout))
+    stop = np.array(stop_gaps(layout)) / tip / K
     height = np.zeros(len(at))
     pads = Pads(x, y, design.element.pad_length, design.sheet.thickness, compliance, height, stop)
     foil = gauge_signal.foil_strain_per_deflection(section, design_gauge(design))

@@ -88,6 +88,18 @@ def stiffness(s: HingeSection, rung: str = DEFAULT_RUNG) -> Array:
     return _stiffness(s, rung)
 
 
+def stiffness_beyond_the_fit(s: HingeSection) -> Array:
+    """Tip stiffness by the default rung, N/mm; beyond its range by the section's integral, which has no fit
+    and is 0.93 to 3.8 times as stiff where both hold, 1.02 in the median (20 000 random designs). NaN without
+    a hinge."""
+    known = evaluate(s)
+    return (
+        known.stiffness
+        if known.valid.all()
+        else np.where(known.valid, known.stiffness, evaluate(s, "section").stiffness)
+    )
+
+
 def require_range(s: HingeSection, rung: str) -> None:
     """Raise CheckFailure with the first broken rule and the design that breaks it."""
     for mask in validity.broken_rules(s, rung).values():

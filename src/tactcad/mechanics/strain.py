@@ -110,6 +110,13 @@ def peak_stress(s: HingeSection, force: Array | float) -> Array:
     return stress_beyond_the_fit(s, force)
 
 
+def leaf_stress(s: HingeSection, force: Array | float, rung: str) -> Array:
+    """`peak_stress` by the rungs that know the fillet, by the others at the leaf's own peak strain, MPa."""
+    if rung in ladder.FITTED:
+        return peak_stress(s, force)
+    return peak(s, force, rung) * s.youngs_modulus
+
+
 def stress_beyond_the_fit(s: HingeSection, force: Array | float) -> Array:
     """`peak_stress` without its check of the range, MPa: not accurate enough to report, but good for
     bounds.

@@ -25,12 +25,17 @@ Of the stop's functions s is the element, `stiffness` (N/mm) is K, `arm` (mm) th
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from tactcad.design.materials import Alloy
 
 from . import strain, validity
 from .section import Array, HingeSection
+
+if TYPE_CHECKING:
+    from tactcad.design.tree import Rating
 
 
 def yield_force(s: HingeSection, alloy: Alloy) -> Array:
@@ -49,6 +54,16 @@ def yield_force_where_known(s: HingeSection, alloy: Alloy) -> Array:
     if known.any():
         force[known] = yield_force(s.rows(known.reshape(-1)), alloy)
     return force
+
+
+def rated_force(at_yield: Array, rating: Rating) -> Array:
+    """Force in use of what yields at `at_yield`, N."""
+    return np.minimum(rating.force, at_yield / rating.yield_factor)
+
+
+def rated_deflection(at_yield: Array, stiffness: Array, rating: Rating) -> Array:
+    """Deflection that no hinge may exceed, mm, of one that yields at `at_yield` (N)."""
+    return at_yield / rating.deflection_factor / stiffness
 
 
 def elastic(s: HingeSection, alloy: Alloy, force: Array | float) -> np.ndarray:

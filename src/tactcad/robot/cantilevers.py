@@ -13,7 +13,7 @@ from tactcad.contour.cut import cut
 from tactcad.design.tree import Design
 from tactcad.lab.pads import springs_of
 from tactcad.mechanics.strength import tip_compliance
-from tactcad.parts.array.hinge_section import hinge_section
+from tactcad.parts.array.hinge_section import arms, hinge_section
 from tactcad.parts.array.layout import ElementPlace, Layout
 from tactcad.parts.array.stop_gap import stop_gap
 from tactcad.parts.language.description import Extrusion, Part
@@ -36,8 +36,8 @@ def cantilevers(design: Design) -> Mechanism:
     """
     layout, e, width = Layout(design), design.element, design.sheet.thickness
     springs, signal = springs_of(design)
-    K, arms = 1 / springs.compliance[:, 0, 0], np.array([p.arm for p in layout.elements])
-    tip = tip_compliance(hinge_section(layout, layout.elements), K, arms)
+    K = 1 / springs.compliance[:, 0, 0]
+    tip = tip_compliance(hinge_section(layout, layout.elements), K, arms(layout))
     flange = np.array([0.0, 0.0, layout.carrier_bottom + design.clamp.carrier_thickness])
     placed = array_seen(design, flange, np.array(DOWN))
     noise, beside, moving = reading_noise(layout, alike=True), [*_neighbours(layout.elements)], []

@@ -29,10 +29,10 @@ from tactcad.parts.array.element import (
     STOP_GAP,
     TIP_PLACE,
 )
-from tactcad.parts.array.hinge_section import hinge_section
+from tactcad.parts.array.hinge_section import arms, hinge_section
 from tactcad.parts.array.layout import Layout
 from tactcad.parts.array.measurements import WAYS
-from tactcad.parts.array.stop_gap import stop_gap
+from tactcad.parts.array.stop_gap import stop_gaps
 from tactcad.parts.rigs.setting_fixture import SettingLayout
 from tactcad.scenes.requirement import Deviations, DimensionLimits
 from tactcad.scenes.scene import Freedom
@@ -114,7 +114,7 @@ class Assembled:
 
     @cached_property
     def arm(self) -> Array:
-        return np.array([p.arm for p in self.layout.elements])
+        return arms(self.layout)
 
     @property
     def dowel_x(self) -> float:
@@ -301,8 +301,7 @@ class Assembled:
     @cached_property
     def gaps(self) -> Array:
         """Stop gap of each element as assembled."""
-        drawn = np.array([stop_gap(self.layout, p) for p in self.layout.elements])
-        return drawn + self.made[of_element(STOP_GAP)] + self.lifts
+        return np.array(stop_gaps(self.layout)) + self.made[of_element(STOP_GAP)] + self.lifts
 
     # --- mechanics ---
 
@@ -338,8 +337,8 @@ class Assembled:
         For a hinge out of the estimator's range, the stiffness is the section's integral, as for the drawn
         gaps; if its limits leave no hinge or sheet, CUT.
         """
-        s, known, d = self.section, self.stiffness, self.layout.design
-        K = np.where(np.isnan(known), ladder.evaluate(s, "section").stiffness, known)
+        s, d = self.section, self.layout.design
+        K = ladder.stiffness_beyond_the_fit(s)
         load, give = d.rating.overload_force, self.layout.stop_give
         with np.errstate(invalid="ignore", divide="ignore"):
             closing = np.minimum(self.gaps / tip_compliance(s, K, self.arm), load)

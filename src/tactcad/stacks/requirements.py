@@ -6,11 +6,9 @@ from collections import Counter
 from collections.abc import Sequence
 from math import inf
 
-import numpy as np
-
 from tactcad.parts.array.clamp import HOLES, carrier, carrier_clearance
 from tactcad.parts.array.layout import SUNK, Layout
-from tactcad.parts.array.stop_gap import stop_limit
+from tactcad.parts.array.stop_gap import stop_limits
 from tactcad.parts.bought.standard_parts import LEAST_PLAY
 from tactcad.parts.language.limits import deviations, general
 from tactcad.parts.language.metric import METRIC
@@ -81,7 +79,7 @@ def _array_requirements(layout: Layout, known: dict[str, DimensionLimits]) -> li
     t = layout.design.tolerance
     rows = len(layout.design.array.row_arms)
     gap, apart = rows * layout.pad_inner, rows * t.load_arm
-    limit = np.array([stop_limit(layout, p).gap for p in layout.elements])
+    limit = stop_limits(layout).gap
     return [
         Requirement("pins hold in the tapped end plate", "mm", LEAST_PRESS, inf, lambda a: a.press),
         Requirement("pins enter the elements", "mm", LEAST_PLAY, inf, lambda a: a.play),

@@ -191,8 +191,7 @@ def sensor(design: CommonTables, scenes: Sequence[Scene] | None = None) -> Senso
 
 
 def element_figures(arrays: Assembled) -> dict[str, Array]:
-    made_, places = arrays.made, arrays.layout.elements
-    arm = np.array([p.load_arm for p in places])
+    made_, arm = arrays.made, np.array([p.load_arm for p in arrays.layout.elements])
     return {
         "stiffness": arrays.stiffness,
         "pad_height_um": 1e3 * (arrays.carried - arrays.carried.min(axis=1, keepdims=True)),

@@ -14,7 +14,7 @@ from tactcad.design.load import from_table
 from tactcad.design.materials import differences
 from tactcad.design.messages import InputError
 from tactcad.design.tree import CommonTables, Design
-from tactcad.mechanics import ladder, strain
+from tactcad.mechanics import ladder, strain, strength
 from tactcad.mechanics.accuracy import expected_error_of
 from tactcad.mechanics.section import HingeSection
 from tactcad.parts.array.hinge_section import element_section
@@ -109,20 +109,10 @@ def _forces(d: Design, section: HingeSection, rung: str, result: ladder.Result) 
     """In the order of FORCES, each over all designs; NaN if out of the rung's range."""
     per_newton = np.full(section.shape, np.nan)
     if result.valid.any():
-        per_newton[result.valid] = _stress(section.rows(result.valid.reshape(-1)), rung)
-    yield_force = d.material.yield_strength / per_newton
-    return [
-        yield_force,
-        np.minimum(d.rating.force, yield_force / d.rating.yield_factor),
-        yield_force / d.rating.deflection_factor / result.stiffness,
-    ]
-
-
-def _stress(section: HingeSection, rung: str) -> Floats:
-    """MPa/N at the fillet; rungs without one have the leaf's own, as `tactcad estimate` has it."""
-    if rung in ladder.FITTED:
-        return strain.peak_stress(section, 1.0)
-    return strain.peak(section, 1.0, rung) * section.youngs_modulus
+        per_newton[result.valid] = strain.leaf_stress(section.rows(result.valid.reshape(-1)), 1.0, rung)
+    at_yield = d.material.yield_strength / per_newton
+    deflection = strength.rated_deflection(at_yield, result.stiffness, d.rating)
+    return [at_yield, strength.rated_force(at_yield, d.rating), deflection]
 
 
 def alike(study: Study, columns: dict[str, Column], refused: Refused) -> Iterator[tuple[Rows, Layout]]:

@@ -269,7 +269,7 @@ class Candidates:
 
     @cached_property
     def rated_deflection(self) -> Array:
-        return self.yield_force / self.stand.base.rating.deflection_factor / self.elements.stiffness
+        return strength.rated_deflection(self.yield_force, self.elements.stiffness, self.stand.base.rating)
 
     @cached_property
     def borne(self) -> Array:

@@ -20,9 +20,9 @@ from tactcad.lab.pads import places
 from tactcad.mechanics import strength
 from tactcad.mechanics.section import Array
 from tactcad.mechanics.strength import tip_compliance
-from tactcad.parts.array.hinge_section import design_alloy, hinge_section
+from tactcad.parts.array.hinge_section import arms, design_alloy, hinge_section
 from tactcad.parts.array.layout import Layout
-from tactcad.parts.array.stop_gap import stop_gap
+from tactcad.parts.array.stop_gap import stop_gaps
 from tactcad.scenes import make_scene
 from tactcad.stacks.mechanic import Assembled
 from tactcad.stacks.variables import SIGMAS, Distribution, made, within_limits
@@ -143,8 +143,7 @@ class MadeSensor:
             last = (rate * behind).sum(axis=1)
             lacks["pads not all touching at the first load"] = last > grip.force / grip.loads
             widths = self._half_widths(e, rng)
-        arm = np.array([p.arm for p in self.layout.elements])
-        closing = arrays.gaps / tip_compliance(e.section, e.stiffness, arm)
+        closing = arrays.gaps / tip_compliance(e.section, e.stiffness, arrays.arm)
         lacks["stop closes under the largest force"] = (forces > closing).any(axis=1)
         yields = strength.yield_force_where_known(e.section, alloy) / self.design.rating.yield_factor
         lacks["hinge beyond its rated force"] = (forces > yields).any(axis=1)
@@ -181,8 +180,8 @@ class MadeSensor:
     def on_body(self) -> LayerGrasps:
         """The array as drawn on the target's body."""
         x, y = places(self.layout)
-        arm = np.array([p.load_arm for p in self.layout.elements])
         e = self.drawn
+        arm = e.section.load_arm
         known = of_elements(self.known(e), lambda of: np.broadcast_to(of, e.stiffness.shape))
         return LayerGrasps(self.target, self.design, x, y, arm, e.stiffness, e.signal, known, self.noise)
 
@@ -212,9 +211,8 @@ class MadeSensor:
     def cannot_bear(self) -> str:
         """Why the array as drawn does not bear the target's forces; "" if it does."""
         e, (_, largest) = self.drawn, self.worst()
-        gaps = np.array([stop_gap(self.layout, p) for p in self.layout.elements])
-        arm = np.array([p.arm for p in self.layout.elements])
-        if (largest * tip_compliance(e.section, e.stiffness, arm) > gaps).any():
+        tip = tip_compliance(e.section, e.stiffness, arms(self.layout))
+        if (largest * tip > stop_gaps(self.layout)).any():
             return "a stop closes under the largest force"
         yields = strength.yield_force_where_known(e.section, design_alloy(self.design))
         beyond = (largest > yields / self.design.rating.yield_factor).any()

@@ -17,7 +17,7 @@ from tactcad.mechanics import ladder, validity
 from tactcad.mechanics.gauge_signal import Gauge
 from tactcad.mechanics.ladder import elasticity
 from tactcad.mechanics.readout import ReadOut, sample_noise, transmission
-from tactcad.mechanics.section import HingeSection
+from tactcad.mechanics.section import Array, HingeSection
 from tactcad.mechanics.validity import Reason
 
 from ..bought.electronic_parts import completion_resistance, converter_of
@@ -46,6 +46,11 @@ def hinge_section(layout: Layout, places: Sequence[ElementPlace]) -> HingeSectio
     own = [own_parameters(p.hinge, p.load_arm, p.body_length) for p in places]
     stacked = {n: np.stack(np.broadcast_arrays(*(each[n] for each in own)), axis=-1) for n in own[0]}
     return HingeSection.of(**stacked, **shared_parameters(layout.design))
+
+
+def arms(layout: Layout) -> Array:
+    """Distance from every hinge's centre to its arm's tip, by number, mm."""
+    return np.array([p.arm for p in layout.elements])
 
 
 def element_section(layout: Layout, place: ElementPlace) -> HingeSection:

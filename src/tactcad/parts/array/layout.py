@@ -93,7 +93,7 @@ class HoldDown:
     reach: float
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)  # one layout equals itself alone, so that it can be a cache's key
 class Layout:
     """The array's derived dimensions, mm.
 

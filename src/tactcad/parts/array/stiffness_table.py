@@ -107,7 +107,7 @@ def array_lines(design: Design) -> Iterator[Deflection]:
 
 def _stop_lines(layout: Layout) -> Iterator[Deflection]:
     """Deflections between arm and stop, for the arm with the least allowance."""
-    from .stop_gap import stop_limit
+    from .stop_gap import stop_limits
 
     held = carrier_beam(layout, 2 * layout.end_plate_y).supported()
     force_field = "rating.overload_force"
@@ -124,9 +124,9 @@ def _stop_lines(layout: Layout) -> Iterator[Deflection]:
         ("carrier", "the array held by its end plates alone", lambda layout, y: held, carrier, "flag"),
     )
     arms = []
-    for p in layout.elements:
-        gap = max(stop_limit(layout, p, give=0.0).gap, 1e-9)  # of a zero allowance, any share is passed
-        arms.append((p.y, layout.design.rating.overload_force * p.load_arm / p.arm, 1e3 * SHARE * gap))
+    for p, gap in zip(layout.elements, stop_limits(layout, give=0.0).gap.tolist()):
+        most = 1e3 * SHARE * max(gap, 1e-9)  # of a zero allowance, any share is passed
+        arms.append((p.y, layout.design.rating.overload_force * p.load_arm / p.arm, most))
     for part, model, give, fields, severity in cases:
         share, force, allowed = max((give(layout, y) * f * 1e3 / most, f, most) for y, f, most in arms)
         where, why = f"{force_field} on one arm, at its tip", "a tenth of the stop's gap"

@@ -13,7 +13,7 @@ import numpy as np
 
 from tactcad.design.materials import ALLOYS
 from tactcad.mechanics import ladder, strain, strength, validity
-from tactcad.mechanics.section import HingeSection
+from tactcad.mechanics.section import Array
 from tactcad.mechanics.strength import (
     deflection_share,
     largest_closing_force,
@@ -25,7 +25,7 @@ from tactcad.mechanics.strength import (
 
 from ..bought.standard_parts import dowel_diameter
 from .clamp import STOP_PLATE_FLAT, lean
-from .hinge_section import design_alloy, hinge_section, in_design, own_parameters, shared_parameters
+from .hinge_section import arms, design_alloy, hinge_section, in_design
 from .layout import ElementPlace, HingeShape, Layout
 
 # Gaps are cut in steps of half their usual tolerance; below ten of them, finer.
@@ -35,36 +35,36 @@ STRAIGHT_RAMP = 0.005
 
 
 @dataclass(frozen=True)
-class StopLimit:
-    """The widest gap that an element's stop may have, and the largest overload that any gap protects from."""
+class StopLimits:
+    """The widest gap that each element's stop may have, and the largest overload that a gap protects from."""
 
-    gap: float  # mm at the tip, as made: it keeps the hinge within its rated deflection
-    overload: float  # N, with the narrowest gap worth cutting: its tolerance both ways and a step
+    gap: Array  # mm at the tip, as made: it keeps the hinge within its rated deflection
+    overload: Array  # N, with the narrowest gap worth cutting: its tolerance both ways and a step
 
 
 def stop_gap(layout: Layout, place: ElementPlace) -> float:
-    """Gap between stop land and stop plate at the arm's tip.
+    """Gap between stop land and stop plate at the tip of one of the layout's arms, mm: of `stop_gaps`."""
+    return stop_gaps(layout)[place.number - 1]
 
-    Parameters
-    ----------
-    layout : Layout
-    place : ElementPlace
-        One of its elements.
 
-    Returns
-    -------
-    float
-        mm. The value of [stop.gaps] if it lists the arm; else, rounded down to a step, the widest that with
-        its tolerance keeps the hinge within its rated deflection under the overload force (`stop_limit`) and
-        leaves a land under the ledge (`land_room`).
+@lru_cache(maxsize=16)
+def stop_gaps(layout: Layout) -> tuple[float, ...]:
+    """Gap between stop land and stop plate at every arm's tip, by number, mm.
+
+    The value of [stop.gaps] if it lists the arm; else, rounded down to a step, the widest that with its
+    tolerance keeps the hinge within its rated deflection under the overload force (`stop_limits`) and leaves
+    a land under the ledge (`land_room`).
     """
-    stop = layout.design.stop
-    if stop.gaps and place.arm in stop.gaps:
-        return stop.gaps[place.arm]
-    closing = stop_limit(layout, place).gap - stop.tolerance - seat(layout)
-    widest = min(closing, land_room(layout, place.hinge))
-    step = STEP_MM if widest >= 10 * STEP_MM else STEP_MM / 10
-    return round(floor(widest / step + 1e-9) * step, 6)
+    stop, gaps, given = layout.design.stop, [], layout.design.stop.gaps or {}
+    for place in layout.elements:
+        if place.arm in given:
+            gaps.append(given[place.arm])
+            continue
+        closing = float(stop_limits(layout).gap[place.number - 1]) - stop.tolerance - seat(layout)
+        widest = min(closing, land_room(layout, place.hinge))
+        step = STEP_MM if widest >= 10 * STEP_MM else STEP_MM / 10
+        gaps.append(round(floor(widest / step + 1e-9) * step, 6))
+    return tuple(gaps)
 
 
 def unrated_gap(layout: Layout, place: ElementPlace) -> tuple[str, ...]:
@@ -95,36 +95,35 @@ def seat(layout: Layout) -> float:
     return round(2.0 * t.ledge + STOP_PLATE_FLAT + 1.5 * off, 6)
 
 
-def stop_limit(layout: Layout, place: ElementPlace, give: float | None = None) -> StopLimit:
-    """The limits of an element's stop, at the hinge's rated deflection.
+@lru_cache(maxsize=16)
+def stop_limits(layout: Layout, give: float | None = None) -> StopLimits:
+    """The limits of every element's stop, by number, at the hinge's rated deflection.
 
     That is d_y/rating.deflection_factor, with d_y the deflection at which the fillet yields, converted from
-    the load line to the tip (`tip_compliance`). The stiffness is the solid rung's; beyond the range of its
-    fit it is the section integral's, which has no range and errs to a narrower gap: where both hold, it is
-    0.93 to 3.8 times as stiff, 1.02 in the median (20 000 random designs).
+    the load line to the tip (`tip_compliance`). Beyond the range of the fit the stiffness errs to a narrower
+    gap (`ladder.stiffness_beyond_the_fit`).
 
     Parameters
     ----------
     layout : Layout
-    place : ElementPlace
-        One of its elements.
     give : float, optional
         Compliance of the stop, mm/N; by default that of the stop plate's beams.
 
-    Returns
-    -------
-    StopLimit
+    Raises
+    ------
+    CheckFailure
+        If an element has no hinge.
     """
-    design = layout.design
-    own = own_parameters(place.hinge, place.load_arm, place.body_length)
-    parameters = own | shared_parameters(design)
-    return _limit(
-        tuple(parameters.items()),
-        place.arm,
-        design.material.yield_strength / design.rating.deflection_factor,
-        design.rating.overload_force,
-        2.0 * design.stop.tolerance + seat(layout) + STEP_MM,
-        layout.stop_give if give is None else give,
+    d = layout.design
+    s, arm, overload = hinge_section(layout, layout.elements), arms(layout), d.rating.overload_force
+    ladder.require_range(s, "section")
+    K, give = ladder.stiffness_beyond_the_fit(s), layout.stop_give if give is None else give
+    rated = d.material.yield_strength / d.rating.deflection_factor / strain.stress_beyond_the_fit(s, 1.0)
+    tip = tip_compliance(s, K, arm)
+    narrowest = 2.0 * d.stop.tolerance + seat(layout) + STEP_MM
+    return StopLimits(
+        largest_closing_force(s, K, arm, give, overload, rated) * tip,
+        largest_overload(s, K, arm, give, narrowest / tip, rated),
     )
 
 
@@ -136,28 +135,6 @@ def land_room(layout: Layout, hinge: HingeShape) -> float:
     """
     ramp = layout.design.element.corner_radius * (sqrt(2.0) - 1.0) / sqrt(2.0)
     return layout.ledge_of(hinge) - hinge.h - ramp - STRAIGHT_RAMP
-
-
-@lru_cache(maxsize=4096)  # equal elements of a long row ask for the same gap
-def _limit(
-    parameters: tuple[tuple[str, float], ...],
-    arm: float,
-    stress: float,
-    overload: float,
-    narrowest: float,
-    give: float,
-) -> StopLimit:
-    """`stop_limit` of the section with these parameters, whose fillet may have `stress` (MPa)."""
-    section = HingeSection.of(**dict(parameters))
-    fitted = ladder.evaluate(section, "solid")
-    K = fitted.stiffness if fitted.valid else ladder.stiffness(section, "section")
-    length = np.array(arm)
-    rated = stress / strain.stress_beyond_the_fit(section, 1.0)
-    closing = largest_closing_force(section, K, length, give, overload, rated)
-    tip = tip_compliance(section, K, length)
-    narrow = narrowest / tip
-    most = largest_overload(section, K, length, give, narrow, rated)
-    return StopLimit(float(closing * tip), float(most))
 
 
 @dataclass(frozen=True)
@@ -200,27 +177,26 @@ def overloads(layout: Layout) -> list[Overload]:
     """Every element of the layout, by number."""
     design, places = layout.design, layout.elements
     load, rating = design.rating.overload_force, design.rating
-    s, alloy = hinge_section(layout, places), design_alloy(design)
+    s, alloy, arm = hinge_section(layout, places), design_alloy(design), arms(layout)
     known = ladder.evaluate(s, ladder.DEFAULT_RUNG)
-    K, arm, tolerance = known.stiffness, np.array([p.arm for p in places]), design.stop.tolerance
-    gap, give = np.array([stop_gap(layout, p) for p in places]), layout.stop_give
-    tip = tip_compliance(s, K, arm)
-    earliest = (gap - tolerance) / tip
-    closing = np.minimum((gap + tolerance + seat(layout)) / tip, load)
+    K, gap, give = known.stiffness, np.array(stop_gaps(layout)), layout.stop_give
+    tip, tolerance = tip_compliance(s, K, arm), design.stop.tolerance
+    largest = gap + tolerance + seat(layout)
+    closing = np.minimum(largest / tip, load)
     beyond = load - closing
     # beyond the estimator's range K is NaN, and so are all figures but the gap
     stress = overload_stress(s, K, arm, give, closing, load)
     yields = strength.yield_force_where_known(s, alloy)
     figures = {
-        "gap": gap + tolerance + seat(layout),
-        "earliest": earliest,
+        "gap": largest,
+        "earliest": (gap - tolerance) / tip,
         "closing_force": closing,
         "stop_force": beyond * stop_share(s, K, arm, give),
         "deflection": (closing + deflection_share(s, K, arm, give) * beyond) / K,
-        "rated_deflection": yields / rating.deflection_factor / K,
+        "rated_deflection": strength.rated_deflection(yields, K, rating),
         "stress": stress,
         "yield_factor": alloy.yield_strength / stress,
-        "rated_force": np.minimum(rating.force, yields / rating.yield_factor),
+        "rated_force": strength.rated_force(yields, rating),
         "endured": strength.goodman(alloy, alloy.yield_strength / yields),
     }
     by_name = {name: np.broadcast_to(column, s.shape).tolist() for name, column in figures.items()}

@@ -261,7 +261,7 @@ def calibration_loads(design: Design) -> tuple[CalibrationLoad, ...]:
     loads = []
     for place, K, why, at_yield in zip(layout.elements, known.stiffness, known.broken, yields):
         share = c.load_cell_stiffness / (c.load_cell_stiffness + K)
-        rated = at_yield / design.rating.deflection_factor / K
+        rated = strength.rated_deflection(at_yield, K, design.rating)
         deflection = c.travel * share
         figures = (deflection, K * deflection, rated, rated / share, at_yield / K / share)
         gives, force, may_give, to_rated, to_yield = map(float, figures)

@@ -12,7 +12,7 @@ from tactcad.design.tree import Design, Stop, Tolerance
 
 from ..array.clamp import STOP_PLATE_FLAT
 from ..array.layout import ElementPlace, Layout
-from ..array.stop_gap import land_room, seat, stop_gap, stop_limit
+from ..array.stop_gap import land_room, seat, stop_gap, stop_limits
 from ..array.stop_give import SHARE, shortest_pitch
 from ..language.finding import SAME, Finding
 from .rule import at_least, at_most, rule, wrong
@@ -119,9 +119,8 @@ def stop_plate_stays(layout: Layout) -> Iterator[Finding]:
     The gap is taken for a rigid stop, so that the allowance does not depend on the plate.
     """
     d, give = layout.design, layout.stop_give
-    for p in layout.elements:
+    for p, gap in zip(layout.elements, stop_limits(layout, give=0.0).gap.tolist()):
         force = d.rating.overload_force * p.load_arm / p.arm
-        gap = stop_limit(layout, p, give=0.0).gap
         allowed = SHARE * gap / force
         if gap <= d.stop.tolerance or give <= allowed:
             continue  # if there is no gap, other rules say why
@@ -167,9 +166,9 @@ def _largest_pitch(layout: Layout, allowed: float) -> float | None:
 def stop_keeps_rated_deflection(layout: Layout) -> Iterator[Finding]:
     """A gap given in the design is not wider than the hinge bears; a derived one is so by construction."""
     stop = layout.design.stop
-    for p in layout.elements:
+    for p, gap in zip(layout.elements, stop_limits(layout).gap.tolist()):
         given = stop.gaps.get(p.arm) if stop.gaps else None
-        widest = stop_limit(layout, p).gap - stop.tolerance - seat(layout)
+        widest = gap - stop.tolerance - seat(layout)
         if given is not None:
             yield from at_most(
                 f"stop.gaps.{p.arm:g}",
@@ -188,7 +187,7 @@ def stop_gap_above_tolerance(layout: Layout) -> Iterator[Finding]:
     for p in layout.elements:
         if _opens(layout, p):
             continue
-        gap, overload = stop_gap(layout, p), stop_limit(layout, p).overload
+        gap, overload = stop_gap(layout, p), float(stop_limits(layout).overload[p.number - 1])
         what = f"the stop of element {p.number} may close before it moves: its gap is {gap:g} mm"
         if d.stop.gaps and p.arm in d.stop.gaps:
             yield wrong("stop.tolerance", what, d.stop.tolerance, f"less than {gap:g} mm")
