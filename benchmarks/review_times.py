@@ -167,7 +167,7 @@ def handed(side: str) -> float:
     solids = {part.part_no: shapes.of(part) for part in scene.parts}
     if side == PAGE:
         return timed(lambda: review_page(*live_record(design, scene.name, shapes), viewer_library()))[0]
-    under = {p.designator: p.under for p in scene_facts(design, scene).placed}
+    under = {p["designator"]: p["under"] for p in scene_facts(design, scene)["placed"]}
     return timed(lambda: ocp_vscode.show(assembly_tree(scene, solids, under), progress=""))[0]
 
 

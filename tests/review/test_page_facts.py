@@ -44,60 +44,63 @@ def parts(facts, macro_scene):
 
 def distance(part, first: str, second: str) -> float:
     """Between the planes of two features by their points and the first one's normal, mm."""
-    a, b = (next(f for f in part.features if f.name == name) for name in (first, second))
-    assert a.kind == b.kind == "plane"
-    return abs(float(np.dot(a.direction, np.subtract(b.point, a.point))))
+    a, b = (next(f for f in part["features"] if f["name"] == name) for name in (first, second))
+    assert a["kind"] == b["kind"] == "plane"
+    return abs(float(np.dot(a["direction"], np.subtract(b["point"], a["point"]))))
 
 
 def test_limits_and_features_are_the_design_files_values(parts):
     part = parts["macro-array-element-a4mm"]
-    wanted, limits = WRITTEN["element"], {c.name: c for c in part.limits}
-    assert limits["hinge thickness"].nominal == wanted["hinge_thickness"] == 0.25
-    assert limits["arm length"].nominal == WRITTEN["array"]["row_arms"][0][0]
+    wanted, limits = WRITTEN["element"], {c["name"]: c for c in part["limits"]}
+    assert limits["hinge thickness"]["nominal"] == wanted["hinge_thickness"] == 0.25
+    assert limits["arm length"]["nominal"] == WRITTEN["array"]["row_arms"][0][0]
     assert distance(part, "slot_floor", "flat_face") == pytest.approx(wanted["hinge_thickness"], abs=1e-12)
     assert distance(part, "slot_arm_wall", "slot_body_wall") == pytest.approx(
         wanted["hinge_length"], abs=1e-12
     )
     assert distance(part, "face z=0", "face z=thickness") == WRITTEN["sheet"]["thickness"]
-    hole = next(f for f in part.features if f.name == "dowel_hole")
+    hole = next(f for f in part["features"] if f["name"] == "dowel_hole")
     limit = limits["dowel hole diameter"]
-    assert hole.kind == "cylinder" and limit.lower <= hole.diameter <= limit.upper
-    assert limit.lower == WRITTEN["holes"]["dowel_hole"]
+    assert hole["kind"] == "cylinder" and limit["lower"] <= hole["diameter"] <= limit["upper"]
+    assert limit["lower"] == WRITTEN["holes"]["dowel_hole"]
     # a feature's middle lies on its surface
-    beside = np.subtract(hole.middle, hole.point)
-    assert np.linalg.norm(beside[:2]) == pytest.approx(hole.diameter / 2, abs=1e-12)
+    beside = np.subtract(hole["middle"], hole["point"])
+    assert np.linalg.norm(beside[:2]) == pytest.approx(hole["diameter"] / 2, abs=1e-12)
 
 
 def test_mass_is_density_times_volume(parts):
     part = parts["macro-array-spacer"]
-    assert part.mass_g == pytest.approx(part.volume_mm3 * WRITTEN["material"]["density"] * 1e-6, rel=1e-12)
+    assert part["mass_g"] == pytest.approx(
+        part["volume_mm3"] * WRITTEN["material"]["density"] * 1e-6, rel=1e-12
+    )
 
 
 def test_what_the_sensor_needs_of_an_element(parts, facts):
     """The hinge decides when the stop closes; its share is the stack's."""
-    shares = {s.requirement: s for s in parts["macro-array-element-a4mm"].shares}
-    assert shares and all(0 < s.share <= 1 for s in shares.values())
+    shares = {s["requirement"]: s for s in parts["macro-array-element-a4mm"]["shares"]}
+    assert shares and all(0 < s["share"] <= 1 for s in shares.values())
     (line,) = (x for x in facts[2] if x.requirement.name == "pads coplanar")
     own = {c.name: c.share for c in line.contributors}
-    for name, share in shares["pads coplanar"].limits:
+    for name, share in shares["pads coplanar"]["limits"]:
         variable = {"pad's and ledge's lean": "pad's lean"}.get(name, name)
         assert share == own[f"element: {variable}"]
-    assert parts["ISO8734-3x30-pin"].shares == ()
+    assert parts["ISO8734-3x30-pin"]["shares"] == []
 
 
 def test_pairs_are_formed_with_the_stiffest_element(facts, macro):
     elements, _, _ = facts
     rows = estimate(Layout(macro), "solid")
     K = {f"E{r.number}": r.stiffness for r in rows}
-    assert {d: e["estimate"]["stiffness"] for d, e in elements.elements.items()} == K
+    assert {d: e["estimate"]["stiffness"] for d, e in elements["elements"].items()} == K
     stiffest = max(K.values())
-    assert {p.measuring for p in elements.pairs} == {d for d in K if K[d] < stiffest}
-    for p in elements.pairs:
-        assert (p.K_r, p.K_m) == (stiffest, K[p.measuring]) and p.ratio == p.K_r / p.K_m
+    assert {p["measuring"] for p in elements["pairs"]} == {d for d in K if K[d] < stiffest}
+    for p in elements["pairs"]:
+        K_r, K_m = p["K_r"], p["K_m"]
+        assert (K_r, K_m) == (stiffest, K[p["measuring"]]) and p["ratio"] == K_r / K_m
         # R = (K_r + x)/(K_m + x): dln x/dln R by differences, and no other object is found better
-        errors = [_error(p.K_r, p.K_m, p.best_for * f) for f in (0.9, 1.0, 1.1)]
-        assert errors[1] == pytest.approx(p.condition, rel=1e-5) and errors[1] == min(errors)
-        assert p.condition == pytest.approx((sqrt(p.K_r) + sqrt(p.K_m)) ** 2 / (p.K_r - p.K_m), rel=1e-9)
+        errors = [_error(K_r, K_m, p["best_for"] * f) for f in (0.9, 1.0, 1.1)]
+        assert errors[1] == pytest.approx(p["condition"], rel=1e-5) and errors[1] == min(errors)
+        assert p["condition"] == pytest.approx((sqrt(K_r) + sqrt(K_m)) ** 2 / (K_r - K_m), rel=1e-9)
 
 
 def _error(K_r: float, K_m: float, x: float) -> float:
@@ -111,7 +114,7 @@ def _error(K_r: float, K_m: float, x: float) -> float:
 def test_strain_per_newton_is_that_of_any_elastic_force(facts, macro):
     elements, _, _ = facts
     for row in estimate(Layout(macro), "solid", 0.3):
-        own = elements.elements[f"E{row.number}"]
+        own = elements["elements"][f"E{row.number}"]
         assert own["gauge_per_newton"] * 0.3 == pytest.approx(row.gauge_strain, rel=1e-12)
 
 
@@ -139,16 +142,16 @@ def test_the_strain_picture_agrees_with_the_faces_strain(macro):
 def test_a_scene_tells_places_steps_ways_and_bill(macro):
     scene = make_scene(macro, "grasping")
     told = scene_facts(macro, scene)
-    assert [p.designator for p in told.placed] == [p.designator for p in scene.placements]
-    for p in told.placed:
-        assert p.designator in scene.steps[p.step].designators
-    under = {p.designator: p.under for p in told.placed}
+    assert [p["designator"] for p in told["placed"]] == [p.designator for p in scene.placements]
+    for p in told["placed"]:
+        assert p["designator"] in scene.steps[p["step"]].designators
+    under = {p["designator"]: p["under"] for p in told["placed"]}
     assert under["E1"] == ("vertical axis", "array") and under["SA1"] == ("cart with holder and sample",)
     # the sample leaves by its step's way; of a fanned step nothing by more than the whole way
-    ways = {p.designator: p.way for p in told.placed}
-    assert ways["SA1"] == scene.steps[told.placed[list(under).index("SA1")].step].explode
-    assert sum(r["qty"] for r in told.bill if r["has_solid"]) == len(scene.placements)
-    rests = {m.name: m.rest for m in told.motions}
+    ways = {p["designator"]: p["way"] for p in told["placed"]}
+    assert ways["SA1"] == scene.steps[told["placed"][list(under).index("SA1")]["step"]].explode
+    assert sum(r["qty"] for r in told["bill"] if r["has_solid"]) == len(scene.placements)
+    rests = {m["name"]: m["rest"] for m in told["motions"]}
     assert rests == {
         "array down to the sample": 1.0,
         "cart rolls under the lifted array": None,
@@ -164,16 +167,17 @@ def test_each_pose_brings_an_elements_pad_to_where_the_first_ones_stands(macro):
 
     def pad(designator, offset=(0.0, 0.0, 0.0)):
         p = placed[designator]
-        (face,) = (f for f in part_facts(p.part, {}, []).features if f.name == "pad_face")
-        return np.asarray(p.rotation) @ face.middle + p.origin + np.asarray(offset)
+        (face,) = (f for f in part_facts(p.part, {}, [])["features"] if f["name"] == "pad_face")
+        return np.asarray(p.rotation) @ face["middle"] + p.origin + np.asarray(offset)
 
-    assert [pose.name for pose in told.poses] == [f"E{n}" for n in range(1, 11)]
-    for pose in told.poses:
-        offsets = {d: offset for group, offset in pose.ways for d in group}
-        assert pad(pose.name, offsets.get(pose.name, (0.0, 0.0, 0.0))) == pytest.approx(pad("E1"))
+    assert [pose["name"] for pose in told["poses"]] == [f"E{n}" for n in range(1, 11)]
+    for pose in told["poses"]:
+        offsets = {d: offset for group, offset in pose["ways"] for d in group}
+        assert pad(pose["name"], offsets.get(pose["name"], (0.0, 0.0, 0.0))) == pytest.approx(pad("E1"))
         # the array is one piece: all of it moves alike
         assert len({offsets.get(f"E{n}") for n in range(1, 11)}) == 1
-    assert told.poses[0].ways == () and scene_facts(macro, make_scene(macro, "array")).poses == ()
+    assert told["poses"][0]["ways"] == ()
+    assert scene_facts(macro, make_scene(macro, "array"))["poses"] == ()
 
 
 def test_findings_are_told_with_their_parts(macro_scene):
@@ -226,6 +230,6 @@ def test_figures_that_nobody_knows_are_none_and_can_be_written():
     """Built arrays have no stiffness where the hinge is thinner than the closed form's range."""
     design = variant({"element.hinge_thickness": 0.05})
     found, _, _ = element_facts(design, (make_scene(design, "array"),))
-    assert found.elements["E1"]["built"]["stiffness"] == (None, None)
-    assert found.elements["E1"]["built"]["load_arm"][0] == pytest.approx(3.0, abs=0.01)
-    json.dumps(found.elements, allow_nan=False)
+    assert found["elements"]["E1"]["built"]["stiffness"] == (None, None)
+    assert found["elements"]["E1"]["built"]["load_arm"][0] == pytest.approx(3.0, abs=0.01)
+    json.dumps(found["elements"], allow_nan=False)

@@ -269,7 +269,7 @@ def turned(quaternion, vector):
 @pytest.mark.cad
 def test_every_designator_arrives_in_its_sub_assembly_with_its_colour_and_place(arrived, macro, macro_scene):
     found = {node["name"]: (path, node) for path, node in leaves(arrived[0]["shapes"])}
-    under = {p.designator: p.under for p in scene_facts(macro, macro_scene).placed}
+    under = {p["designator"]: p["under"] for p in scene_facts(macro, macro_scene)["placed"]}
     assert len(found) == len(macro_scene.placements) == 40 and len(set(under.values())) > 1
     for p in macro_scene.placements:
         path, node = found[p.designator]

@@ -6,7 +6,7 @@ Parts are read off their descriptions: no kernel, no mesh.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import asdict, dataclass
 from math import sqrt
 from typing import Any
@@ -28,7 +28,7 @@ from tactcad.scenes import make_scene
 from tactcad.scenes.bom import bom_rows
 from tactcad.scenes.requirement import DimensionLimits
 from tactcad.scenes.rig import rig_of
-from tactcad.scenes.scene import Motion, Pose, Rotation, Scene
+from tactcad.scenes.scene import Motion, Pose, Scene
 from tactcad.stacks.stack import SEED, StackLine
 from tactcad.stacks.virtual_build import Builds, Sensor, sensor
 
@@ -38,82 +38,51 @@ NO_PLACE = ("motion",)
 BUILT = 1000  # arrays of each distribution, as `tactcad build` and the stack's page have
 
 
-@dataclass(frozen=True)
-class PlacedFact:
-    """One designator: its part, place (mm; rows of its rotation), way out in the exploded view (mm), step of
-    the guide (from 0), and sub-assemblies."""
-
-    designator: str
-    part_no: str
-    origin: Vector
-    rotation: Rotation
-    way: Vector
-    step: int
-    under: tuple[str, ...]
+Facts = dict[str, Any]  # plain data, as page and document have it; lengths in mm
 
 
-@dataclass(frozen=True)
-class MotionFact:
-    """A declared motion: of each group its designators and the offsets (mm) that it goes from and to, and the
-    scene's own place as a share of the way, None if it is not on it."""
+def scene_facts(design: CommonTables, scene: Scene) -> Facts:
+    """One scene.
 
-    name: str
-    ways: tuple[tuple[tuple[str, ...], Vector, Vector], ...]
-    rest: float | None
-
-
-@dataclass(frozen=True)
-class PoseFact:
-    """An element under the force sensor: for each moved group of designators the offset from rest, mm."""
-
-    name: str
-    ways: tuple[tuple[tuple[str, ...], Vector], ...]
-
-
-@dataclass(frozen=True)
-class SceneFacts:
-    """One scene; `bill` by item, each row as the bill of materials has it."""
-
-    name: str
-    placed: tuple[PlacedFact, ...]
-    steps: tuple[tuple[str, str], ...]
-    motions: tuple[MotionFact, ...]
-    poses: tuple[PoseFact, ...]
-    cover: tuple[str, ...]
-    bill: tuple[dict[str, Any], ...]
-
-
-def scene_facts(design: CommonTables, scene: Scene) -> SceneFacts:
-    """The facts of one scene."""
+    placed   of each designator part, place (with the rows of its rotation), `way` out in the exploded view,
+             `step` of the guide (from 0), and sub-assemblies (`under`)
+    motions  of each group its designators and the offsets that it goes from and to; `rest`: the scene's own
+             place as a share of the way, None if it is not on it
+    poses    an element under the force sensor: for each moved group of designators the offset from rest
+    bill     by item, each row as the bill of materials has it
+    """
     ways = _ways(scene)
     steps = {d: n for n, step in enumerate(scene.steps) for d in step.designators}
-    placed = tuple(
-        PlacedFact(
-            p.designator,
-            p.part.part_no,
-            p.origin,
-            p.rotation,
-            ways[p.designator],
-            steps.get(p.designator, 0),
-            _under(scene, p.designator),
-        )
-        for p in scene.placements
-    )
     groups = dict(scene.groups)
-    return SceneFacts(
-        scene.name,
-        placed,
-        tuple((step.title, step.text) for step in scene.steps),
-        tuple(
-            MotionFact(
-                m.name, tuple((tuple(sorted(groups.get(g, ()))), a, b) for g, a, b in m.ways), _rest(m)
-            )
+    return {
+        "name": scene.name,
+        "placed": tuple(
+            {
+                "designator": p.designator,
+                "part_no": p.part.part_no,
+                "origin": p.origin,
+                "rotation": p.rotation,
+                "way": ways[p.designator],
+                "step": steps.get(p.designator, 0),
+                "under": _under(scene, p.designator),
+            }
+            for p in scene.placements
+        ),
+        "steps": tuple((step.title, step.text) for step in scene.steps),
+        "motions": tuple(
+            {
+                "name": m.name,
+                "ways": tuple((tuple(sorted(groups.get(g, ()))), a, b) for g, a, b in m.ways),
+                "rest": _rest(m),
+            }
             for m in scene.motions
         ),
-        tuple(_pose(design, scene, pose) for pose in rig_of(design, scene.name).under_sensor(design)),
-        tuple(sorted(scene.cover)),
-        tuple(asdict(row) for row in bom_rows(scene, design.design, {})),
-    )
+        "poses": tuple(
+            _pose(design, scene, pose) for pose in rig_of(design, scene.name).under_sensor(design)
+        ),
+        "cover": tuple(sorted(scene.cover)),
+        "bill": tuple(asdict(row) for row in bom_rows(scene, design.design, {})),
+    }
 
 
 def _ways(scene: Scene) -> dict[str, Vector]:
@@ -134,14 +103,15 @@ def _under(scene: Scene, designator: str) -> tuple[str, ...]:
     return (step.unit or step.title, *before)
 
 
-def _pose(design: CommonTables, scene: Scene, pose: Pose) -> PoseFact:
+def _pose(design: CommonTables, scene: Scene, pose: Pose) -> Facts:
     there = {p.designator: p.origin for p in make_scene(design, scene.name, pose).placements}
     groups: dict[Vector, list[str]] = {}
     for p in scene.placements:
         offset = vector(round(b - a, 9) for a, b in zip(p.origin, there[p.designator]))
         if any(offset):
             groups.setdefault(offset, []).append(p.designator)
-    return PoseFact(f"E{pose.element}", tuple((tuple(group), offset) for offset, group in groups.items()))
+    ways = tuple((tuple(group), offset) for offset, group in groups.items())
+    return {"name": f"E{pose.element}", "ways": ways}
 
 
 def _rest(motion: Motion) -> float | None:
@@ -160,82 +130,8 @@ def _rest(motion: Motion) -> float | None:
     return shares.pop() if len(shares) == 1 else None
 
 
-@dataclass(frozen=True)
-class LimitFact:
-    """A toleranced dimension: nominal and limits in mm, and its features."""
-
-    name: str
-    nominal: float
-    lower: float
-    upper: float
-    key: bool
-    between: tuple[str, ...]
-
-
-@dataclass(frozen=True)
-class GeometricFact:
-    """A geometric tolerance: zone in mm."""
-
-    name: str
-    symbol: str
-    zone: float
-    round: bool
-    features: tuple[str, ...]
-    datums: tuple[str, ...]
-
-
-@dataclass(frozen=True)
-class FeatureFact:
-    """A piece of a named feature's surface, exact and in the part's frame (mm): a plane through `point`
-    square to `direction`, or a cylinder about the axis through `point` along `direction`. `middle` lies on
-    it."""
-
-    name: str
-    kind: str
-    point: Vector
-    direction: Vector
-    diameter: float | None
-    middle: Vector
-
-
-@dataclass(frozen=True)
-class ShareFact:
-    """A requirement of the assembled sensor that depends on the part: the share of its variance that the
-    part's limits have, the arrays that keep it, and the limits with their own shares."""
-
-    requirement: str
-    unit: str
-    nominal: float
-    worst_low: float
-    worst_high: float
-    kept: float
-    share: float
-    limits: tuple[tuple[str, float], ...]
-
-
-@dataclass(frozen=True)
-class PartFacts:
-    """One part number. Mass in g; volume in mm3, None of a model file's envelope."""
-
-    part_no: str
-    name: str
-    process: str
-    material: str
-    mass_g: float
-    volume_mm3: float
-    colour: str
-    finish: str
-    notes: tuple[str, ...]
-    designation: str
-    limits: tuple[LimitFact, ...]
-    geometric: tuple[GeometricFact, ...]
-    datums: tuple[tuple[str, str], ...]
-    features: tuple[FeatureFact, ...]
-    shares: tuple[ShareFact, ...]
-
-
-def part_facts(part: Part, variables: dict[str, DimensionLimits], lines: Sequence[StackLine]) -> PartFacts:
-    """The facts of one part.
+def part_facts(part: Part, variables: dict[str, DimensionLimits], lines: Sequence[StackLine]) -> Facts:
+    """One part number; volume None of a model file's envelope.
 
     Parameters
     ----------
@@ -244,42 +140,54 @@ def part_facts(part: Part, variables: dict[str, DimensionLimits], lines: Sequenc
     variables, lines
         Of the assembled sensor, as `stacks.virtual_build.Sensor` has them: what depends on the part.
     """
-    return PartFacts(
-        part_no=part.part_no,
-        name=part.name,
-        process=part.process,
-        material=str(part.material),
-        mass_g=part.mass,
-        volume_mm3=part.volume,
-        colour=part.colour,
-        finish=part.finish,
-        notes=part.notes,
-        designation=part.purchase.designation if part.purchase else "",
-        limits=tuple(map(_limit, part.characteristics)),
-        geometric=tuple(
-            GeometricFact(g.name, g.symbol, g.zone, g.round, g.features, g.datums) for g in part.geometric
+    return {
+        "part_no": part.part_no,
+        "name": part.name,
+        "process": part.process,
+        "material": str(part.material),
+        "mass_g": part.mass,
+        "volume_mm3": part.volume,
+        "colour": part.colour,
+        "finish": part.finish,
+        "notes": part.notes,
+        "designation": part.purchase.designation if part.purchase else "",
+        "limits": tuple(map(_limit, part.characteristics)),
+        "geometric": tuple(
+            {name: getattr(g, name) for name in ("name", "symbol", "zone", "round", "features", "datums")}
+            for g in part.geometric
         ),
-        datums=tuple((d.letter, d.feature) for d in part.datums),
-        features=tuple(_features(part)),
-        shares=tuple(_shares(part, variables, lines)),
-    )
+        "datums": tuple((d.letter, d.feature) for d in part.datums),
+        "features": _features(part),
+        "shares": _shares(part, variables, lines),
+    }
 
 
-def _limit(c: Characteristic) -> LimitFact:
+def _limit(c: Characteristic) -> Facts:
     # to a nanometre: 0.25 - 0.005 is a binary fraction
-    nominal, lower, upper = (round(value, 6) for value in (c.nominal, c.lower, c.upper))
-    return LimitFact(c.name, nominal, lower, upper, c.key, c.between)
+    ends = {name: round(getattr(c, name), 6) for name in ("nominal", "lower", "upper")}
+    return {"name": c.name, **ends, "key": c.key, "between": c.between}
 
 
-def _features(part: Part) -> Iterator[FeatureFact]:
-    """Every named feature's pieces, equal ones once; an extrusion's alone."""
+def _features(part: Part) -> list[Facts]:
+    """Pieces of every named feature's surface, exact and in the part's frame, equal ones once: a plane
+    through `point` square to `direction`, or a cylinder about the axis through `point` along `direction`;
+    `middle` lies on it. An extrusion's alone."""
     if not isinstance(part.body, Extrusion):
-        return
-    for name in sorted(part.feature_names - {""}):
-        kinds = [(p, "plane" if p.diameter is None else "cylinder") for p in pieces(part, name)]
-        yield from dict.fromkeys(
-            FeatureFact(name, kind, p.point, p.direction, p.diameter, p.middle) for p, kind in kinds
+        return []
+    return [
+        {
+            "name": name,
+            "kind": "plane" if diameter is None else "cylinder",
+            "point": point,
+            "direction": direction,
+            "diameter": diameter,
+            "middle": middle,
+        }
+        for name in sorted(part.feature_names - {""})
+        for point, direction, diameter, middle in dict.fromkeys(
+            (p.point, p.direction, p.diameter, p.middle) for p in pieces(part, name)
         )
+    ]
 
 
 def _of_element(v: DimensionLimits, part: Part) -> tuple[tuple[str, str], ...]:
@@ -289,10 +197,9 @@ def _of_element(v: DimensionLimits, part: Part) -> tuple[tuple[str, str], ...]:
     return ((part.part_no, v.element),) if found else ()
 
 
-def _shares(
-    part: Part, variables: dict[str, DimensionLimits], lines: Iterable[StackLine]
-) -> Iterator[ShareFact]:
-    """Requirements on which the part's limits have a share, the largest share first."""
+def _shares(part: Part, variables: dict[str, DimensionLimits], lines: Iterable[StackLine]) -> list[Facts]:
+    """Requirements of the assembled sensor that depend on the part, the largest share first: the share of
+    their variance that its limits have, the arrays that keep them, and the limits with their own shares."""
     found = []
     for line in lines:
         limits: dict[str, float] = {}
@@ -301,69 +208,41 @@ def _shares(
                 if number == part.part_no:
                     limits[name] = max(limits.get(name, 0.0), c.share)
         if limits:
-            r, ranked = line.requirement, sorted(limits.items(), key=lambda item: (-item[1], item[0]))
-            span, most = (line.nominal, line.worst_low, line.worst_high), max(limits.values())
-            found.append(ShareFact(r.name, r.unit, *span, line.kept, most, tuple(ranked)))
-    yield from sorted(found, key=lambda fact: (-fact.share, fact.requirement))
+            found.append(
+                {
+                    "requirement": line.requirement.name,
+                    "unit": line.requirement.unit,
+                    "nominal": line.nominal,
+                    "worst_low": line.worst_low,
+                    "worst_high": line.worst_high,
+                    "kept": line.kept,
+                    "share": max(limits.values()),
+                    "limits": tuple(sorted(limits.items(), key=lambda item: (-item[1], item[0]))),
+                }
+            )
+    return sorted(found, key=lambda fact: (-fact["share"], fact["requirement"]))
 
 
-@dataclass(frozen=True)
-class PairFact:
-    """An element that measures with the reference, the stiffest of the array: stiffness in N/mm.
+def element_facts(design: CommonTables, scenes: tuple[Scene, ...]) -> tuple[Facts, Sensor, list[StackLine]]:
+    """All elements, and the sensor with its stack from which the facts of the parts are read.
 
-    ratio       K_r/K_m
-    best_for    N/mm: the object whose stiffness the pair finds best, sqrt(K_r K_m)
-    condition   there, the relative error of K_obj per relative error of the deflections' ratio
+    elements  by designator: the estimate's fields and those of the virtual builds
+    pairs     each element that measures with the reference, the stiffest: K_m and K_r (N/mm), their `ratio`
+              K_r/K_m, and `best_for`, the stiffness of the object that the pair finds best, sqrt(K_r K_m),
+              with the `condition` there: the relative error of K_obj per that of the deflections' ratio
+    why_not   the reason for a missing estimate, else ""
+    fit       arrays built virtually, as `stacks.virtual_build.Builds` has them
     """
-
-    measuring: str
-    reference: str
-    K_m: float
-    K_r: float
-    ratio: float
-    best_for: float
-    condition: float
-
-
-@dataclass(frozen=True)
-class FitFacts:
-    """Arrays built virtually: how many of each distribution, the share that meets every requirement, and by
-    distribution the arrays that miss one."""
-
-    count: int
-    seed: int
-    kept: dict[str, float]
-    failures: dict[str, dict[str, int]]
-
-
-@dataclass(frozen=True)
-class ElementFacts:
-    """All elements, by designator: the estimate's fields and those of the virtual builds; their pairs.
-
-    `why_not`: the reason for a missing estimate, else "".
-    """
-
-    rung: str
-    elements: dict[str, dict[str, Any]]
-    pairs: tuple[PairFact, ...]
-    why_not: str
-    fit: FitFacts
-
-
-def element_facts(
-    design: CommonTables, scenes: tuple[Scene, ...]
-) -> tuple[ElementFacts, Sensor, list[StackLine]]:
-    """The facts, and the sensor with its stack from which those of the parts are read."""
     made = sensor(design, scenes)
     return _facts(design, made.built(BUILT)), made, made.stack()
 
 
-def estimate_facts(design: CommonTables) -> ElementFacts:
+def estimate_facts(design: CommonTables) -> Facts:
     """The facts without virtual builds: of no array."""
     return _facts(design, Builds(0, SEED, {}, {}, ()))
 
 
-def _facts(design: CommonTables, builds: Builds) -> ElementFacts:
+def _facts(design: CommonTables, builds: Builds) -> Facts:
     family, why_not = family_of(design), ""
     layout, estimate = family.layout(design), family.estimate.rows
     rows: list[ElementEstimate] = []
@@ -386,24 +265,31 @@ def _facts(design: CommonTables, builds: Builds) -> ElementFacts:
             "fillet_per_newton": per_newton(low.peak_strain, low.force) if low else None,
             "built": built[place.number].known() if place.number in built else None,
         }
-    fit = FitFacts(builds.count, builds.seed, builds.kept, builds.failures)
-    return ElementFacts(DEFAULT_RUNG, elements, tuple(_pairs(rows)), why_not, fit)
+    fit = {name: getattr(builds, name) for name in ("count", "seed", "kept", "failures")}
+    pairs = _pairs(rows)
+    return {"rung": DEFAULT_RUNG, "elements": elements, "pairs": pairs, "why_not": why_not, "fit": fit}
 
 
-def _pairs(rows: list[ElementEstimate]) -> list[PairFact]:
+def _pairs(rows: list[ElementEstimate]) -> list[Facts]:
     """Each element softer than the stiffest, paired with it: one as stiff cannot measure an object."""
     if not rows:
         return []
-    reference = max(rows, key=lambda r: (r.stiffness, -r.number))
-    return [_pair(row, reference) for row in rows if row.stiffness < reference.stiffness]
-
-
-def _pair(m: ElementEstimate, r: ElementEstimate) -> PairFact:
-    best = sqrt(r.stiffness * m.stiffness)
-    condition = abs(float(condition_in_ratio(r.stiffness, m.stiffness, best)))
-    return PairFact(
-        f"E{m.number}", f"E{r.number}", m.stiffness, r.stiffness, r.stiffness / m.stiffness, best, condition
-    )
+    r, pairs = max(rows, key=lambda r: (r.stiffness, -r.number)), []
+    for m in (row for row in rows if row.stiffness < r.stiffness):
+        best = sqrt(r.stiffness * m.stiffness)
+        condition = abs(float(condition_in_ratio(r.stiffness, m.stiffness, best)))
+        pairs.append(
+            {
+                "measuring": f"E{m.number}",
+                "reference": f"E{r.number}",
+                "K_m": m.stiffness,
+                "K_r": r.stiffness,
+                "ratio": r.stiffness / m.stiffness,
+                "best_for": best,
+                "condition": condition,
+            }
+        )
+    return pairs
 
 
 @dataclass(frozen=True)

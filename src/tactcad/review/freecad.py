@@ -27,7 +27,7 @@ from tactcad.parts.language.description import Part, Vector
 from tactcad.scenes import make_scene
 
 from .changed_scene import LOOKS, PieceKind, ScenePiece, changed_scenes
-from .facts import FindingFact, PlacedFact, SceneFacts, finding_facts, scene_facts
+from .facts import Facts, FindingFact, finding_facts, scene_facts
 
 COMMANDS = ("freecad", "FreeCAD")
 SCRIPT = Path(__file__).with_name("peers") / "freecad_document.py"
@@ -101,10 +101,7 @@ def freecad_document(
 
 
 def freecad_record(
-    design: CommonTables,
-    scenes: Sequence[SceneFacts],
-    parts: Mapping[str, Part],
-    findings: Sequence[FindingFact],
+    design: CommonTables, scenes: Sequence[Facts], parts: Mapping[str, Part], findings: Sequence[FindingFact]
 ) -> dict[str, Any]:
     """The record; `file` of each part, its shape as BREP, is `part_file` of its place in `parts`."""
     identity = design.design
@@ -200,23 +197,23 @@ def _properties(part: Part, revision: str) -> list[tuple[str, str]]:
     ]
 
 
-def _scene(scene: SceneFacts, findings: Sequence[FindingFact]) -> dict[str, Any]:
-    at = {p.designator: p for p in scene.placed}
+def _scene(scene: Facts, findings: Sequence[FindingFact]) -> dict[str, Any]:
+    at = {p["designator"]: p for p in scene["placed"]}
     return {
-        "name": scene.name,
-        "placed": [dataclasses.asdict(p) for p in scene.placed],
+        "name": scene["name"],
+        "placed": scene["placed"],
         "findings": [
             {"label": f"{finding.severity}: {name}", "severity": finding.severity, "check": finding.check}
             | {"message": f"{finding.about}: {finding.message}", "at": _where(finding, at.get(name))}
-            | {"way": at[name].way if name in at else (0.0, 0.0, 0.0)}
+            | {"way": at[name]["way"] if name in at else (0.0, 0.0, 0.0)}
             for finding in findings
-            if finding.scene in ("", scene.name)
+            if finding.scene in ("", scene["name"])
             for name in _about(finding, at)
         ],
     }
 
 
-def _about(finding: FindingFact, at: Mapping[str, PlacedFact]) -> list[str]:
+def _about(finding: FindingFact, at: Mapping[str, Facts]) -> list[str]:
     """Places of a finding's marks: at its designators, else once at the scene's origin."""
     if finding.scene and finding.place:
         return [finding.check]
@@ -224,12 +221,14 @@ def _about(finding: FindingFact, at: Mapping[str, PlacedFact]) -> list[str]:
     return here if finding.designators else [finding.about]
 
 
-def _where(finding: FindingFact, placed: PlacedFact | None) -> Vector:
+def _where(finding: FindingFact, placed: Facts | None) -> Vector:
     """Place of the mark in the scene, mm."""
     x, y, z = (*finding.place, 0.0, 0.0, 0.0)[:3]
     if placed is None:
         return (x, y, z)
-    at = [sum(r * v for r, v in zip(row, (x, y, z))) + o for row, o in zip(placed.rotation, placed.origin)]
+    at = [
+        sum(r * v for r, v in zip(row, (x, y, z))) + o for row, o in zip(placed["rotation"], placed["origin"])
+    ]
     return (at[0], at[1], at[2])
 
 

@@ -190,15 +190,14 @@ def live_record(design: CommonTables, scene_name: str, shapes: Shapes) -> tuple[
     parts = list({part.part_no: part for part in scene.parts}.values())
     pack = mesh_pack(parts, shapes)
     array = estimate_facts(design)
-    elements = {p.part.part_no for p in scene.placements if p.designator in array.elements}
+    elements = {p.part.part_no for p in scene.placements if p.designator in array["elements"]}
     record = record_head(design) | {
         "parts": [
-            asdict(part_facts(part, {}, []))
-            | {"mesh": pack.table[part.part_no], "box": pack.boxes[part.part_no]}
+            part_facts(part, {}, []) | {"mesh": pack.table[part.part_no], "box": pack.boxes[part.part_no]}
             for part in parts
         ],
-        "scenes": [asdict(scene_facts(design, scene))],
-        "array": asdict(array),
+        "scenes": [scene_facts(design, scene)],
+        "array": array,
         "strains": {number: {"why_not": LEFT_OUT} for number in sorted(elements)},
         "findings": [],
         "sheets": {},

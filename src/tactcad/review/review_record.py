@@ -227,12 +227,12 @@ def review_record(
     head["design"]["size"] = stated_size(overall_size(design))
     record = head | {
         "parts": [
-            asdict(part_facts(part, made.variables, lines))
+            part_facts(part, made.variables, lines)
             | {"mesh": pack.table[part.part_no], "box": pack.boxes[part.part_no]}
             for part in parts
         ],
-        "scenes": [asdict(scene_facts(design, scene)) for scene in scenes],
-        "array": asdict(elements),
+        "scenes": [scene_facts(design, scene) for scene in scenes],
+        "array": elements,
         "strains": strains,
         "findings": [asdict(f) for f in findings],
         "sheets": dict(sheets),
