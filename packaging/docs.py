@@ -19,7 +19,7 @@ from urllib.parse import unquote, urlsplit
 
 from tactcad.cli.main import COMMANDS, overview, parser_of
 from tactcad.cli.parser import UNLISTED
-from tactcad.design.schema import markdown_schema
+from tactcad.design.schema import TEXT_ORIGIN, fields_of, tables_by_family
 
 ROOT = Path(__file__).parents[1]
 TOP = {"README.md": "index.md", "CONTRIBUTING.md": "CONTRIBUTING.md", "CHANGELOG.md": "CHANGELOG.md"}
@@ -62,6 +62,20 @@ def schema_page() -> str:
         "(images/labelled-array.svg)\n\n"
         f"{markdown_schema()}\n"
     )
+
+
+def markdown_schema() -> str:
+    """What `tactcad schema` prints, with a section and a table of fields for every table of the file."""
+    tables = [table for _, tables in tables_by_family() for table in tables]
+    lines = []
+    for name, kind, may_be_left_out in tables:
+        lines += [f"## [{name}]", "", "May be left out.", ""] if may_be_left_out else [f"## [{name}]", ""]
+        lines += ["| field | meaning | legal | default |", "|---|---|---|---|"]
+        for field, spec, default in fields_of(kind):
+            cells = (f"`{field}`", spec.meaning, spec.legal, default)
+            lines.append("| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |")
+        lines.append("")
+    return "\n".join([*lines, "## [origin]", "", TEXT_ORIGIN])
 
 
 def commands_page() -> str:

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 from tactcad.design.allowance import pick
 from tactcad.design.messages import InputError
 
-from .parser import add_allowance, add_design, add_json, allowance, refuse_named
+from .parser import add_allowance, add_design, allowance, refuse_named
 
 if TYPE_CHECKING:
     from tactcad.parts.array.layout import Layout
@@ -32,7 +32,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     )
     add_allowance(parser, "half-width of the yield's 95 % interval", "number of arrays")
     parser.add_argument("--seed", type=int, metavar="S")
-    add_json(parser)
+    parser.add_argument("--json", action="store_true")
 
 
 def run(args: argparse.Namespace) -> int:

@@ -15,19 +15,19 @@ if TYPE_CHECKING:
     from tactcad.design.allowance import Allowance, Picked
     from tactcad.solids import Meshing
 
-from .parser import UNLISTED, add_allowance, add_design, add_json, add_shop, add_strict, allowance
+from .parser import UNLISTED, add_allowance, add_design, allowance
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
     add_design(parser, several=True)
     parser.add_argument("--scene", action="append", metavar="NAME")
-    add_shop(parser)
-    add_strict(parser)
+    parser.add_argument("--shop", metavar="FILE")
+    parser.add_argument("--strict", action="store_true")
     parser.add_argument("--all", action="store_true")
     parser.add_argument("-o", "--out", metavar="DIR")
     parser.add_argument("--report", dest="out", help=UNLISTED)
     add_allowance(parser, "relative error of a part's meshed volume", "mesh")
-    add_json(parser)
+    parser.add_argument("--json", action="store_true")
 
 
 def run(args: argparse.Namespace) -> int:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from tactcad.design.allowance import Allowance, pick
 
-from .parser import add_allowance, add_json, allowance
+from .parser import add_allowance, allowance
 
 if TYPE_CHECKING:
     from tactcad.synthesis.synthesise import Synthesis
@@ -21,7 +21,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("-o", "--out", metavar="DIR", required=True)
     parser.add_argument("--best", action="store_true")
     add_allowance(parser, "half-width of the yield's 95 % interval", "number of arrays")
-    add_json(parser)
+    parser.add_argument("--json", action="store_true")
 
 
 def run(args: argparse.Namespace) -> int:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from tactcad.design.messages import InputError
 
-from .parser import UNLISTED, add_json
+from .parser import UNLISTED
 
 if TYPE_CHECKING:
     from tactcad.export.difference import Change
@@ -43,7 +43,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("new", metavar="B")
     parser.add_argument("design", metavar="DESIGN", nargs="?")
     parser.add_argument("--their-code", action="store_true")
-    add_json(parser)
+    parser.add_argument("--json", action="store_true")
     parser.add_argument("--full", action="store_true")
     parser.add_argument("-o", "--out", action=_ByEnding, metavar="FILE")
     parser.add_argument("--review", metavar="FILE")

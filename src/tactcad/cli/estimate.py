@@ -118,13 +118,13 @@ def estimate_design(args: argparse.Namespace, asked: Allowance, design: Design) 
 def _chosen(layout: Layout, asked: Allowance) -> tuple[Candidate, Picked]:
     """The rung for all elements, equal ones solved once."""
     from tactcad.costs.grades import rung_grades
-    from tactcad.lab.array_estimate import choose_rung, distinct_sections
-    from tactcad.mechanics.accuracy import CANDIDATES, require_measured
+    from tactcad.lab.array_estimate import distinct_sections
+    from tactcad.mechanics.accuracy import CANDIDATES, choose, require_measured
 
     section, names = distinct_sections(layout)
     require_measured(section, names)
     if asked.within is not None:
-        choose_rung(layout, asked.within)  # refuses with the element that no rung answers
+        choose(section, asked.within, names)  # refuses with the element that no rung answers
     picked = pick(rung_grades(section), asked, "K")
     return next(c for c in CANDIDATES if c.name == picked.grade.name), picked
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from tactcad.design.allowance import pick
 from tactcad.design.messages import CheckFailure, InputError
 
-from .parser import add_allowance, add_design, add_json, add_others, add_strict, allowance
+from .parser import add_allowance, add_design, add_others, allowance
 
 if TYPE_CHECKING:
     from tactcad.export.pipeline import Progress
@@ -26,11 +26,11 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--drawings", action="store_true")
     parser.add_argument("--robot", action="store_true")
     parser.add_argument("--measured", metavar="FILE")
-    add_strict(parser)
+    parser.add_argument("--strict", action="store_true")
     parser.add_argument("-o", "--out", metavar="DIR")
     add_others(parser)
     add_allowance(parser, "relative error of a part's meshed volume, written as stl/PART_REV.stl,", "mesh")
-    add_json(parser)
+    parser.add_argument("--json", action="store_true")
 
 
 def run(args: argparse.Namespace) -> int:

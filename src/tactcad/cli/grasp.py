@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from tactcad.design.messages import InputError, one_of
 from tactcad.design.text_values import as_number
 
-from .parser import add_design, add_json
+from .parser import add_design
 
 if TYPE_CHECKING:
     from tactcad.contact.elastic_body import Body
@@ -38,7 +38,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--rung", choices=RUNGS)
     parser.add_argument("--within", metavar="P")
     parser.add_argument("-o", "--out", metavar="FILE.svg")
-    add_json(parser)
+    parser.add_argument("--json", action="store_true")
 
 
 def run(args: argparse.Namespace) -> int:

@@ -79,18 +79,6 @@ def add_design(parser: argparse.ArgumentParser, several: bool = False) -> None:
     )
 
 
-def add_shop(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--shop", metavar="FILE")
-
-
-def add_json(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--json", action="store_true")
-
-
-def add_strict(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--strict", action="store_true")
-
-
 def add_others(
     parser: argparse.ArgumentParser,
     where: str = "the folder holds files that tactcad did not write",

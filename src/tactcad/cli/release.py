@@ -10,7 +10,7 @@ import sys
 from dataclasses import asdict
 from pathlib import Path
 
-from .parser import add_design, add_json, add_others, add_shop
+from .parser import add_design, add_others
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -21,9 +21,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--sample", action="store_true")
     parser.add_argument("--sets", choices=("one", "all"), default="one")
     add_others(parser, "a zip there is not as tactcad wrote it", "NAME-kept-1.zip")
-    add_shop(parser)
+    parser.add_argument("--shop", metavar="FILE")
     parser.add_argument("--draft", action="store_true")
-    add_json(parser)
+    parser.add_argument("--json", action="store_true")
 
 
 def run(args: argparse.Namespace) -> int:

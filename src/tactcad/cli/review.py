@@ -8,7 +8,7 @@ import sys
 import time
 from pathlib import Path
 
-from .parser import UNLISTED, add_json
+from .parser import UNLISTED
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -25,7 +25,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--drawings", action="store_true")
     parser.add_argument("-o", "--out", metavar="FILE")
     parser.add_argument("--freecad", help=UNLISTED)  # beside a page
-    add_json(parser)
+    parser.add_argument("--json", action="store_true")
 
 
 def run(args: argparse.Namespace) -> int:

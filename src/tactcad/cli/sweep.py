@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from tactcad.design.messages import CheckFailure, InputError, refuse_missing
 
-from .parser import add_allowance, add_json, allowance
+from .parser import add_allowance, allowance
 
 if TYPE_CHECKING:
     from tactcad.design.allowance import Picked
@@ -33,7 +33,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "error of K, and half-width of the yield's 95 % interval if the study has builds,",
         "rung and number of arrays",
     )
-    add_json(parser)
+    parser.add_argument("--json", action="store_true")
 
 
 def run(args: argparse.Namespace) -> int:

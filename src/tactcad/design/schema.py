@@ -17,12 +17,12 @@ INNER: dict[type, tuple[str, type, str]] = {
     Element: ("element.override.N", Hinge, "^[1-9][0-9]{0,3}$"),
     Identity: ("design.unchanged.LETTER", Issue, "^[A-Z]{1,2}$"),
 }
-_TEXT_ORIGIN = (
+TEXT_ORIGIN = (
     '[origin] holds the source of any value by its path, as "element.pad_length" = "paper: 2 x 3 mm2".'
 )
 
 
-def _rows(kind: type) -> list[tuple[str, Spec, str]]:
+def fields_of(kind: type) -> list[tuple[str, Spec, str]]:
     """Name, spec and default (as text) of every field of a table; override tables are left out."""
     specs = [f for f in dataclasses.fields(kind) if "spec" in f.metadata]
     return [(f.name, f.metadata["spec"], _default(f)) for f in specs]
@@ -58,14 +58,14 @@ def text_schema(table: str | None = None) -> str:
         "Lengths in mm, forces in N, stresses in MPa, density in kg/m3 unless a field says otherwise.",
         "",
     ]
-    for family, tables in _by_family():
+    for family, tables in tables_by_family():
         if lines[2:]:
             lines += [f"Tables of {family.name}, besides those of every family:", ""]
         lines += [line for table in tables for line in table_text(*table)]
-    return "\n".join([*lines, *textwrap.wrap(_TEXT_ORIGIN, 100)])
+    return "\n".join([*lines, *textwrap.wrap(TEXT_ORIGIN, 100)])
 
 
-def _by_family() -> Iterator[tuple[Family, list[tuple[str, type, bool]]]]:
+def tables_by_family() -> Iterator[tuple[Family, list[tuple[str, type, bool]]]]:
     """Tables of the first family; of another those that only it has: name, class, whether it may be left
     out."""
     shared: set[str] = set()
@@ -82,24 +82,10 @@ def _by_family() -> Iterator[tuple[Family, list[tuple[str, type, bool]]]]:
 def table_text(name: str, kind: type, optional: bool) -> list[str]:
     """One table of a file with its fields."""
     lines = [f"[{name}]" + (" (may be left out)" if optional else "")]
-    for field, spec, default in _rows(kind):
+    for field, spec, default in fields_of(kind):
         lines.append(f"  {field:24} {spec.meaning}")
         lines.append(f"  {'':24}   {spec.legal}; default: {default}")
     return [*lines, ""]
-
-
-def markdown_schema() -> str:
-    """The same as `text_schema` with a section and a table of fields for every table of the file."""
-    tables = [table for _, tables in _by_family() for table in tables]
-    lines = []
-    for name, kind, may_be_left_out in tables:
-        lines += [f"## [{name}]", "", "May be left out.", ""] if may_be_left_out else [f"## [{name}]", ""]
-        lines += ["| field | meaning | legal | default |", "|---|---|---|---|"]
-        for field, spec, default in _rows(kind):
-            cells = (f"`{field}`", spec.meaning, spec.legal, default)
-            lines.append("| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |")
-        lines.append("")
-    return "\n".join([*lines, "## [origin]", "", _TEXT_ORIGIN])
 
 
 def json_schema(table: str | None = None) -> dict[str, Any]:

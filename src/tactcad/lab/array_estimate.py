@@ -11,7 +11,7 @@ import numpy as np
 from tactcad.design.messages import CheckFailure
 from tactcad.design.tree import Design
 from tactcad.mechanics import ladder, strain, strength
-from tactcad.mechanics.accuracy import Choice, choose, expected_error_of
+from tactcad.mechanics.accuracy import expected_error_of
 from tactcad.mechanics.section import Array, HingeSection, friction_factor
 from tactcad.mechanics.strain import StrainErrors
 from tactcad.parts.array.element import element
@@ -112,24 +112,17 @@ def estimate(
     if why := not_reached(layout, places, section, rung):
         raise CheckFailure(why)
     if rung not in ladder.FINITE_ELEMENTS:
-        return _by_closed_form(layout, places, section, rung, force)
+        return by_closed_form(layout, places, section, rung, force)
     K, per_newton = _by_elements(layout, places, section, rung, design.gauge.grid_length, mesh)
     errors = strain.stated(section, design.gauge.grid_length, rung)
     promised = expected_error_of(section, rung, mesh)
     return _estimates(layout, places, section, K, per_newton, promised, errors, force)
 
 
-def estimate_sections(
-    layout: Layout, section: HingeSection, rung: str, force: float
-) -> list[ElementEstimate]:
-    """`estimate` by a closed form, with the dimensions in `section` (arrays over the elements) instead of the
-    design's."""
-    return _by_closed_form(layout, layout.elements, section, rung, force)
-
-
-def _by_closed_form(
+def by_closed_form(
     layout: Layout, places: Sequence[ElementPlace], section: HingeSection, rung: str, force: float
 ) -> list[ElementEstimate]:
+    """`estimate` with the dimensions in `section` (arrays over the places) instead of the design's."""
     K, grid = np.asarray(ladder.stiffness(section, rung)), layout.design.gauge.grid_length
     errors = strain.stated(section, grid, rung)
     peak = strain.peak(section, 1.0, rung)
@@ -141,30 +134,6 @@ def _by_closed_form(
     face = strain.face_stress(section, 1.0) if rung in ladder.FITTED else stress
     strains = _PerNewton(*(np.broadcast_to(x, section.shape) for x in (gauge, peak, stress, face)))
     return _estimates(layout, places, section, K, strains, expected_error_of(section, rung), errors, force)
-
-
-def choose_rung(layout: Layout, accuracy: float) -> Choice:
-    """The quickest rung that estimates every element's stiffness to a relative accuracy.
-
-    Equal elements are solved once and count once in the expected time.
-
-    Parameters
-    ----------
-    layout : Layout
-    accuracy : float
-        Relative error of the stiffness, at most.
-
-    Returns
-    -------
-    Choice
-
-    Raises
-    ------
-    CheckFailure
-        No rung is that accurate at every element.
-    """
-    section, names = distinct_sections(layout)
-    return choose(section, accuracy, names)
 
 
 def distinct_sections(layout: Layout) -> tuple[HingeSection, list[str]]:

@@ -27,7 +27,7 @@ from tactcad.parts.array.hinge_section import hinge_section
 from tactcad.parts.array.layout import Layout
 from tactcad.report.figures import Figure, aligned
 
-from .array_estimate import ELEMENT, ElementEstimate, estimate_sections, material_lines, material_record
+from .array_estimate import ELEMENT, ElementEstimate, by_closed_form, material_lines, material_record
 from .inspection_sheet import Reading
 
 NO, ARM, K, STRAIN, RATED = ELEMENT.some("number", "arm", "stiffness", "gauge_strain", "rated_force")
@@ -96,8 +96,8 @@ def as_made(
         name: np.array([r is not None and r.measured is not None for r in table[name]]) for name in halves
     }
     section = _rounded(designed.with_(**values))
-    nominal = estimate_sections(layout, designed, rung, force)
-    made = estimate_sections(layout, section, rung, force)
+    nominal = by_closed_form(layout, layout.elements, designed, rung, force)
+    made = by_closed_form(layout, layout.elements, section, rung, force)
     half_widths = _half_widths(layout, section, halves, known, rung, force)
     return [
         AsMade(p.number, nominal[i], made[i], _intervals(layout, made[i], half_widths[:, i]), of[p.number])
@@ -152,7 +152,7 @@ def _half_widths(
         halves = halves | {"fillet_radius": np.minimum(halves["fillet_radius"], section.straight_length / 2)}
 
     def at(moved: HingeSection) -> Array:
-        rows = estimate_sections(layout, _rounded(moved), rung, force)
+        rows = by_closed_form(layout, layout.elements, _rounded(moved), rung, force)
         # None becomes NaN
         return np.array([[getattr(row, name) for row in rows] for name in INTERVALS], dtype=float)
 

@@ -31,9 +31,9 @@ from tactcad.lab.array_estimate import ELEMENT
 from tactcad.parts.rules import refuse_broken
 from tactcad.scenes import chosen_scenes, make_scene
 
-from .facts import estimate_facts, part_facts, scene_facts
+from .facts import estimate_facts
 from .review_page import ViewerLibrary, review_page
-from .review_record import mesh_pack, record_head
+from .review_record import mesh_pack, record_of
 
 POLL = 0.1  # s between two looks at the file; chosen: a tenth of the second in which a change is to be seen
 ADDRESS = "127.0.0.1"
@@ -51,14 +51,11 @@ NUMBERS = ELEMENT.some("stiffness", "rated_force", "yield_force")
 LEFT_OUT = "Left out while live; `tactcad review` has it."
 
 
-@dataclass(frozen=True)
-class NumberChange:
-    """A number of the model before and after, None if there is none; `about` names the designators."""
+Change = dict[str, Any]  # `what`, `before` and `after` (None if there is none) of designators, `about`
 
-    about: str
-    what: str
-    before: Any
-    after: Any
+
+def _change(about: str, what: str, before: Any, after: Any) -> Change:
+    return {"about": about, "what": what, "before": before, "after": after}
 
 
 @dataclass(frozen=True)
@@ -163,7 +160,7 @@ class Live:
         new = s.version + 1
         with self.changed:
             self.design, self.record, self.block = made
-            kept = tuple(map(asdict, changes)) or s.changes  # a mended text may be the one before
+            kept = tuple(changes) or s.changes  # a mended text may be the one before
             model = new if changes else s.model
             self._tell(LiveState(new, model, s.file, time.perf_counter() - started, "", kept))
 
@@ -191,35 +188,28 @@ def live_record(design: CommonTables, scene_name: str, shapes: Shapes) -> tuple[
     pack = mesh_pack(parts, shapes)
     array = estimate_facts(design)
     elements = {p.part.part_no for p in scene.placements if p.designator in array["elements"]}
-    record = record_head(design) | {
-        "parts": [
-            part_facts(part, {}, []) | {"mesh": pack.table[part.part_no], "box": pack.boxes[part.part_no]}
-            for part in parts
-        ],
-        "scenes": [scene_facts(design, scene)],
-        "array": array,
-        "strains": {number: {"why_not": LEFT_OUT} for number in sorted(elements)},
-        "findings": [],
-        "sheets": {},
-    }
-    return record, pack.block
+    strains = {number: {"why_not": LEFT_OUT} for number in sorted(elements)}
+    return record_of(design, [scene], parts, pack, array, strains, ({}, [])), pack.block
 
 
 def number_changes(
     old: tuple[CommonTables, Mapping[str, Any]], new: tuple[CommonTables, Mapping[str, Any]]
-) -> list[NumberChange]:
+) -> list[Change]:
     """Differences between two designs and their records: fields first, then the elements' estimates, equal
     changes of several elements as one, then masses."""
     before, after = (flattened(design) for design, _ in (old, new))
     fields = [
-        NumberChange("", path, before.get(path), after.get(path))
+        _change("", path, before.get(path), after.get(path))
         for path in (*after, *(p for p in before if p not in after))
         if before.get(path) != after.get(path)
     ]
-    return [*fields, *_estimates(old[1], new[1]), *_masses(old[1], new[1])]
+    scene = new[1]["scenes"][0]["name"]
+    pair = _mass(old[1]), _mass(new[1])
+    masses = [_change(scene, "mass, g", *pair)] if pair[0] != pair[1] else []
+    return [*fields, *_estimates(old[1], new[1]), *masses]
 
 
-def _estimates(old: Mapping[str, Any], new: Mapping[str, Any]) -> Iterator[NumberChange]:
+def _estimates(old: Mapping[str, Any], new: Mapping[str, Any]) -> Iterator[Change]:
     before, after = (record["array"]["elements"] for record in (old, new))
     for figure in NUMBERS:
         same: dict[tuple[Any, Any], list[str]] = {}
@@ -228,20 +218,13 @@ def _estimates(old: Mapping[str, Any], new: Mapping[str, Any]) -> Iterator[Numbe
             if pair[0] != pair[1]:
                 same.setdefault(pair, []).append(designator)
         yield from (
-            NumberChange(" ".join(who), f"{figure.heading}, {figure.unit}", *pair)
-            for pair, who in same.items()
+            _change(" ".join(who), f"{figure.heading}, {figure.unit}", *pair) for pair, who in same.items()
         )
 
 
 def _number(elements: Mapping[str, Any], designator: str, name: str) -> float | None:
     estimate = elements.get(designator, {}).get("estimate")
     return estimate[name] if estimate else None
-
-
-def _masses(old: Mapping[str, Any], new: Mapping[str, Any]) -> Iterator[NumberChange]:
-    before, after = (_mass(record) for record in (old, new))
-    if before != after:
-        yield NumberChange(new["scenes"][0]["name"], "mass, g", before, after)
 
 
 def _mass(record: Mapping[str, Any]) -> float:

@@ -18,8 +18,11 @@ from tactcad.export.inputs import digest
 from tactcad.export.shapes import Shapes
 from tactcad.parts.language.description import Part
 from tactcad.scenes import make_scene, overall_size, stated_size
+from tactcad.scenes.requirement import DimensionLimits
+from tactcad.scenes.scene import Scene
+from tactcad.stacks.stack import StackLine
 
-from .facts import element_facts, finding_facts, part_facts, scene_facts
+from .facts import Facts, element_facts, finding_facts, part_facts, scene_facts
 
 if TYPE_CHECKING:
     from OCP.TopoDS import TopoDS_Shape
@@ -223,28 +226,37 @@ def review_record(
     say(total - 1, total, "checks")
     findings = finding_facts(design, scenes, shapes, lambda *_: None)
     strains, block = _strains(design, pack)
-    head = record_head(design)
-    head["design"]["size"] = stated_size(overall_size(design))
-    record = head | {
-        "parts": [
-            part_facts(part, made.variables, lines)
-            | {"mesh": pack.table[part.part_no], "box": pack.boxes[part.part_no]}
-            for part in parts
-        ],
-        "scenes": [scene_facts(design, scene) for scene in scenes],
-        "array": elements,
-        "strains": strains,
-        "findings": [asdict(f) for f in findings],
-        "sheets": dict(sheets),
-    }
+    record = record_of(design, scenes, parts, pack, elements, strains, (made.variables, lines))
+    record["design"]["size"] = stated_size(overall_size(design))
+    record |= {"findings": [asdict(f) for f in findings], "sheets": dict(sheets)}
     say(total, total, "done")
     return record, block
 
 
-def record_head(design: CommonTables) -> dict[str, Any]:
-    """The head of every record."""
-    identity = {name: getattr(design.design, name) or "" for name in IDENTITY}
-    return {"schema": SCHEMA, "tactcad": __version__, "design": identity}
+def record_of(
+    design: CommonTables,
+    scenes: Sequence[Scene],
+    parts: Sequence[Part],
+    pack: MeshPack,
+    array: Facts,
+    strains: dict[str, Any],
+    stack: tuple[dict[str, DimensionLimits], Sequence[StackLine]],
+) -> dict[str, Any]:
+    """The record without findings and sheets; `stack`: the sensor's variables and its lines."""
+    return {
+        "schema": SCHEMA,
+        "tactcad": __version__,
+        "design": {name: getattr(design.design, name) or "" for name in IDENTITY},
+        "parts": [
+            part_facts(part, *stack) | {"mesh": pack.table[part.part_no], "box": pack.boxes[part.part_no]}
+            for part in parts
+        ],
+        "scenes": [scene_facts(design, scene) for scene in scenes],
+        "array": array,
+        "strains": strains,
+        "findings": [],
+        "sheets": {},
+    }
 
 
 def _strains(design: CommonTables, pack: MeshPack) -> tuple[dict[str, Any], bytes]:
