@@ -13,8 +13,9 @@ from pathlib import Path
 
 import numpy as np
 
+from tactcad.contact import springs
 from tactcad.paper import published
-from tactcad.paper.grasp_figures import Truth, approach, grasp_signals
+from tactcad.paper.grasp_figures import Truth, grasp_signals
 from tactcad.synthesis.target import Known
 
 SEED = 20260102
@@ -150,7 +151,7 @@ def grasp_log(rng: np.random.Generator) -> str:
     way = np.clip((place - whole) * rows / change, 0.0, 1.0)  # the load changes at the beginning of a step
     load = held[np.maximum(whole - 1, 0)] * (1 - way) + held[whole] * way
     time = np.arange(len(load)) / LOG_RATE
-    _, deflection = approach(load, array.stiffness, SAMPLES[0])
+    deflection = springs.press(array.stiffness, SAMPLES[0], load)[2]
     clean = array.zero_signal[:, None] + array.signal_per_deflection[:, None] * deflection
     drift = LOG_DRIFT * rng.standard_normal((len(clean), 1)) * time / time[-1]
     signal = clean + drift + LOG_NOISE * rng.standard_normal(clean.shape)

@@ -123,7 +123,7 @@ def springs_error(pads: Pads, body: Body, angle: tuple[float, float]) -> tuple[f
     alone = pad_stiffness(body, pads.length, pads.width)
     right = PadsOnBody(pads, body).press(load=1.0, angle=angle)
     back = pads.height + pads.x * np.tan(np.radians(angle[0])) + pads.y * np.tan(np.radians(angle[1]))
-    force = springs.press(K, back, pads.stop, alone, 1.0)[1]
+    force = springs.press(K, alone, np.ones(1), back, pads.stop)[1][:, 0]
     return float(K.max() / (K.max() + alone)), difference(force, right.force)
 
 

@@ -11,7 +11,8 @@ import numpy as np
 from example_readings import truth
 
 from tactcad.circuit.element_signals import design_readout
-from tactcad.paper.grasp_figures import Truth, approach
+from tactcad.contact import springs
+from tactcad.paper.grasp_figures import Truth
 from tactcad.parts.array.bridge_figures import drift
 from tactcad.parts.array.layout import Layout
 from tactcad.parts.rules import load
@@ -77,7 +78,7 @@ def grasp(rng: np.random.Generator, x: float = X, loads: np.ndarray = UP_AND_DOW
     a = array()
     time, step = _times(len(loads), rng)
     force = _moving(loads, step)
-    _, deflection = approach(force, a.stiffness, x)
+    deflection = springs.press(a.stiffness, x, force)[2]
     clean = a.zero_signal[:, None] + a.signal_per_deflection[:, None] * deflection
     volts, away = _channels(clean, time, rng)
     columns = {f"ai{n}": v for n, v in zip(a.element, volts)}

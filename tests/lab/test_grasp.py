@@ -11,6 +11,7 @@ import pytest
 from example_readings import Noise, calibration_rows, truth
 from scipy.stats import binom
 
+from tactcad.contact import springs
 from tactcad.design.messages import InputError
 from tactcad.lab import calibration, grasp, readings
 from tactcad.lab.calibration_file import Sensitivity
@@ -19,7 +20,7 @@ from tactcad.lab.load_cell import LoadCell
 from tactcad.lab.readings import CalibrationReadings, GraspReadings
 from tactcad.mechanics import lumped
 from tactcad.mechanics.lumped import shares_between
-from tactcad.paper.grasp_figures import Truth, approach, grasp_signals
+from tactcad.paper.grasp_figures import Truth, grasp_signals
 
 CELL = 57.04
 LOAD = 3.235 + 0.980665 * np.arange(8)
@@ -46,7 +47,7 @@ def exact(truth=TRUTH) -> Sensitivity:
     )
 
 
-def grasped(x, noise=0.0, seed=0, heights=None, truth=TRUTH, load=LOAD) -> GraspReadings:
+def grasped(x, noise=0.0, seed=0, heights=0.0, truth=TRUTH, load=LOAD) -> GraspReadings:
     signal = grasp_signals(truth, load, x, noise, np.random.default_rng(seed), heights)
     return GraspReadings(1, truth.element, load, np.zeros(len(load), int), signal)
 
@@ -320,7 +321,7 @@ def test_an_unknown_reference_is_refused():
 
 def test_the_array_carries_the_load_and_late_pads_carry_none():
     heights = np.array([0.0, 0.05, -0.3, 0.01])
-    z, d = approach(LOAD, TRUTH.stiffness, 5.0, heights)
+    z, _, d = springs.press(TRUTH.stiffness, 5.0, LOAD, -heights)
     assert (TRUTH.stiffness[:, None] * d).sum(0) == pytest.approx(LOAD, rel=1e-12)
     assert ((z[None, :] + heights[:, None] <= 0) == (d == 0)).all() and (d[2, 0] == 0)
 

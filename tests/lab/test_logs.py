@@ -14,6 +14,7 @@ import pytest
 from variants import HARDWARE
 
 from tactcad.cli.main import main
+from tactcad.contact import springs
 from tactcad.lab import calibration, grasp, log_readings, readings, regression
 from tactcad.lab.calibration_file import Sensitivity
 from tactcad.lab.combine import combine
@@ -307,7 +308,7 @@ def test_channels_without_noise_are_not_saturated(tmp_path):
     lab = labs.grasp(np.random.default_rng(8))
     load = np.where(lab.step >= 0, labs.UP_AND_DOWN[lab.step], lab.columns["load"])
     a = labs.array()
-    _, sink = labs.approach(load, a.stiffness, labs.X)
+    sink = springs.press(a.stiffness, labs.X, load)[2]
     volts = a.zero_signal[:, None] + a.signal_per_deflection[:, None] * sink
     still = broken(lab, **{f"ai{n}": np.round(v, 3) for n, v in zip(a.element, volts)})
     assert not log_readings.take(in_memory(still), mapped(tmp_path, lab, "grasp")).left_out

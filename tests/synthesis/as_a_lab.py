@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from example_readings import Noise, calibration_rows
 
+from tactcad.contact import springs
 from tactcad.design.tree import Design
 from tactcad.lab.calibration import calibrate
 from tactcad.lab.calibration_file import Sensitivity
@@ -23,7 +24,7 @@ from tactcad.lab.readings import CalibrationReadings, GraspReadings
 from tactcad.mechanics import gauge_signal, ladder, strength
 from tactcad.mechanics.readout import volts_per_strain
 from tactcad.mechanics.section import HingeSection
-from tactcad.paper.grasp_figures import Truth, approach
+from tactcad.paper.grasp_figures import Truth
 from tactcad.parts.array.hinge_section import design_alloy, design_gauge, design_readout, hinge_section
 from tactcad.parts.array.layout import Layout
 from tactcad.parts.array.leads import longest_lead_resistance
@@ -217,7 +218,7 @@ def pressed(
     """Signals of one grasp on separate springs x."""
     grip = target.grasp
     load = grip.force * np.arange(1, grip.loads + 1) / grip.loads
-    signal = K_v[:, np.newaxis] * approach(load, K, x)[1]
+    signal = K_v[:, np.newaxis] * springs.press(K, x, load)[2]
     signal += reading_error(design) * rng.standard_normal(signal.shape)
     return GraspReadings(1, np.arange(1, len(K) + 1), load, np.zeros(len(load), int), signal)
 
@@ -254,7 +255,7 @@ def overloaded(
     """Which arrays have an element that closes its stop, passes its rated force or the one asked for, under
     the largest force on any of the objects."""
     most = np.array([target.grasp.force])
-    forces = np.array([[k * approach(most, k, x)[1][:, 0] for x in objects] for k in K]).max(axis=1)
+    forces = np.array([[springs.press(k, x, most)[1][:, 0] for x in objects] for k in K]).max(axis=1)
     rated = (
         strength.yield_force_where_known(arrays.section, design_alloy(design)) / design.rating.yield_factor
     )

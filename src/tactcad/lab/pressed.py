@@ -238,6 +238,8 @@ def _on_body(pads: Pads, body: Body, load: float, angle: tuple[float, float], ru
 def _on_springs(pads: Pads, body: Body, alone: float, load: float, angle: tuple[float, float]) -> Pressed:
     """Each pad alone, loaded at its middle: no tilt, no coupling."""
     back = pads.height + pads.x * tan(radians(angle[0])) + pads.y * tan(radians(angle[1]))
-    approach, force, sink = springs.press(1 / pads.compliance[:, 0, 0], back, pads.stop, alone, load)
-    none = np.zeros((len(sink), 2))
-    return Pressed(approach, force, sink, none, (force > 0) * 1.0, sink >= pads.stop, np.empty((5, 0, 0)))
+    K, at = 1 / pads.compliance[:, 0, 0], np.array([load])
+    (approach,), force, sink = springs.press(K, alone, at, back, pads.stop)
+    force, sink = force[:, 0], sink[:, 0]
+    level, none = np.zeros((len(force), 2)), np.empty((5, 0, 0))
+    return Pressed(float(approach), force, sink, level, (force > 0) * 1.0, sink >= pads.stop, none)

@@ -13,6 +13,7 @@ from math import inf, log, log10, nan, radians, tan
 
 import numpy as np
 
+from tactcad.contact import springs
 from tactcad.fem.bonded_leaf import stiffness
 from tactcad.mechanics import gauge_signal, ladder, lumped, readout
 from tactcad.mechanics.as_built import COMMON, half_widths
@@ -26,7 +27,7 @@ from tactcad.report import plots as d
 from tactcad.report.figures import percent, sig
 from tactcad.report.report import Picture, ReportSection, ReportTable
 
-from .grasp_figures import approach, elements_in_parallel
+from .grasp_figures import elements_in_parallel
 from .prose import drawn, effect_text, saying, section, table
 
 
@@ -274,7 +275,7 @@ def stage_error(data: Published, array: ArrayModel) -> float:
 def _grasp(pair: BudgetPair, data: Published, array: ArrayModel) -> list[Effect]:
     """Pads out of plane, where R is made of totals instead of slopes."""
     K, _ = _in_parallel(pair, data, array)
-    z = float(approach(np.array([array.grasping.moving_weight]), K, pair.x)[0][0])
+    z = float(springs.press(K, pair.x, np.array([array.grasping.moving_weight]))[0][0])
     height, tilt = array.tolerance.pad_height, array.tolerance.tilt
     span = float(max(np.ptp(array.pad_x), np.ptp(array.pad_y)))
     tilted = span / 2 * tan(radians(tilt))
@@ -348,7 +349,7 @@ def _coupled(pair: BudgetPair, data: Published, array: ArrayModel, thickness: fl
 def _signal(pair: BudgetPair, data: Published, array: ArrayModel) -> list[Effect]:
     K, reference = _in_parallel(pair, data, array)
     rig, factor, averaged = array.grasping, array.gauge.factor, array.readout.averaged_noise
-    _, deflection = approach(np.array([rig.moving_weight]), K, pair.x)
+    deflection = springs.press(K, pair.x, np.array([rig.moving_weight]))[2]
     d = np.array([deflection[reference, 0], deflection[int(np.argmin(np.abs(K - pair.K_m))), 0]])
     strained = gauge_signal.foil_strain_per_deflection
     q = np.array([strained(s, array.gauge).item() for s in (pair.short, pair.long)])

@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.special import fdtrc
 
+from tactcad.contact import springs
 from tactcad.mechanics import ladder, lumped
 from tactcad.paper.array_model import ArrayModel
 from tactcad.paper.published import Published
@@ -31,56 +32,17 @@ class Truth:
     zero_signal: np.ndarray  # V_0, V
 
 
-def approach(
-    load: np.ndarray, stiffness: np.ndarray, object_stiffness: float, pad_height: np.ndarray | None = None
-) -> tuple[np.ndarray, np.ndarray]:
-    """Approach and deflections of elements in parallel on one sample.
-
-    By equation (1) an element in contact deflects by (z + h) x/(K + x), with z the approach and x the
-    object's stiffness under one pad; one that is not yet in contact carries no load. The forces add up to
-    the load.
-
-    Parameters
-    ----------
-    load : array, [load]
-        N.
-    stiffness : array, [element]
-        K, N/mm.
-    object_stiffness : float
-        x, N/mm.
-    pad_height : array, [element], optional
-        h: height of each pad over the plane, mm; by default all are level.
-
-    Returns
-    -------
-    z : array, [load]
-        mm.
-    deflection : array, [element, load]
-        mm.
-    """
-    h = np.zeros_like(stiffness) if pad_height is None else pad_height
-    share = object_stiffness / (stiffness + object_stiffness)
-    rate = stiffness * share
-    order = np.argsort(-h, kind="stable")  # the pads touch in this order
-    sorted_rate, sorted_h = rate[order], h[order]
-    # approach with the first n pads touching, and the one at which the next would touch
-    candidate = (load[:, None] - np.cumsum(sorted_rate * sorted_h)) / np.cumsum(sorted_rate)
-    following = np.append(-sorted_h[1:], np.inf)
-    z = candidate[np.arange(len(load)), np.argmax(candidate <= following, axis=1)]
-    return z, share[:, None] * np.maximum(z[None, :] + h[:, None], 0.0)
-
-
 def grasp_signals(
     truth: Truth,
     load: np.ndarray,
     object_stiffness: float,
     noise: float,
     rng: np.random.Generator,
-    pad_height: np.ndarray | None = None,
+    pad_height: np.ndarray | float = 0.0,
 ) -> np.ndarray:
-    """Signals (V) of a grasp, [element, load]: those of `approach`'s deflections, with a standard deviation
-    of `noise` (V, of the averaged reading)."""
-    _, deflection = approach(load, truth.stiffness, object_stiffness, pad_height)
+    """Signals (V) of a grasp, [element, load]: of separate springs, with a standard deviation of `noise`
+    (V, of the averaged reading); `pad_height` over the pads' plane, mm, [element]."""
+    deflection = springs.press(truth.stiffness, object_stiffness, load, -np.asarray(pad_height))[2]
     clean = truth.zero_signal[:, None] + truth.signal_per_deflection[:, None] * deflection
     return clean + noise * rng.standard_normal(clean.shape)
 
@@ -144,14 +106,13 @@ def figure_6(data: Published, array: ArrayModel, supported: float, rng: np.rando
         here = replace(truth, stiffness=K)
         ratios, slopes = [], []
         for i in range(REPEATS):
-            h = None if height is None else height[i]
-            signal = grasp_signals(here, load, x, noise, rng, h)
+            signal = grasp_signals(here, load, x, noise, rng, 0.0 if height is None else height[i])
             d = (signal - here.zero_signal[:, None]) / here.signal_per_deflection[:, None]
             ratios.append(d[rows] / d[reference])
             g = (d - d.mean(1, keepdims=True)) @ (load - load.mean())
             slopes.append(g[rows] / g[reference])
         true = lumped.deflection_ratio(K_r, K_m, x)
-        _, clean = approach(load, K, x)
+        clean = springs.press(K, x, load)[2]
         result = Simulated(K_r, ratios[0], np.array(ratios).std(0), true, clean[reference] * 1e3)
         return result, np.array(slopes).mean(0)
 
