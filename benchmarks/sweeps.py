@@ -34,8 +34,8 @@ from tactcad.mechanics.accuracy import expected_error_of
 from tactcad.parts.array.hinge_section import element_section
 from tactcad.sweep import measured as one_task
 from tactcad.sweep import run_sweep
-from tactcad.sweep.closed_forms import Refused, alike
 from tactcad.sweep.designs_taken import designs_taken
+from tactcad.sweep.measured import Refused, alike
 from tactcad.sweep.study import Study, read_study
 
 HEAD = '[study]\nname = "speed"\nsampling = "sobol"\ncount = {count}\nseed = 0\n'

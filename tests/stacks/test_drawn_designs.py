@@ -6,7 +6,8 @@ from random_designs import as_toml, raw_table
 
 from tactcad.design.messages import InputError
 from tactcad.parts.rules import load
-from tactcad.stacks.virtual_build import LEAST_YIELD, sensor
+from tactcad.stacks.stack import LEAST_YIELD
+from tactcad.stacks.virtual_build import sensor
 
 ROWS = (2, 3, 5, 8)
 SLIDE_FIT = {"2": 2.012, "2.5": 2.512, "3": 3.012, "4": 4.016, "5": 5.016}  # 4 um over the largest m6 pin

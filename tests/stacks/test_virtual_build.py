@@ -17,8 +17,9 @@ from tactcad.parts.array.stop_gap import overloads, seat
 from tactcad.parts.rules import load, refuse_broken
 from tactcad.scenes.requirement import variable
 from tactcad.stacks.mechanic import PAD, Assembled
+from tactcad.stacks.stack import LEAST_YIELD
 from tactcad.stacks.variables import STACK_LENGTH, STEPS, made
-from tactcad.stacks.virtual_build import LEAST_YIELD, sensor
+from tactcad.stacks.virtual_build import sensor
 
 UNITS = np.array([1e3, 1e4, 1e4])  # um and tenths of a milliradian, so that all numbers are near one
 SHIPPED = ("macro-array", "soft-tissue", "double-sample", "smallest-bearing")

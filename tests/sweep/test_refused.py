@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from tactcad.sweep.closed_forms import ALL, Refused
+from tactcad.sweep.measured import ALL, Refused
 
 
 def test_the_first_reason_of_each_row_stands():

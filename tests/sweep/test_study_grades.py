@@ -15,8 +15,8 @@ from tactcad.design.messages import CheckFailure, InputError
 from tactcad.mechanics.accuracy import expected_error_of
 from tactcad.mechanics.ladder import RUNGS
 from tactcad.parts.array.hinge_section import element_section
-from tactcad.sweep.closed_forms import Refused, alike
 from tactcad.sweep.designs_taken import designs_taken
+from tactcad.sweep.measured import Refused, alike
 from tactcad.sweep.study import read_study
 from tactcad.sweep.study_grades import with_allowance
 

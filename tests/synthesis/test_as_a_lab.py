@@ -29,9 +29,8 @@ from tactcad.parts.array.hinge_section import hinge_section
 from tactcad.parts.array.layout import Layout
 from tactcad.synthesis.candidates import stands
 from tactcad.synthesis.interval import bounds, coupled_estimate
-from tactcad.synthesis.made_arrays import MadeSensor
+from tactcad.synthesis.made_arrays import MadeSensor, half_space_shares
 from tactcad.synthesis.search import search
-from tactcad.synthesis.shares import half_space_shares
 from tactcad.synthesis.target import Target, parse_target
 
 pytestmark = pytest.mark.slow  # draws many labs

@@ -18,7 +18,7 @@ from tactcad.parts.array.clamp import clamping
 from tactcad.parts.array.layout import Layout
 from tactcad.parts.rules import broken_rules, load
 from tactcad.scenes import overall_size
-from tactcad.synthesis import relax, synthesise
+from tactcad.synthesis import bounds, synthesise
 from tactcad.synthesis.bounds import (
     COMPACT,
     FROM_COMPACT,
@@ -61,7 +61,7 @@ def test_bounds_are_told_with_whose_they_are_and_the_best_beyond():
             table in ("elements.arms", "elements.hinges", "room.elements")
         )
     # as much as a search that knows nothing of the answer
-    stepped = dict(relax.eased(got.candidate.stand.target))["elements.arms[1]"]
+    stepped = dict(bounds.eased(got.candidate.stand.target))["elements.arms[1]"]
     alone = search(stands(stepped)[0], narrowest, rules=refusals, within=0.05)
     assert told["elements.arms[1]"].beyond == pytest.approx(7.7)
     assert told["elements.arms[1]"].half_width == pytest.approx(alone.half_width, rel=0.01)

@@ -19,8 +19,7 @@ from tactcad.parts.array.hinge_section import hinge_section
 from tactcad.parts.array.layout import Layout
 from tactcad.synthesis.interval import bounds
 from tactcad.synthesis.knowledge import elements, knowledge
-from tactcad.synthesis.made_arrays import MadeSensor
-from tactcad.synthesis.shares import variance_shares
+from tactcad.synthesis.made_arrays import MadeSensor, variance_shares
 from tactcad.synthesis.target import Target, parse_target
 
 X = 6.0  # N/mm

@@ -15,11 +15,10 @@ from tactcad.cli.main import main
 from tactcad.design.load import parse, read
 from tactcad.design.messages import CheckFailure
 from tactcad.parts.rules import broken_rules, load
-from tactcad.synthesis import relax
+from tactcad.synthesis import bounds
 from tactcad.synthesis import target_report as write_module
 from tactcad.synthesis.candidates import order
-from tactcad.synthesis.made_arrays import MadeSensor
-from tactcad.synthesis.shares import variance_shares
+from tactcad.synthesis.made_arrays import MadeSensor, variance_shares
 from tactcad.synthesis.synthesise import Synthesis, attempt, design
 from tactcad.synthesis.target import parse_target
 
@@ -75,20 +74,22 @@ def test_variance_shares_add_up_to_one_where_causes_do_not_interact():
 def test_the_least_change_is_the_nearest_that_does():
     target = parse_target(SMALL, "t")
     for name, bound in (("grasp.force", 10.0), ("known.run_scatter", 0.004)):
-        value, changed = relax.least_change(
+        value, changed = bounds.least_change(
             target,
             name,
             lambda t, name=name, bound=bound: (
-                relax.value_of(t, name) >= bound
+                bounds.value_of(t, name) >= bound
                 if name == "grasp.force"
-                else relax.value_of(t, name) <= bound
+                else bounds.value_of(t, name) <= bound
             ),
         )
-        assert value == pytest.approx(bound, rel=relax.CLOSE)
-        assert relax.value_of(changed, name) == value
-    assert relax.least_change(target, "grasp.force", lambda t: False) is None
-    for name, eased in relax.eased(target):
-        assert relax.value_of(eased, name) != relax.value_of(target, name) or name == "stock.hinge_tolerances"
+        assert value == pytest.approx(bound, rel=bounds.CLOSE)
+        assert bounds.value_of(changed, name) == value
+    assert bounds.least_change(target, "grasp.force", lambda t: False) is None
+    for name, eased in bounds.eased(target):
+        assert (
+            bounds.value_of(eased, name) != bounds.value_of(target, name) or name == "stock.hinge_tolerances"
+        )
 
 
 def test_the_command_writes_design_and_report(tmp_path, capsys, answer_only):
@@ -187,13 +188,13 @@ def test_the_least_change_stated_makes_it_possible_and_a_little_less_does_not():
     got = design(target)
     assert not got.met and got.changes
     for change in got.changes:
-        ease = relax.EASES[change.field]
-        by = np.geomspace(1.0, relax.FURTHEST, 2000)
-        reached = [relax.value_of(ease(target, b), change.field) for b in by]
+        ease = bounds.EASES[change.field]
+        by = np.geomspace(1.0, bounds.FURTHEST, 2000)
+        reached = [bounds.value_of(ease(target, b), change.field) for b in by]
         at = int(np.argmin([abs(v - change.needed) for v in reached]))
         assert attempt(ease(target, by[at])).met, change
-        less = ease(target, by[at] / (1.0 + 2.0 * relax.CLOSE))
-        assert relax.value_of(less, change.field) == change.needed or not attempt(less).met, change
+        less = ease(target, by[at] / (1.0 + 2.0 * bounds.CLOSE))
+        assert bounds.value_of(less, change.field) == change.needed or not attempt(less).met, change
 
 
 @pytest.mark.parametrize("arguments", [["--within", "0"], ["--within", "x"], ["--in", "0"], ["--in", "nan"]])

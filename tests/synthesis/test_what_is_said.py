@@ -16,10 +16,10 @@ from tactcad.design.load import read
 from tactcad.design.messages import CheckFailure, InputError
 from tactcad.parts.language.finding import Finding
 from tactcad.scenes import LeftOut
-from tactcad.synthesis import relax, synthesise
+from tactcad.synthesis import bounds, synthesise
 from tactcad.synthesis.bounds import Bound
+from tactcad.synthesis.made_arrays import COUNT, variance_shares
 from tactcad.synthesis.search import FAR
-from tactcad.synthesis.shares import COUNT, variance_shares
 from tactcad.synthesis.synthesise import LeastChange, Synthesis, attempt, goal_of
 from tactcad.synthesis.target import TABLES, Target, parse_target, read_target
 from tactcad.synthesis.target_report import answer, no_other_change, record, refuse_unwritable, report_page
@@ -199,8 +199,8 @@ def test_parts_of_the_report_that_were_left_out_have_no_heading():
 def test_every_field_is_eased_to_what_a_target_file_may_say():
     asked = target(("room.height", 30.0), ("target.half_width", 40.0), ("known.runs", 60), ("room.rows", 1))
     names = []
-    for by in (1.1, relax.FURTHEST):
-        for name, other in relax.eased(asked, by):
+    for by in (1.1, bounds.FURTHEST):
+        for name, other in bounds.eased(asked, by):
             table, field = name.partition("[")[0].split(".")
             value = getattr(getattr(other, table), field)
             spec = TABLES[table].__dataclass_fields__[field].metadata["spec"]
@@ -208,7 +208,7 @@ def test_every_field_is_eased_to_what_a_target_file_may_say():
             names.append(name)
     wanted = {"room.height", "target.share", "elements.kinds", "room.rows"}
     assert wanted <= set(names) and "elements.of_a_kind" not in names  # one is the least
-    eased = dict(relax.eased(target(("elements.of_a_kind", 3)), 2.0))
+    eased = dict(bounds.eased(target(("elements.of_a_kind", 3)), 2.0))
     assert eased["elements.of_a_kind"].elements.of_a_kind == 2
     assert eased["target.share"].target.share == pytest.approx(0.9)
     assert eased["elements.kinds"].elements.kinds == 4

@@ -168,8 +168,7 @@ def stack_files(plan: Plan) -> Iterator[Batch]:
     design, scenes = plan.design, [make_scene(plan.design, name) for name in plan.options.scenes]
 
     def run() -> Sequence[bytes]:
-        from tactcad.stacks.stack import stack_bytes
-        from tactcad.stacks.stack_page import stack_page
+        from tactcad.stacks.stack import stack_bytes, stack_page
         from tactcad.stacks.virtual_build import sensor
 
         from . import inspection

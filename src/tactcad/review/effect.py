@@ -31,7 +31,8 @@ from tactcad.parts.language.finding import Finding
 from tactcad.scenes import left_out
 from tactcad.scenes.rig import ARRAY
 from tactcad.scenes.scene import Scene
-from tactcad.stacks.virtual_build import LEAST_YIELD, sensor
+from tactcad.stacks.stack import LEAST_YIELD
+from tactcad.stacks.virtual_build import sensor
 
 # Figures of an element that are compared, with their displayed names.
 FIGURES = {

@@ -21,11 +21,9 @@ from tactcad.scenes.requirement import DimensionLimits, Requirement
 from tactcad.scenes.scene import Scene
 
 from .mechanic import Assembled
-from .stack import ROUNDING, SEED, StackLine, stack
+from .stack import LEAST_YIELD, ROUNDING, SEED, StackLine, stack
 from .variables import Distribution, made, of_element
 
-# Least share of arrays that meet all requirements; below it nothing is released.
-LEAST_YIELD = 0.995
 # The worse of these decides. Corners are also reported.
 DECIDING: tuple[Distribution, ...] = ("normal", "uniform")
 NEAR = 0.1  # of K, for which arrays are counted

@@ -21,9 +21,8 @@ from tactcad.parts.array.hinge_section import element_section
 from tactcad.scenes import scene_names
 from tactcad.stacks.virtual_build import widest
 
-from .closed_forms import Refused, alike
 from .designs_taken import designs_taken
-from .measured import CLOSED_FORMS_A_TASK
+from .measured import CLOSED_FORMS_A_TASK, Refused, alike
 from .study import BUILDS, CHECKS, EXPORT, Study
 
 OWN_MESH = tuple(c for c in CANDIDATES if c.mesh == rungs()[c.rung].meshes[0])  # a study names no other

@@ -17,7 +17,7 @@ from tactcad.report.figures import percent
 from tactcad.report.plots import BLUE, GREY, drawn, panels
 from tactcad.report.report import ReportSection, ReportTable, ValidationReport, to_html
 
-from .results_table import PARQUET
+from .run_sweep import PARQUET
 from .store import SCHEMA, mark_of
 
 if TYPE_CHECKING:

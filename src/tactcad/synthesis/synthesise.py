@@ -23,12 +23,11 @@ from tactcad.lab import array_estimate
 from tactcad.mechanics.section import Array
 from tactcad.scenes import LeftOut, left_out
 
-from . import bounds, relax
+from . import bounds
 from .candidates import Candidates, Stand, origins, stands
 from .interval import coupled_estimate
-from .made_arrays import MadeSensor, Yield
+from .made_arrays import MadeSensor, Share, Yield, half_space_shares, variance_shares
 from .search import FAR, Found, Goal, all_refusals, refusals, search
-from .shares import Share, half_space_shares, variance_shares
 from .target import Target
 
 ARRAYS = 2000  # made of each distribution
@@ -442,10 +441,10 @@ def _with_results(got: Synthesis, tasks: Sequence[Task], done: dict[int, Any]) -
 
 def _beside(got: Synthesis) -> Iterator[Task]:
     """The report's other tasks, most important first."""
-    on = (*relax.NOT_NARROWING, *(b.field for b in got.bounds))
+    on = (*bounds.NOT_NARROWING, *(b.field for b in got.bounds))
     if not got.target.on_layer:  # they are those of springs
         yield Task("variance shares", lambda: tuple(variance_shares(got.sensor)))
-    for name, other in relax.eased(got.target):
+    for name, other in bounds.eased(got.target):
         if name not in on:
             yield Task(f"what limits it: {name}", partial(_limit, got, name, other))
     yield from _front(got)
@@ -489,7 +488,7 @@ def _limit(got: Synthesis, name: str, other: Target) -> Limit | None:
     width, found = got.found.half_width, _best_nearby(other, got.found)
     if not found.accepted or found.half_width >= width * (1.0 - GAIN):
         return None
-    values = relax.value_of(got.target, name), relax.value_of(other, name)
+    values = bounds.value_of(got.target, name), bounds.value_of(other, name)
     return Limit(name, *values, found.half_width, 1.0 - found.half_width / width)
 
 
@@ -548,11 +547,11 @@ def _changes(got: Synthesis, arrays: int) -> Iterator[Task]:
             near = tried.found if met else near
             return met
 
-        least = relax.least_change(got.target, name, possible)
+        least = bounds.least_change(got.target, name, possible)
         if least and slow_failures(near.design):
             near = got.found
-            least = relax.least_change(got.target, name, partial(possible, checked=True))
-        return LeastChange(name, relax.value_of(got.target, name), least[0]) if least else None
+            least = bounds.least_change(got.target, name, partial(possible, checked=True))
+        return LeastChange(name, bounds.value_of(got.target, name), least[0]) if least else None
 
-    for name, _ in relax.eased(got.target):
+    for name, _ in bounds.eased(got.target):
         yield Task(f"least change: {name}", partial(change, name))

@@ -25,8 +25,8 @@ from tactcad.scenes.rigs.calibration import RIG as CALIBRATION
 from .bounds import SIZES, deciding
 from .candidates import dealt
 from .interval import LEVEL
+from .made_arrays import SLIGHT
 from .on_layer import Poses
-from .shares import SLIGHT
 from .synthesise import CURVE, PAPERS_RATIO, Synthesis
 
 COUPLINGS = (0.0, SLIGHT, 1.0)

@@ -15,8 +15,8 @@ from tactcad.parts.language.finding import Finding
 from tactcad.parts.rules.rule import remedy
 from tactcad.scenes.rig import all_rigs, rig_of
 from tactcad.scenes.scene import Scene
-from tactcad.stacks.stack import SEED
-from tactcad.stacks.virtual_build import LEAST_YIELD, sensor
+from tactcad.stacks.stack import LEAST_YIELD, SEED
+from tactcad.stacks.virtual_build import sensor
 
 from ..check import Check
 

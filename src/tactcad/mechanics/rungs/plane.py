@@ -1,4 +1,4 @@
-"""Rung plane: the leaf between two elastic roots, arm and body, in plane stress.
+"""Rungs of plane stress. plane: the leaf between two elastic roots, arm and body; fem-plane: elements.
 
 With rho = r/t, kappa = Lb/Hb, s = L - l/2 and p = L + l/2 the lever arms at the slot's junctions with arm and
 body, lc = l - 2 r, and n the number of slotted faces, E b C is the sum of::
@@ -32,6 +32,8 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+
+from tactcad.design.family import Late
 
 from ..register import Rung, by_sides
 from ..section import Array, HingeSection
@@ -168,3 +170,9 @@ def _by_form(table: Mapping[bool, float], two_sided: NDArray[np.bool_]) -> Array
 
 
 RUNG = Rung("plane", 4, "thin sheet; to compare with plane models", compliance_by, fitted=("plane",))
+ELEMENTS = Rung(
+    "fem-plane",
+    6,
+    "a contour of your own, in plane stress",
+    elements=Late("tactcad.fem.fem_ladder:converged_plane"),
+)

@@ -1,4 +1,5 @@
-"""Rung solid: the plane rung's parts, each stiffened as the width prevents anticlastic curvature.
+"""Rungs of the solid. solid: the plane rung's parts, each stiffened as the width prevents anticlastic
+curvature; fem-solid: elements.
 
     C3D = hinge (1 - nu^2/(1 + P)) + slope (1 - nu^2/(1 + cs P)) + arm + body (1 - nu^2/(1 + cb Lb/b)) + shear
     P = (1 + a nu) (cx x + cy y + (cz + cl t/l) z + cxx x^2 + cyz y z + cxxy x^2 y + cxxz x^2 z + cxyy x y^2
@@ -12,6 +13,8 @@ for any values of the constants.
 """
 
 from __future__ import annotations
+
+from tactcad.design.family import Late
 
 from ..register import Rung, by_sides
 from ..section import Array, HingeSection
@@ -55,3 +58,6 @@ def compliance(s: HingeSection, data: dict | None = None) -> Array:
 
 
 RUNG = Rung("solid", 5, "design: the default", compliance, fitted=("plane", "width"))
+ELEMENTS = Rung(
+    "fem-solid", 7, "the reference", elements=Late("tactcad.fem.fem_ladder:converged_solid"), meshes=(2, 3)
+)
