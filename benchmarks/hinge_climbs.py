@@ -27,7 +27,7 @@ from tactcad.fem.face_strain import readings, solid_readings
 from tactcad.fem.fem_ladder import converged_plane, converged_solid
 from tactcad.fem.mapped_mesh import plane_mesh
 from tactcad.fem.shape import reference_shape
-from tactcad.mechanics import accuracy, ladder, strain, validity
+from tactcad.mechanics import accuracy, ladder, validity
 from tactcad.mechanics.register import strain_data
 from tactcad.mechanics.section import HingeSection
 
@@ -73,12 +73,8 @@ def targets() -> list[Target]:
 def in_zone(target: Target, s: HingeSection) -> np.ndarray:
     """Which designs lie in the target's zone and in the range of rung solid."""
     what, i = target
-    if what == "K":
-        zone = accuracy.accuracy_data()["zones"][i]
-        inside = accuracy.in_zone(zone, validity.groups(s), s.two_sided)
-    else:
-        zone = strain_data()["zones"][i]
-        inside = strain.in_zone(zone["bounds"], s) & (s.two_sided == strain.SIDES[zone["sides"]])
+    zone = (accuracy.accuracy_data() if what == "K" else strain_data())["zones"][i]
+    inside = accuracy.in_zone(zone, validity.groups(s), s.two_sided)
     return np.asarray(inside & validity.within(s, "solid"))
 
 

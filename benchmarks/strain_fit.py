@@ -22,7 +22,7 @@ from tactcad.fem.face_strain import SurfaceReadings, readings
 from tactcad.fem.fem_ladder import ACROSS, ORDER
 from tactcad.fem.mapped_mesh import layers, plane_mesh
 from tactcad.fem.shape import reference_shape
-from tactcad.mechanics import strain, validity
+from tactcad.mechanics import accuracy, strain, validity
 from tactcad.mechanics.section import HingeSection
 
 Array = np.ndarray
@@ -135,11 +135,9 @@ def fit(tables: dict[str, Columns]) -> dict:
             weight = q.poisson**2 * (q.hinge_length / q.width - 1.0 / strain.NARROW)
             data["narrow"][at][side] = _fitted(features[own], weight, measured[own], RIDGE_NARROW)
     error = errors(rows, s, data)
-    zones = []
-    for side, flag in strain.SIDES.items():
-        for bounds in ZONES:
-            own = strain.in_zone(bounds, s) & (s.two_sided == flag)
-            zones.append({"sides": side, "bounds": bounds} | _measured(error, own))
+    groups = validity.groups(s)
+    zones = [{"sides": side, "bounds": bounds} for side in strain.SIDES for bounds in ZONES]
+    zones = [zone | _measured(error, accuracy.in_zone(zone, groups, s.two_sided)) for zone in zones]
     return {"seed": SEED, "designs": len(s.two_sided)} | data | {"zones": zones}
 
 

@@ -183,14 +183,16 @@ def layer_factor(c: np.ndarray, poisson: float) -> np.ndarray:
 
 
 def _waves(
-    k: np.ndarray, length: float, width: float, thickness: float, poisson: float
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Share of each wave in a pad's mean displacement under its own even pressure, [number, angle], and the
-    waves' numbers along x and y, 1/mm."""
+    length: float, width: float, thickness: float, poisson: float
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, float]:
+    """Share of each wave in a pad's mean displacement under its own even pressure, [number, angle]; the
+    waves' numbers along x and y, and their step, 1/mm."""
+    k = (np.arange(WAVES) + 0.5) * LARGEST / (length * width) ** 0.5 / WAVES
     angle = (np.arange(ANGLES) + 0.5) * (np.pi / 2) / ANGLES
     kx, ky = np.outer(k, np.cos(angle)), np.outer(k, np.sin(angle))
     phi = 1.0 if np.isinf(thickness) else layer_factor(k * thickness, poisson)[:, None]
-    return phi * (np.sinc(kx * length / 2 / np.pi) * np.sinc(ky * width / 2 / np.pi)) ** 2, kx, ky
+    share = phi * (np.sinc(kx * length / 2 / np.pi) * np.sinc(ky * width / 2 / np.pi)) ** 2
+    return share, kx, ky, float(k[1] - k[0])
 
 
 def influence(
@@ -214,8 +216,7 @@ def influence(
     ndarray, shape (n,)
         1 at distance 0.
     """
-    k = (np.arange(WAVES) + 0.5) * LARGEST / (length * width) ** 0.5 / WAVES
-    weight, kx, ky = _waves(k, length, width, thickness, poisson)
+    weight, kx, ky, _ = _waves(length, width, thickness, poisson)
     own = weight.sum()
 
     def share(x: float, y: float) -> float:
@@ -304,7 +305,6 @@ def pad_stiffness(modulus: float, length: float, width: float, thickness: float,
     poisson
         Of the layer.
     """
-    k = (np.arange(WAVES) + 0.5) * LARGEST / (length * width) ** 0.5 / WAVES
-    weight, _, _ = _waves(k, length, width, thickness, poisson)
-    area = (k[1] - k[0]) * (np.pi / 2 / ANGLES)
+    weight, _, _, step = _waves(length, width, thickness, poisson)
+    area = step * (np.pi / 2 / ANGLES)
     return float(np.pi**2 * modulus / (2 * (1 - poisson**2)) / (weight.sum() * area))

@@ -20,7 +20,7 @@ from math import pi, sqrt
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from . import gauge_signal, ladder
+from . import gauge_signal
 from .gauge_signal import Gauge
 from .section import Array, HingeSection
 
@@ -165,14 +165,8 @@ class Signal:
     resolution: Array  # N, two standard deviations of the averaged reading
 
 
-def predict(
-    s: HingeSection,
-    gauge: Gauge,
-    electronics: ReadOut,
-    deflection: ArrayLike,
-    rung: str = ladder.DEFAULT_RUNG,
-) -> Signal:
-    """Signals of all elements.
+def predict(s: HingeSection, gauge: Gauge, electronics: ReadOut, deflection: ArrayLike) -> Signal:
+    """Signals of all elements by the default rung.
 
     Parameters
     ----------
@@ -182,8 +176,6 @@ def predict(
         The same for all elements.
     deflection
         Of each element at its tip, mm.
-    rung
-        A closed-form rung.
 
     Raises
     ------
@@ -191,8 +183,8 @@ def predict(
         If an element is out of the rung's range.
     """
     gain = volts_per_strain(gauge.factor, electronics)
-    per_mm = gauge_signal.foil_strain_per_deflection(s, gauge, rung)
-    per_newton = gauge_signal.foil_strain_per_force(s, gauge, rung)
+    per_mm = gauge_signal.foil_strain_per_deflection(s, gauge)
+    per_newton = gauge_signal.foil_strain_per_force(s, gauge)
     strain = per_mm * np.asarray(deflection, dtype=float)
     volts = output(strain, gauge.factor, electronics)
     return Signal(

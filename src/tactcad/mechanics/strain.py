@@ -18,6 +18,7 @@ import numpy as np
 from tactcad.design.messages import CheckFailure
 
 from . import ladder, validity
+from .accuracy import in_zone
 from .register import by_sides, rungs, strain_data
 from .rungs import plane
 from .section import Array, HingeSection, friction_factor
@@ -414,14 +415,9 @@ def stated(s: HingeSection, grid_length: float, rung: str) -> StrainErrors:
     return StrainErrors(gauge, strain, stress)
 
 
-def in_zone(bounds: dict[str, list[float | None]], s: HingeSection) -> np.ndarray:
-    """Designs with every group of a zone between its ends."""
-    return np.broadcast_to(validity.in_bounds(bounds, validity.groups(s)), s.shape)
-
-
 def _stated(s: HingeSection, name: str) -> Array:
-    error = np.full(s.shape, np.nan)
+    error, groups = np.full(s.shape, np.nan), validity.groups(s)
     for zone in strain_data()["zones"]:
-        inside = in_zone(zone["bounds"], s) & (s.two_sided == SIDES[zone["sides"]])
+        inside = np.broadcast_to(in_zone(zone, groups, s.two_sided), s.shape)
         error[inside] = np.nan if zone["stated"][name] is None else zone["stated"][name]
     return np.where(validity.reasons(s, "solid") == "", error, np.nan)

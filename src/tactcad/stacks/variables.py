@@ -146,10 +146,10 @@ def _below(name: str, limit: str, pieces: int, matters: Matters, part: Part) -> 
     return variable(name, -zone, 0.0, pieces, ((part.part_no, limit),), matters)
 
 
-def _characteristic(variable_name: str, part: Part, name: str, pieces: int = 1) -> DimensionLimits:
+def _characteristic(variable_name: str, part: Part, name: str) -> DimensionLimits:
     c = next(c for c in part.characteristics if c.name == name)
     of = ((part.part_no, name),)
-    return variable(variable_name, c.lower - c.nominal, c.upper - c.nominal, pieces, of)
+    return variable(variable_name, c.lower - c.nominal, c.upper - c.nominal, 1, of)
 
 
 Distribution = Literal["normal", "uniform", "corners"]

@@ -26,6 +26,7 @@ from .variables import Distribution, made, of_element
 
 # The worse of these decides. Corners are also reported.
 DECIDING: tuple[Distribution, ...] = ("normal", "uniform")
+LEVEL = 0.95
 NEAR = 0.1  # of K, for which arrays are counted
 AT_ONCE = 20_000  # elements in memory at a time
 
@@ -216,9 +217,9 @@ def elements_built(layout: Layout, figures: dict[str, Array]) -> tuple[ElementBu
     )
 
 
-def of_share(successes: int, count: int, level: float = 0.95) -> tuple[float, float]:
-    """Clopper and Pearson's interval of a share (Biometrika 26, 1934): never covers less than its level."""
-    tail = (1.0 - level) / 2.0
+def of_share(successes: int, count: int) -> tuple[float, float]:
+    """Clopper and Pearson's interval of a share (Biometrika 26, 1934): never covers less than LEVEL."""
+    tail = (1.0 - LEVEL) / 2.0
     low = float(betaincinv(successes, count - successes + 1.0, tail)) if successes else 0.0
     high = float(betaincinv(successes + 1.0, count - successes, 1.0 - tail)) if successes < count else 1.0
     return low, high

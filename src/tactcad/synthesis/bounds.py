@@ -14,11 +14,10 @@ import numpy as np
 from tactcad.design.fields import Whole, spec_of, with_value
 from tactcad.design.load import paths
 from tactcad.design.tree import Design
-from tactcad.parts.array.clamp import array_width
 from tactcad.parts.array.layout import Layout
 from tactcad.parts.rules import broken_rules
 
-from .candidates import SEARCHED, Stand, stands
+from .candidates import SEARCHED, SIZES, Stand, stands
 from .made_arrays import MadeSensor
 from .search import Found, refusals, search
 from .target import TABLES, Target
@@ -72,13 +71,6 @@ CAP_SCREWS: dict[str, Any] = {
     "clamp.mount_pitch_y": 28.0,
 }
 FROM_COMPACT = "chosen: a clamp of M2 screws, as the room asked for has no design with the base's"
-SIZES: dict[str, Callable[[Layout], float]] = {
-    "length": lambda layout: layout.carrier_length,
-    "width": array_width,
-    "height": lambda layout: (
-        layout.design.element.pad_height + layout.carrier_bottom + layout.design.clamp.carrier_thickness
-    ),
-}
 
 
 @dataclass(frozen=True)
@@ -285,7 +277,7 @@ def _effects(base: Design, measure: Callable[[Layout], float]) -> Iterator[tuple
 
 # Sheets, alloys, gauges, powers, known.how and target.base are not tried: they have no order. For each field
 # that can be eased, the direction of an easing step: 10 %, or 1 for a count, or 0.01 mm for a hinge.
-STEP, HINGE_STEP = 0.10, 0.01
+STEP = 0.10
 FURTHEST = 8.0  # largest factor by which a field is eased before it is reported not to help alone
 CLOSE = 0.02  # relative; the least change is found to within this
 

@@ -8,7 +8,7 @@ that different ones are neighbours.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import product
@@ -134,19 +134,14 @@ class Stand:
         return min(int(room.elements[1]), room.rows * (int((self.widths <= room.width + SAME).sum()) - 1))
 
     @cached_property
-    def give(self) -> float:
-        """Compliance of the stop, mm/N, with all elements that the room takes."""
-        return _with_rows(self.base, max(self.most // self.target.room.rows, 1)).stop_give
+    def fullest(self) -> Layout:
+        """A row of as many elements as the room takes in each."""
+        return _with_rows(self.base, max(self.most // self.target.room.rows, 1))
 
     @cached_property
     def smallest_output(self) -> float:
         """Smallest output that the read-out resolves, V, with all elements that the room takes."""
-        return smallest_output(_with_rows(self.base, max(self.most // self.target.room.rows, 1)))
-
-    @cached_property
-    def height(self) -> float:
-        """From the pads to the carrier's top, mm."""
-        return self.base.element.pad_height + self.layout.carrier_bottom + self.base.clamp.carrier_thickness
+        return smallest_output(self.fullest)
 
     @cached_property
     def limits(self) -> tuple[Array, Array]:
@@ -180,6 +175,15 @@ class Stand:
 
             return CandidatesOnLayer(self, **values)
         return Candidates(self, **values)
+
+
+SIZES: dict[str, Callable[[Layout], float]] = {
+    "length": lambda layout: layout.carrier_length,
+    "width": array_width,
+    "height": lambda layout: (
+        layout.design.element.pad_height + layout.carrier_bottom + layout.design.clamp.carrier_thickness
+    ),
+}
 
 
 def _with_rows(d: Design, elements: int) -> Layout:
@@ -329,7 +333,9 @@ class Candidates:
         tip = tip_compliance(self.section, e.stiffness, self.arm)
         rated = self.yield_force / d.rating.deflection_factor
         overload = d.rating.overload_force
-        closing = largest_closing_force(self.section, e.stiffness, self.arm, s.give, overload, rated)
+        closing = largest_closing_force(
+            self.section, e.stiffness, self.arm, s.fullest.stop_give, overload, rated
+        )
         closing = np.minimum(closing * tip, land_room(s.layout, s.layout.common_hinge))
         least_gap = closing - 2.0 * d.stop.tolerance - 2.0 * seat(s.layout) - STEP_MM - AIR / 2
         # at its lower limit a hinge bears less, about as t^2, and deflects more, about as t^-3
@@ -370,7 +376,7 @@ class Candidates:
             "room.elements": np.maximum(self.total / room.elements[1], room.elements[0] / self.total) - 1.0,
             "room.width": s.widths[np.minimum(self.in_a_row, s.in_a_row)] / room.width - 1.0,
             "room.length": length / room.length - 1.0,
-            "room.height": np.full(len(self.arm), s.height / room.height - 1.0),
+            "room.height": np.full(len(self.arm), SIZES["height"](s.layout) / room.height - 1.0),
             "calibration": np.where(s.target.known.how == "calibrated", lacking, -1.0),
         }
 

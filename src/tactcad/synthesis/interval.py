@@ -70,15 +70,19 @@ class Bounds:
         return (self.high - self.low) / 2.0 / x
 
 
+def even_loads(force: float, loads: int) -> tuple[Array, float]:
+    """Even loads up to `force`, N, and the root of the sum of their squares about the mean."""
+    load = force * (np.arange(loads) + 1.0) / loads
+    return load, float(np.sqrt(((load - load.mean()) ** 2).sum()))
+
+
 def motion(e: Elements, count: Array, x: Array, force: float, loads: int) -> InGrasp:
     """Deflections and forces of elements on separate springs x (N/mm) under `loads` even loads up to `force`
     (N); `count` is the number of each. x broadcasts against (..., elements). The only place where synthesis
     uses the object's model for forces."""
     share = x / (e.stiffness + x)
     total = (count * e.stiffness * share).sum(axis=-1, keepdims=True)  # N per mm of approach
-    load = force * (np.arange(loads) + 1.0) / loads
-    spread = float(np.sqrt(((load - load.mean()) ** 2).sum()))
-    approach = spread / total
+    approach = even_loads(force, loads)[1] / total
     s = share * approach
     return InGrasp(s, e.stiffness * s, x * approach, e.stiffness * share * force / total)
 
@@ -166,9 +170,7 @@ def coupled_estimate(
     springs."""
     compliance = share / x + np.eye(e.stiffness.shape[-1]) / e.stiffness[..., np.newaxis, :]
     f = np.linalg.solve(compliance, np.ones((*compliance.shape[:-1], 1)))[..., 0]
-    load = force * (np.arange(loads) + 1.0) / loads
-    spread = float(np.sqrt(((load - load.mean()) ** 2).sum()))
-    f = f * (spread / f.sum(axis=-1, keepdims=True))
+    f = f * (even_loads(force, loads)[1] / f.sum(axis=-1, keepdims=True))
     f = f.reshape(-1, f.shape[-1])
     of_s, of_f = noise / e.signal, noise * e.stiffness / e.signal
     belief = Covariance.of(known.of_k, known.of_v, known.cross)
@@ -252,13 +254,25 @@ class Evaluation:
         of_s, of_f = self.by_signal
         return (of_f + x * of_s) ** 2
 
+    def weighed(self, x: Array, weights: Covariance) -> tuple[Array, Array, Array, Array]:
+        """At K_obj x, (arrays, 1): each element's weight and their sum; s and f about their weighed means."""
+        w = 1.0 / (self.signal(x) + weights.along(self.f, self.s, x))
+        all_w = w.sum(axis=1, keepdims=True)
+        s, f = (of - (w * of).sum(axis=1, keepdims=True) / all_w for of in (self.s, self.f))
+        return w, all_w, s, f
+
+    def scattered(self, x: Array, factor: Array) -> tuple[Array, Array]:
+        """Variance of the sum of f + x s, each times the root of its factor, and Welch and Satterthwaite's
+        degrees of freedom of it."""
+        own = factor * self.belief.along(self.f, self.s, x)
+        signal = (factor * self.signal(x)).sum(axis=1, keepdims=True)
+        total = signal + own.sum(axis=1, keepdims=True)
+        return total, total**2 / (signal**2 / self.dof[1] + (own**2).sum(axis=1, keepdims=True) / self.dof[0])
+
     def fit(self, x: Array, weights: Covariance) -> tuple[Array, Array, Array]:
         """At K_obj x, (arrays, 1): the least-squares x, the misfit of f + x s, and each element's pull on x
         (over S), with S = sum of pull (s - mean)."""
-        w = 1.0 / (self.signal(x) + weights.along(self.f, self.s, x))
-        all_w = w.sum(axis=1, keepdims=True)
-        s = self.s - (w * self.s).sum(axis=1, keepdims=True) / all_w
-        f = self.f - (w * self.f).sum(axis=1, keepdims=True) / all_w
+        w, _, s, f = self.weighed(x, weights)
         pull = w * s
         best = -(pull * f).sum(axis=1, keepdims=True) / (pull * s).sum(axis=1, keepdims=True)
         return best, (w * (f + x * s) ** 2).sum(axis=1, keepdims=True), pull
@@ -267,10 +281,7 @@ class Evaluation:
         """Estimate and interval of each array, K_obj being near `near` (N/mm)."""
         n, weights, best = self.s.shape[1], self.weights, self.best(near)
         _, least, pull = self.fit(best, weights)
-        own = pull**2 * self.belief.along(self.f, self.s, best)
-        signal = (pull**2 * self.signal(best)).sum(axis=1, keepdims=True)
-        total = signal + own.sum(axis=1, keepdims=True)
-        dof = total**2 / (signal**2 / self.dof[1] + (own**2).sum(axis=1, keepdims=True) / self.dof[0])
+        total, dof = self.scattered(best, pull**2)
         S = (pull * self.s).sum(axis=1, keepdims=True)  # pulls add up to zero, so the mean does not matter
         inflation = total / S
         t = stdtrit(dof, 0.5 + LEVEL / 2.0)
@@ -288,14 +299,9 @@ class Evaluation:
 
     def _disagreement(self, x: Array, least: Array, weights: Covariance) -> tuple[Array, Array]:
         """The misfit over the one expected of elements that agree, and that one's degrees of freedom."""
-        w = 1.0 / (self.signal(x) + weights.along(self.f, self.s, x))
-        all_w = w.sum(axis=1, keepdims=True)
-        s = self.s - (w * self.s).sum(axis=1, keepdims=True) / all_w
+        w, all_w, s, _ = self.weighed(x, weights)
         left = w * (1.0 - w / all_w - w * s**2 / (w * s**2).sum(axis=1, keepdims=True))
-        own = left * self.belief.along(self.f, self.s, x)
-        signal = (left * self.signal(x)).sum(axis=1, keepdims=True)
-        total = signal + own.sum(axis=1, keepdims=True)
-        dof = total**2 / (signal**2 / self.dof[1] + (own**2).sum(axis=1, keepdims=True) / self.dof[0])
+        total, dof = self.scattered(x, left)
         return least / total, dof
 
     @property

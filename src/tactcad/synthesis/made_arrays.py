@@ -74,6 +74,10 @@ class Yield:
     why: dict[str, int]
     half_widths: Array
 
+    def kept_by(self, share: float) -> float:
+        """The least half-width that a share of the arrays keep."""
+        return float(np.quantile(self.half_widths, share, method="higher"))
+
 
 @dataclass(frozen=True)
 class MadeSensor:
@@ -109,36 +113,36 @@ class MadeSensor:
         """K_obj at which arrays are tried, N/mm."""
         return np.geomspace(*self.target.range_of(self.design), POINTS)
 
-    def built(self, count: int, wanted: float, seed: int = SEED) -> Yield:
+    def built(self, count: int, wanted: float) -> Yield:
         """`count` arrays of each deciding distribution, and how many keep a half-width (relative)."""
-        return min((self._built(name, count, wanted, seed) for name in DECIDING), key=lambda y: y.share)
+        return min((self.built_of(name, count, wanted) for name in DECIDING), key=lambda y: y.share)
 
-    def kept_by(self, share: float, count: int, seed: int = SEED) -> float:
+    def kept_by(self, share: float, count: int) -> float:
         """The least half-width (relative) that a share of the arrays keep, whichever their distribution; inf
         if too many lack anything else."""
-        made_ = (self._built(name, count, np.inf, seed).half_widths for name in DECIDING)
-        return max(float(np.quantile(widths, share, method="higher")) for widths in made_)
+        return max(self.built_of(name, count, np.inf).kept_by(share) for name in DECIDING)
 
-    def _built(self, name: Distribution, count: int, wanted: float, seed: int) -> Yield:
-        lacking, widths = self._tried(name, count, seed)
+    def built_of(self, name: Distribution, count: int, wanted: float) -> Yield:
+        """`built` of one distribution."""
+        lacking, widths = self._tried(name, count)
         met = int((widths <= wanted).sum())
         lacking = lacking | {"interval too wide": count - met}
         why = {what: n for what, n in sorted(lacking.items(), key=lambda item: -item[1]) if n}
         return Yield(count, met / count, of_share(met, count), name, why, widths)
 
-    def _tried(self, name: Distribution, count: int, seed: int) -> tuple[dict[str, int], Array]:
+    def _tried(self, name: Distribution, count: int) -> tuple[dict[str, int], Array]:
         """Number of arrays by failure, and their half-widths: computed once for any wanted half-width."""
         known = self.__dict__.setdefault("tried", {})
-        if (name, count, seed) not in known:
-            rng, why, widths = np.random.default_rng(seed), dict[str, int](), []
+        if (name, count) not in known:
+            rng, why, widths = np.random.default_rng(SEED), dict[str, int](), []
             most = AT_ONCE_ON_BODY if self.target.on_layer else AT_ONCE
             for start in range(0, count, most):
                 lacks, width = self._some(name, min(most, count - start), rng)
                 for what, bad in lacks.items():
                     why[what] = why.get(what, 0) + int(bad.sum())
                 widths.append(width)
-            known[name, count, seed] = why, np.concatenate(widths)
-        return known[name, count, seed]
+            known[name, count] = why, np.concatenate(widths)
+        return known[name, count]
 
     def _some(
         self, distribution: Distribution, count: int, rng: np.random.Generator
@@ -153,9 +157,7 @@ class MadeSensor:
         if self.target.on_layer:
             forces, widths = self._on_body(e, behind, rng)
         else:
-            forces = np.max(
-                [motion(e, np.ones(1), x, grip.force, grip.loads).largest for x in self.points], axis=0
-            )
+            forces = self.largest(e)
             rate = e.stiffness * self.points[-1] / (e.stiffness + self.points[-1])
             last = (rate * behind).sum(axis=1)
             lacks["pads not all touching at the first load"] = last > grip.force / grip.loads
@@ -205,12 +207,16 @@ class MadeSensor:
     def worst(self) -> tuple[float, Array]:
         """Largest half-width over the object, inclined or not, and the largest force on each element, N."""
         if not self.target.on_layer:
-            grip, ones = self.target.grasp, np.ones(1)
-            forces = [motion(self.drawn, ones, x, grip.force, grip.loads).largest for x in self.points]
-            return float(self.interval(self.points).half_width(self.points).max()), np.max(forces, axis=0)
+            width = self.interval(self.points).half_width(self.points).max()
+            return float(width), self.largest(self.drawn)
         at = poses(self.target, self.design, angles=2)
         got = self.on_body.expected(at, min(self.target.grasp.loads, 10))
         return float(self.on_body.half_width(at, got).max()), got.force.max(axis=0)
+
+    def largest(self, e: Elements) -> Array:
+        """Largest force on each element over the object's range, on separate springs, N."""
+        grip, x = self.target.grasp, self.points.reshape(-1, *(1,) * e.stiffness.ndim)
+        return motion(e, np.ones(1), x, grip.force, grip.loads).largest.max(axis=0)
 
     def interval(self, x: Array, members: list[int] | None = None) -> Bounds:
         """The interval at K_obj `x` (N/mm) as drawn, of all elements or of those of these indices; on a body

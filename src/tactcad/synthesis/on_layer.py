@@ -24,6 +24,7 @@ from tactcad.lab.load_cell import RIGID
 from tactcad.mechanics.section import Array
 
 from .candidates import POINTS, Candidates, Stand, order
+from .interval import even_loads
 from .knowledge import Knowledge
 from .target import Target
 
@@ -122,7 +123,7 @@ class LayerGrasps:
         self, at: Poses, loads: int = LOADS, stiffness: Array | None = None, height: Array | None = None
     ) -> layer_fit.Expected:
         grip, one = self.target.grasp, np.ones(len(self.x))
-        load = grip.force * (np.arange(loads) + 1.0) / loads
+        load, _ = even_loads(grip.force, loads)
         shared = tuple(np.stack([k * one, v * one], -1) for k, v in self.known.common.values())
         return layer_fit.expected(
             self.array,

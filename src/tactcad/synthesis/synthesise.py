@@ -290,7 +290,7 @@ def attempt(
 
 def _margin(made: Yield, found: Found, share: float) -> float:
     """Half-width that a share of the arrays made keep, relative to the nominal one; 1 if they lack more."""
-    kept = float(np.quantile(made.half_widths, share, method="higher")) if made.count else np.inf
+    kept = made.kept_by(share) if made.count else np.inf
     return kept / found.half_width if np.isfinite(kept) else 1.0
 
 

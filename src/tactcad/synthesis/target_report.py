@@ -22,8 +22,8 @@ from tactcad.parts.array.layout import Layout
 from tactcad.report.plots import BLACK, BLUE, GREY, ORANGE, SKY, log_ticks, panels, series, svg
 from tactcad.scenes.rigs.calibration import RIG as CALIBRATION
 
-from .bounds import SIZES, deciding
-from .candidates import dealt
+from .bounds import deciding
+from .candidates import SIZES, dealt
 from .interval import LEVEL
 from .made_arrays import SLIGHT
 from .on_layer import Poses
