@@ -61,6 +61,7 @@ class Alloy:
     modulus_per_kelvin: float | None = None
     standard: str = ""
     temper: str = ""
+    words: str = ""
     fatigue_cycles: float | None = None  # at which the fatigue strength holds
     spread: dict[str, float] = field(default_factory=dict)
 
@@ -102,30 +103,18 @@ def family(density: float) -> str:
 PLATE_ALLOYS = tuple(name for name, alloy in ALLOYS.items() if family(alloy.density) == "aluminium")
 
 
-# What each is, in words that are looked for; trade names.
-WORDS = {
-    "6061-T6": "aluminium",
-    "2024-T3": "high-strength aluminium, dural",
-    "7075-T6": "high-strength aluminium, ergal",
-    "Ti-6Al-4V-annealed": "titanium, grade 5",
-    "17-4PH-H900": "precipitation-hardened stainless",
-    "1.4310-C1300": "stainless spring, 301",
-    "1.4034-hardened": "stainless steel, martensitic, 420",
-    "maraging-300-aged": "maraging steel",
-    "C17200-TF00": "beryllium copper",
-}
-
-
 def described() -> str:
     """The names of the table, each with its description."""
-    return ", ".join(f"{name} ({WORDS[name]})" if name in WORDS else name for name in ALLOYS)
+    return ", ".join(f"{name} ({row.words})" if row.words else name for name, row in ALLOYS.items())
 
 
 def meant(word: str) -> str:
     """ "did you mean A or B?" for alloys whose name begins so or whose description matches, else the
     nearest."""
     wanted = word.casefold()
-    found = [n for n in ALLOYS if n.casefold().startswith(wanted) or wanted in WORDS.get(n, "").casefold()]
+    found = [
+        n for n, row in ALLOYS.items() if n.casefold().startswith(wanted) or wanted in row.words.casefold()
+    ]
     return f"did you mean {' or '.join(found)}?" if found and wanted else did_you_mean(word, ALLOYS)
 
 

@@ -41,6 +41,17 @@ def as_whole(text: str) -> int:
     return int(plain)
 
 
+def with_limits(text: str) -> tuple[float, float | None]:
+    """The number and the half-width of its limits, None without, in "6", "6+-0.3" or "6+-5%"; as
+    `as_number`."""
+    value, given, limits = text.strip().replace("\N{PLUS-MINUS SIGN}", "+-").partition("+-")
+    middle = as_number(value)
+    if not given:
+        return middle, None
+    half = as_number(limits.removesuffix("%"))
+    return middle, half * middle / 100 if limits.endswith("%") else half
+
+
 def filling_radius(radius: float, length: float) -> float:
     """The fillet radius in a slot, mm, of numbers or arrays: exactly half its length where two fillets fill
     it to nine digits (a full round).

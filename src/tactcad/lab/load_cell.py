@@ -18,7 +18,7 @@ from math import inf, isinf
 import numpy as np
 
 from tactcad.design.messages import InputError
-from tactcad.design.text_values import as_number
+from tactcad.design.text_values import with_limits
 from tactcad.design.tree import Design
 from tactcad.mechanics.lumped import ratio_interval
 
@@ -62,16 +62,14 @@ class LoadCell:
         InputError
             The text has none of these forms.
         """
-        value, given, limits = text.strip().replace("\N{PLUS-MINUS SIGN}", "+-").partition("+-")
         try:
-            stiffness = as_number(value)
-            half = as_number(limits.removesuffix("%")) if given else 100 * CELL_ACCURACY
+            stiffness, half = with_limits(text)
         except ValueError:
             legal = "a stiffness in N/mm with its limits, as in 57.04+-1 or 57.04+-2%, or inf"
             raise InputError("load cell", "not a stiffness", value=text, legal=legal) from None
-        if isinf(stiffness) and not given:
-            return cls(stiffness)
-        return cls(stiffness, half if given and not limits.endswith("%") else half * stiffness / 100)
+        if half is None:
+            half = 0.0 if isinf(stiffness) else CELL_ACCURACY * stiffness
+        return cls(stiffness, half)
 
     @property
     def ends(self) -> tuple[float, float]:

@@ -10,7 +10,7 @@ import numpy as np
 from tactcad.contact.press import THINNEST, Pads
 from tactcad.design.family import family_of
 from tactcad.design.messages import CheckFailure, InputError
-from tactcad.design.text_values import as_number
+from tactcad.design.text_values import with_limits
 from tactcad.design.tree import CommonTables, Design
 from tactcad.lab.layer_fit import LAYERS, LayeredArray, layer
 from tactcad.lab.readings import GraspReadings
@@ -94,23 +94,17 @@ def layers(design: CommonTables, thickness: str | None, poisson: float | None) -
     side = (pads.length * pads.width) ** 0.5
     pairs = [(h * side, 0.0) for h in LAYERS]
     if thickness is not None:
-        value, given, limits = thickness.replace("\N{PLUS-MINUS SIGN}", "+-").partition("+-")
         try:
-            h = as_number(value)
-            half = (
-                as_number(limits.removesuffix("%")) * (h / 100 if limits.endswith("%") else 1)
-                if given
-                else 0.0
-            )
+            h, given = with_limits(thickness)
         except ValueError:
             legal = "mm with its limits, as in 6+-0.3 or 6+-5%, or inf"
             raise InputError("--thickness", "not a thickness", value=thickness, legal=legal) from None
-        if not THINNEST * side <= h or not 0 <= half < h or isinf(h) and given:
+        if not THINNEST * side <= h or not 0 <= (given or 0.0) < h or isinf(h) and given is not None:
             legal = (
                 f"at least {THINNEST * side:.3g} mm (a quarter of a pad's side), limits below it; inf without"
             )
             raise InputError("--thickness", "out of range", value=thickness, legal=legal)
-        pairs = [(h, half)]
+        pairs = [(h, given or 0.0)]
     nu = SOFT if poisson is None else poisson
     return [layer(number, pads, of.limit(design), nu, h, half) for h, half in pairs]
 
