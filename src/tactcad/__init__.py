@@ -15,21 +15,23 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from .design.messages import CheckFailure, InputError
-    from .face import (
-        LoadedDesign,
-        OpenScene,
-        Reply,
-        calibrate,
-        circle,
-        design,
-        designs,
-        load,
-        new,
-        rectangle,
-        stiffness,
-    )
-    from .parts.language.description import Extrusion, Hole, Material, Part
+    from .design.messages import CheckFailure as CheckFailure
+    from .design.messages import InputError as InputError
+    from .face import LoadedDesign as LoadedDesign
+    from .face import OpenScene as OpenScene
+    from .face import Reply as Reply
+    from .face import calibrate as calibrate
+    from .face import circle as circle
+    from .face import design as design
+    from .face import designs as designs
+    from .face import load as load
+    from .face import new as new
+    from .face import rectangle as rectangle
+    from .face import stiffness as stiffness
+    from .parts.language.description import Extrusion as Extrusion
+    from .parts.language.description import Hole as Hole
+    from .parts.language.description import Material as Material
+    from .parts.language.description import Part as Part
 
 __version__ = "0.1.0"
 
@@ -42,25 +44,7 @@ _PLACES = {
     **dict.fromkeys(("Part", "Extrusion", "Hole", "Material"), "tactcad.parts.language.description"),
     **dict.fromkeys(("InputError", "CheckFailure"), "tactcad.design.messages"),
 }
-__all__ = [
-    "CheckFailure",
-    "Extrusion",
-    "Hole",
-    "InputError",
-    "LoadedDesign",
-    "Material",
-    "OpenScene",
-    "Part",
-    "Reply",
-    "calibrate",
-    "circle",
-    "design",
-    "designs",
-    "load",
-    "new",
-    "rectangle",
-    "stiffness",
-]
+__all__ = sorted((*_PLACES, "design"))
 
 
 def __getattr__(name: str) -> Any:

@@ -15,10 +15,9 @@ from tactcad.design.files import read_text
 from tactcad.design.load import MOST_BYTES, read_table, unknown_field
 from tactcad.design.messages import InputError
 from tactcad.design.text_values import parse_toml
-from tactcad.lab.column_units import FORCES, LENGTHS, VOLTAGES
+from tactcad.lab.column_units import UNITS, VOLTAGES
 
 SECONDS = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "min": 60.0, "h": 3600.0}
-UNITS = {"displacement": LENGTHS, "force": FORCES, "load": FORCES}
 NEEDED = {"calibration": ("element", "run", "displacement", "force"), "grasp": ("load",)}
 OPTIONAL = {"calibration": (), "grasp": ("run", "sample")}
 _NAME = r"[^\x00-\x1f]{1,200}"
