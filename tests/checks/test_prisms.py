@@ -101,7 +101,7 @@ WAIST = chain([(0, 0), (4, 0), (4, 3), (2, 0), (0, 3)])  # a corner on an edge
 )
 def test_the_plane_and_the_kernel_agree(contours, faulty):
     from tactcad.checks.on_solids import soundness
-    from tactcad.solids.prism_edges import prism_edges
+    from tactcad.solids.valid import prism_edges
     from tactcad.solids.valid import is_clear_prism
 
     shape = prism(*contours)
@@ -119,7 +119,7 @@ def test_what_is_no_prism_is_left_to_the_kernel():
     from build123d import Box, Cone, Cylinder, Pos, Rotation
 
     from tactcad.solids.build import build
-    from tactcad.solids.prism_edges import prism_edges
+    from tactcad.solids.valid import prism_edges
 
     block = Box(4, 3, 2)
     assert len(prism_edges(block.wrapped)) == 4

@@ -329,7 +329,7 @@ CALLERS = {
     "export/step_pmi.py": r"^_?check_(part|limits)$",
     "drawing/parts/part_sheet.py": r"_faults$",
     "drawing/assemblies/assembly_sheets.py": r"_faults$",
-    "release/make.py": r"^check_archive$|_faults$",
+    "release/make.py": r"^(check_contents|check_packages|read_back)$|_faults$",
 }
 
 

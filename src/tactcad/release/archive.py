@@ -42,15 +42,19 @@ def archive_bytes(files: Mapping[str, bytes], date: str) -> bytes:
     """
     year, month, day = map(int, date.split("-"))
     stamp = (min(max(year, OLDEST), NEWEST), month, day, 0, 0, 0)
-    sums = "".join(f"{sha256_of(data)}  {path}\n" for path, data in files.items())
     out = io.BytesIO()
     with zipfile.ZipFile(out, "w") as archive:
-        for path, data in {**files, MANIFEST: sums.encode()}.items():
+        for path, data in {**files, MANIFEST: checksums(files)}.items():
             entry = zipfile.ZipInfo(path, stamp)
             entry.create_system, entry.external_attr = UNIX, MODE << 16
             archive.writestr(entry, data, zipfile.ZIP_DEFLATED, 9)
     body = out.getvalue()[:-2]  # ends with the length of its comment, which is empty
     return body + _seal(sha256_of(body))
+
+
+def checksums(files: Mapping[str, bytes]) -> bytes:
+    """MANIFEST.sha256 of the files, as sha256sum reads it."""
+    return "".join(f"{sha256_of(data)}  {path}\n" for path, data in files.items()).encode()
 
 
 def _seal(digest: str) -> bytes:

@@ -26,7 +26,7 @@ from .archive import Foreign, archive_bytes, looked_at, replaced_content, replac
 from .packages import PACKAGES, nest_files, packed
 from .readme import package_readme, readme_bytes
 from .release_contents import ReleaseContents, Sets
-from .verify import README, check_archive, check_packages, read_back
+from .verify import README, check_contents, check_packages, read_back
 
 QUOTED = ("wire-cut", "machining")  # checks whose flags are reported to the shop
 
@@ -145,20 +145,16 @@ def release(
     target = places[0]
     whole = f"{target.name} (SHA-256 {sha256_of(data)})"
     packages = packed(contents, files, shop)
-    zips = [
-        archive_bytes({README: package_readme(contents, one, whole, shop), **one.files}, date)
-        for one in packages
-    ]
-    targets = [target, *(target.with_stem(f"{target.stem}-{one.package.name}") for one in packages)]
+    readmes = [package_readme(contents, one, whole, shop) for one in packages]
+    targets = [target.with_stem(f"{target.stem}-{one.package.name}") for one in packages]
+    zips = {target: files}
+    zips |= {t: {README: readme, **p.files} for t, readme, p in zip(targets, readmes, packages)}
     with replacing(places, foreign, terms.others, progress.line) as folder:
         replaced = [] if target.name in foreign else replaced_content(target, data)
-        parts = [folder / place.name for place in targets]
-        for part, content in zip(parts, (data, *zips)):
-            part.write_bytes(content)
-        every, wrong = read_back(parts[0], digests)
-        wrong = (
-            wrong or check_archive(every, contents) or check_packages(parts[1:], packages, every, contents)
-        )
+        wrong = check_contents(files, digests, contents) or check_packages(packages, readmes, files, contents)
+        for place, content in zips.items():
+            (folder / place.name).write_bytes(data if place is target else archive_bytes(content, date))
+            wrong += [f"{place.name}: {fault}" for fault in read_back(folder / place.name, content)]
         if wrong:
             raise CheckFailure(
                 f"{target}: the finished release does not hold: {'; '.join(wrong)}; nothing was changed"
@@ -172,7 +168,7 @@ def release(
         tuple(failures),
         tuple(replaced),
         terms.sample,
-        tuple(targets[1:]),
+        tuple(targets),
     )
 
 

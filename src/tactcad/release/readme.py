@@ -31,7 +31,6 @@ from .archive import MANIFEST
 from .packages import ETCHING, MACHINING, ORDER, SHEET, WIRE, Packed, table_rows
 from .release_contents import PROCESSES, SETS, SPARES, ReleaseContents
 
-MARK = "PRELIMINARY"
 _WORDS = tomllib.loads(Path(__file__).with_suffix(".toml").read_text("utf-8"))
 FOLDERS = {
     **{f.folder: f.released for f in sorted(part_formats(), key=lambda f: -f.ordered) if f.released},
