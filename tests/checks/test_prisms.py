@@ -101,8 +101,7 @@ WAIST = chain([(0, 0), (4, 0), (4, 3), (2, 0), (0, 3)])  # a corner on an edge
 )
 def test_the_plane_and_the_kernel_agree(contours, faulty):
     from tactcad.checks.on_solids import soundness
-    from tactcad.solids.valid import prism_edges
-    from tactcad.solids.valid import is_clear_prism
+    from tactcad.solids.valid import is_clear_prism, prism_edges
 
     shape = prism(*contours)
     edges = prism_edges(shape)

@@ -15,9 +15,9 @@ from variants import variant
 
 from tactcad.checks.facing_rows.circuit import check_signals
 from tactcad.circuit.bridges import netlist
-from tactcad.circuit.digital_board import digital_netlist
 from tactcad.circuit.digital_readout import digital_readout, registers, settings_header, settings_json
 from tactcad.circuit.element_signals import element_signals
+from tactcad.circuit.read_board import digital_netlist
 from tactcad.design.fields import OneOf
 from tactcad.mechanics.gauge_signal import continuous, thermal_resistance, time_constant
 from tactcad.parts.array.bridge_figures import power_of

@@ -41,10 +41,9 @@ from .copper import (
     Via,
     rounded,
 )
-from .digital_board import digital_netlist
 from .footprints import Pad, footprint
 from .netlist import Component, Netlist
-from .read_board import OUTSIDE, board_netlist
+from .read_board import OUTSIDE, board_netlist, digital_netlist
 
 PITCH, ROW = 0.75, 0.9  # mm: vias of neighbours are 1.17 apart, their openings in the planes 1 wide
 APART = 1.15  # mm between vias in one row, of one net or two

@@ -4,7 +4,7 @@
   gauge   '--W.2------- PLUS        resistance cancels; W.2 carries no current. Two wires: W.1 and W.2 both
        '-----W.3------- FOOT        lie in the gauge's arm, and RED is joined to PLUS on the board.
 
-That is with amplifier and card; with a converter (digital_board.py) no switch is in the way, and FOOT is
+That is with amplifier and card; with a converter (read_board.py) no switch is in the way, and FOOT is
 ground.
 
 With ENABLE the decoder closes the switch of the channel that the address names, and the multiplexer leads
@@ -27,9 +27,8 @@ from tactcad.parts.array.leads import LeadRoute, ReadBoard, boards, colours, lea
 from tactcad.parts.bought.electronic_parts import GAUGE, TERMINAL, converter_of, lead_part
 
 from .board_layout import netlist_of_board
-from .digital_board import OUTPUT
 from .netlist import GROUND, Component, Netlist
-from .read_board import LOGIC, NEGATIVE, OUTSIDE, POSITIVE, two
+from .read_board import LOGIC, NEGATIVE, OUTPUT, OUTSIDE, POSITIVE, two
 
 COMMON = {GROUND, POSITIVE, NEGATIVE, LOGIC}
 EXCITATION = "EXC"

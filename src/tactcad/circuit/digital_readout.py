@@ -37,7 +37,7 @@ from tactcad.parts.bought.electronic_parts import (
     completion_tolerance,
 )
 
-from .digital_board import digital_netlist
+from .read_board import digital_netlist
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,5 @@
-"""One board's netlist: every channel of its multiplexer, however many elements it reads.
+"""One board's netlist, however many elements it reads: every channel of a multiplexer before an amplifier, or
+of a sigma-delta converter.
 
     VPOS --[U4]-- EXC --+---------+         Designators: of channel c Qc and R(10 c + 1) to
                      Rc1|      Rc2|         R(10 c + 4); U1 amplifier, U2 multiplexer, U3 decoder,
@@ -18,15 +19,35 @@ The bridges' supply is made from VPOS, and D1 keeps it below VPOS as that falls:
 order. D2 and D3 keep VNEG below and VPOS above ground while one of them is missing. R5 to R8 limit the
 current into U2 and U3 while they have no supply, R91 to R94 keep their inputs low while the card's cable is
 off.
+
+With a converter the bridges lie between EXC and ground:
+
+    VPOS --[U4]-- EXC --+---------+--- REFIN1+      Designators: of channel c R(10 c + 1) to R(10 c + 4) and
+      |              Rc1|      Rc2|                 C(10 c + 1); U1 converter, U4 the bridges' supply, U5 the
+      | J2 RED  o---+---+         |                 converter's, J1 to the controller, J2 to the leads.
+      |          Rc4 [0 ohm]      +--- AIN(2c-1)
+      | J2 PLUS o---+----[Cc1]----|--- AIN(2c-2)
+      |                        Rc3|
+      | J2 FOOT o-------------+---+
+      |                      GND ----- REFIN1-
+      '--[U5]-- V33 --- AVDD, IOVDD
+
+Where no element is read Cc1 is left off too. D1 keeps EXC below V33, which the converter's inputs may not
+exceed, in any order of power-up; D3 protects against a reversed VPOS. ON high switches U4 on: by the
+controller, or by a jumper to VPOS next to it.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
-from tactcad.design.sensing import AMPLIFIERS, COMPLETIONS, MULTIPLEXERS, SWITCHES, Multiplexer
+from tactcad.design.sensing import AMPLIFIERS, COMPLETIONS, MULTIPLEXERS, SWITCHES, Converter, Multiplexer
 from tactcad.design.tree import Design
+from tactcad.parts.array.converter_figures import ANALOGUE_OHM, bridge_supply, supply_ohm
+from tactcad.parts.array.layout import Layout
+from tactcad.parts.array.leads import leads
 from tactcad.parts.bought.electronic_parts import (
+    ACROSS_BRIDGE,
     ANTI_ALIAS,
     CLAMP,
     COMPLETION,
@@ -39,7 +60,9 @@ from tactcad.parts.bought.electronic_parts import (
     REFERENCE,
     RESERVOIR,
     SERIES,
+    SET_AMPERE,
     SET_RESISTOR,
+    SUPPLY_RESISTOR,
     TO_CARD,
     TO_LEADS,
     WIRE_LINK,
@@ -196,12 +219,42 @@ def _decoder(part: Multiplexer) -> Component:
     return Component("U3", "decoder", part.decoder, part.decoder, tuple(pins), footprint="SOIC-16")
 
 
+def _regulator(
+    name: str, kind: Kind, volts: float, out: str, enable: str, set_net: str, resistor: tuple[str, str, float]
+) -> Iterator[Component]:
+    """An LT3042 from VPOS, and the resistor that sets it: name, line of the bill, ohm."""
+    nets, (own, part_no, ohm) = {EXCITATION: out, "SET": set_net}, resistor
+    pins = tuple(
+        Pin(number, role, enable if role == "enable" else nets.get(net, net))
+        for role, number, net in REFERENCE_PINS
+    )
+    yield Component(name, kind, "LT3042", REFERENCE, pins, (("volts", volts),), footprint="MSOP-10-EP")
+    yield two(own, "resistor", f"{ohm:g} ohm", part_no, (set_net, GROUND), "0805", ohm=ohm)
+
+
 def _reference(design: Design) -> Iterator[Component]:
-    ohm = supply_resistance(design)
-    pins = tuple(Pin(number, role, net) for role, number, net in REFERENCE_PINS)
-    figures = (("volts", design.readout.excitation),)
-    yield Component("U4", "regulator", "LT3042", REFERENCE, pins, figures, footprint="MSOP-10-EP")
-    yield two("R2", "resistor", f"{ohm:g} ohm", SET_RESISTOR, ("SET", GROUND), "0805", ohm=ohm)
+    resistor = ("R2", SET_RESISTOR, supply_resistance(design))
+    return _regulator("U4", "regulator", design.readout.excitation, EXCITATION, POSITIVE, "SET", resistor)
+
+
+def _digital_lines(names: Sequence[str]) -> Iterator[Component]:
+    """A series and a pull-down resistor each."""
+    for k, line in enumerate(names):
+        yield two(f"R{5 + k}", "resistor", "1 kohm", SERIES, (line + OUTSIDE, line), "0805", ohm=1e3)
+        yield two(f"R{91 + k}", "resistor", "100 kohm", PULL_DOWN, (line, GROUND), "0805", ohm=1e5)
+
+
+def _capacitors(small: Sequence[str], large: Sequence[str]) -> Iterator[Component]:
+    """To ground: 100 nF each, then 10 uF each, counted from C1 on."""
+    for k, net in enumerate(small, start=1):
+        yield two(f"C{k}", "capacitor", "100 nF", DECOUPLING, (net, GROUND), "0805", farad=1e-7)
+    for k, net in enumerate(large, start=len(small) + 1):
+        yield two(f"C{k}", "capacitor", "10 uF", RESERVOIR, (net, GROUND), "1206", farad=1e-5)
+
+
+def _diodes(**nets: tuple[str, str]) -> Iterator[Component]:
+    """Cathode, which is pin 1, and anode of each."""
+    return (two(name, "diode", "1N5819HW", CLAMP, ends, "SOD-123") for name, ends in nets.items())
 
 
 def _around(design: Design, part: Multiplexer) -> Iterator[Component]:
@@ -209,22 +262,11 @@ def _around(design: Design, part: Multiplexer) -> Iterator[Component]:
     for name, end in (("R3", "PLUS"), ("R4", "MINUS")):
         nets = (f"SEL_{end}", f"IN_{end}")
         yield two(name, "resistor", f"{FILTER_OHM:g} ohm", FILTER_RESISTOR, nets, "0805", ohm=FILTER_OHM)
-    for k, line in enumerate(lines(part)):
-        yield two(f"R{5 + k}", "resistor", "1 kohm", SERIES, (line + OUTSIDE, line), "0805", ohm=1e3)
-        yield two(f"R{91 + k}", "resistor", "100 kohm", PULL_DOWN, (line, GROUND), "0805", ohm=1e5)
-    for k, rail in enumerate((POSITIVE, NEGATIVE, POSITIVE, NEGATIVE, LOGIC), start=1):
-        yield two(f"C{k}", "capacitor", "100 nF", DECOUPLING, (rail, GROUND), "0805", farad=1e-7)
-    for name, rail in (("C6", POSITIVE), ("C7", EXCITATION)):
-        yield two(name, "capacitor", "10 uF", RESERVOIR, (rail, GROUND), "1206", farad=1e-5)
+    yield from _digital_lines(lines(part))
+    yield from _capacitors((POSITIVE, NEGATIVE, POSITIVE, NEGATIVE, LOGIC), (POSITIVE, EXCITATION))
     yield two("C8", "capacitor", "100 nF", DECOUPLING, ("SET", GROUND), "0805", farad=1e-7)
     yield two("C9", "capacitor", "100 pF", ANTI_ALIAS, ("IN_PLUS", "IN_MINUS"), "0805", farad=1e-10)
-    # pin 1 is the cathode
-    for name, nets in (
-        ("D1", (POSITIVE, EXCITATION)),
-        ("D2", (GROUND, NEGATIVE)),
-        ("D3", (POSITIVE, GROUND)),
-    ):
-        yield two(name, "diode", "1N5819HW", CLAMP, nets, "SOD-123")
+    yield from _diodes(D1=(POSITIVE, EXCITATION), D2=(GROUND, NEGATIVE), D3=(POSITIVE, GROUND))
 
 
 def _connectors(part: Multiplexer) -> Iterator[Component]:
@@ -242,3 +284,69 @@ def headers(card: list[str], ends: list[tuple[str, str]]) -> Iterator[Component]
         yield Component(
             name, "connector", f"{len(pins)} pins", part_no, pins, footprint=f"pin-header-{len(pins)}"
         )
+
+
+SUPPLY = "V33"  # of the converter
+LINES = ("ON", "SCLK", "DIN", "CS")
+OUTPUT = "DOUT"
+
+
+def digital_netlist(layout: Layout, converter: Converter, used: int) -> Netlist:
+    """The board that reads `used` elements."""
+    parts = [_converter(converter), *_supplies(layout), *_around_converter()]
+    for channel in range(1, converter.inputs + 1):
+        parts += _converter_channel(layout, channel, channel <= used)
+    parts += _controller(converter)
+    volts = bridge_supply(layout)
+    rails = ((POSITIVE, layout.design.readout.supply_positive),)
+    return Netlist(f"{layout.design.name}-board-{used}", volts, rails, tuple(parts))
+
+
+def _converter(converter: Converter) -> Component:
+    nets = {
+        "IOVDD": SUPPLY,
+        "AVDD": SUPPLY,
+        "SYNC": SUPPLY,
+        "DGND": GROUND,
+        "AVSS": GROUND,
+        "EP": GROUND,
+        "REFIN1+": EXCITATION,
+        "REFIN1-": GROUND,
+        OUTPUT: OUTPUT,
+        **{name: name for name in ("REGCAPD", "REGCAPA", *LINES[1:])},
+    }
+    for c in range(1, converter.inputs + 1):
+        nets |= {f"AIN{2 * c - 2}": f"CH{c}_PLUS", f"AIN{2 * c - 1}": f"CH{c}_MINUS"}
+    pins = tuple(Pin(number, role, nets.get(role, "")) for role, number in converter.pins.items())
+    return Component("U1", "converter", converter.name, converter.mpn, pins, footprint=converter.package)
+
+
+def _converter_channel(layout: Layout, c: int, used: bool) -> Iterator[Component]:
+    yield from bridge_arms(layout.design, c, used, leads(layout), GROUND)
+    nets = f"CH{c}_PLUS", f"CH{c}_MINUS"
+    yield two(f"C{10 * c + 1}", "capacitor", "10 nF", ACROSS_BRIDGE, nets, "0805", used, farad=1e-8)
+
+
+def _supplies(layout: Layout) -> Iterator[Component]:
+    """Of the bridges, which ON switches, and of the converter."""
+    bridges, own = ("R2", SET_RESISTOR, supply_ohm(layout)), ("R3", SUPPLY_RESISTOR, ANALOGUE_OHM)
+    volts = [SET_AMPERE * ohm for *_, ohm in (bridges, own)]
+    yield from _regulator("U4", "regulator", volts[0], EXCITATION, "ON", f"SET_{EXCITATION}", bridges)
+    yield from _regulator("U5", "supply", volts[1], SUPPLY, POSITIVE, f"SET_{SUPPLY}", own)
+
+
+def _around_converter() -> Iterator[Component]:
+    yield from _digital_lines(LINES)
+    small = (SUPPLY, SUPPLY, "REGCAPA", "REGCAPD", f"SET_{EXCITATION}", f"SET_{SUPPLY}")
+    yield from _capacitors(small, (POSITIVE, EXCITATION, SUPPLY, POSITIVE))
+    yield from _diodes(D1=(SUPPLY, EXCITATION), D3=(POSITIVE, GROUND))
+
+
+def _controller(converter: Converter) -> Iterator[Component]:
+    controller = [EXCITATION, GROUND, POSITIVE, *(line + OUTSIDE for line in LINES), OUTPUT, GROUND]
+    ends = [
+        (GROUND if end == "FOOT" else f"CH{c}_{end}", f"CH{c}_{end}")
+        for c in range(1, converter.inputs + 1)
+        for end in ("RED", "PLUS", "FOOT")
+    ]
+    yield from headers(controller, ends)

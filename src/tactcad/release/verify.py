@@ -77,8 +77,8 @@ def check_contents(
 
 
 def _expected(contents: ReleaseContents) -> Iterator[str]:
-    """Solid, model with limits, cut file and sheet of every part; solid, sheet, bill and guide of a scene; and
-    the tables."""
+    """Solid, model with limits, cut file and sheet of a part; solid, sheet, bill and guide of a scene; the
+    tables."""
     identity, made = contents.design.design, contents.made
     for part in {p.part_no: p for scene in contents.scenes for p in scene.parts}.values():
         stem = f"{part.part_no}_{identity.of_part(part.part_no).revision}"

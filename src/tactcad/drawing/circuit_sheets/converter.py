@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from tactcad.circuit.digital_board import LINES, OUTPUT, SUPPLY
 from tactcad.circuit.digital_readout import digital_readout, when_on
 from tactcad.circuit.netlist import GROUND, Component, Netlist
 from tactcad.circuit.netlist_files import Lead
+from tactcad.circuit.read_board import LINES, OUTPUT, SUPPLY
 from tactcad.design.sensing import Converter
 from tactcad.parts.array.converter_figures import converter_supply
 from tactcad.parts.array.layout import Layout
