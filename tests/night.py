@@ -28,8 +28,8 @@ from random_designs import Counts, Judged  # noqa: E402
 
 from tactcad.cli.streams import slow_work
 from tactcad.design.files import scratch_folder, write_whole  # noqa: E402
-from tactcad.export.contents import sha256_of  # noqa: E402
 from tactcad.export.inputs import digest  # noqa: E402
+from tactcad.export.manifest import sha256_of  # noqa: E402
 from tactcad.sweep.on_dask import all_done, cluster, cores  # noqa: E402
 
 KINDS = ("design", "whole", "mutant", "kill")

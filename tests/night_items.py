@@ -18,8 +18,8 @@ import mutants
 from random_designs import judged, raw_table
 
 from tactcad.export.cache import Cache
-from tactcad.export.contents import sha256_of
 from tactcad.export.inputs import digest
+from tactcad.export.manifest import sha256_of
 from tactcad.sweep.on_dask import Done
 
 ROOT = Path(__file__).parents[1]

@@ -20,9 +20,8 @@ from tactcad.circuit import board_layout as boards
 from tactcad.circuit.bridges import netlist
 from tactcad.circuit.digital_readout import digital_readout, settings_header, settings_json
 from tactcad.circuit.element_signals import element_signals, reading_noise
-from tactcad.circuit.harness import harness_csv
 from tactcad.circuit.kicad_board import board_bytes
-from tactcad.circuit.netlist_files import DIODE, lines_of, wiring
+from tactcad.circuit.netlist_files import DIODE, harness_csv, lines_of, wiring
 from tactcad.export.board_files import BILL, bill_csv, nets_in_board
 from tactcad.lab.pads import springs_of
 from tactcad.parts.array.layout import Layout

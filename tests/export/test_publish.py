@@ -22,7 +22,7 @@ import publish_child
 import pytest
 
 from tactcad.design.messages import CheckFailure, InputError
-from tactcad.export import contents
+from tactcad.export import manifest as manifests
 from tactcad.export import publication as publish
 from tactcad.export.publication import DISCARD, KEEP, REFUSE, replacing
 
@@ -249,7 +249,7 @@ def test_what_is_larger_than_anything_of_ours_is_somebodys(tmp_path, monkeypatch
     """Although it has its listed digest, which nobody waits for."""
     out = tmp_path / "ex"
     export(out, "old" * 5000)
-    monkeypatch.setattr(contents, "MOST_BYTES", (out / "manifest.json").stat().st_size)
+    monkeypatch.setattr(manifests, "MOST_BYTES", (out / "manifest.json").stat().st_size)
     with pytest.raises(InputError, match=r"a\.step \(changed\)"):
         export(out, "new")
 
@@ -622,7 +622,7 @@ def test_a_manifest_of_somebody_makes_nothing_ours(tmp_path, manifest):
 
 
 def test_a_sealed_manifest_that_leads_out_of_the_folder_reaches_nothing(tmp_path):
-    from tactcad.export.contents import sealed, sha256_of
+    from tactcad.export.manifest import sealed, sha256_of
 
     (tmp_path / "precious").write_text("keep")
     out = tmp_path / "macro"

@@ -28,11 +28,11 @@ from tactcad.design.messages import CheckFailure, InputError
 from tactcad.export import golden_file as golden
 from tactcad.export import manifest, sides
 from tactcad.export.cache import Cache
-from tactcad.export.contents import sealed
 from tactcad.export.difference_page import page
 from tactcad.export.dxf import dxf_bytes
 from tactcad.export.geometry import geometry
 from tactcad.export.inspection import inspection_bytes
+from tactcad.export.manifest import sealed
 from tactcad.lab import as_made, batch, calibration, calibration_file, grasp, pads, readings
 from tactcad.lab.inspection_sheet import read_sheet
 from tactcad.lab.load_cell import LoadCell

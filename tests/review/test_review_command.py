@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 from faults.command_line import environment, one_by_one, refused, tactcad_forked, tactcad_run
 
-from tactcad.export.contents import sealed
+from tactcad.export.manifest import sealed
 
 pytestmark = pytest.mark.slow  # makes whole pages
 

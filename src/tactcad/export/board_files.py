@@ -19,10 +19,9 @@ from typing import Any
 from tactcad.circuit.copper import BoardCopper
 from tactcad.circuit.footprints import Footprint
 from tactcad.circuit.gerber import FUNCTIONS, gerber_files, places_csv
-from tactcad.circuit.harness import harness_csv
 from tactcad.circuit.kicad_board import board_bytes
 from tactcad.circuit.netlist import Component, Netlist
-from tactcad.circuit.netlist_files import deck_bytes, kicad_bytes, netlist_csv, wiring_csv
+from tactcad.circuit.netlist_files import deck_bytes, harness_csv, kicad_bytes, netlist_csv, wiring_csv
 from tactcad.contour import circle, rectangle
 from tactcad.design.family import family_of
 from tactcad.design.files import as_csv

@@ -22,7 +22,7 @@ from tactcad.design.files import read_bytes
 from tactcad.design.messages import InputError
 from tactcad.design.staging import remove_left, staged_file
 
-from .contents import sha256_of
+from .manifest import sha256_of
 
 # All designs in hardware/ take 50 MB a revision: room for ten revisions, little for a disk.
 MOST_BYTES = 500_000_000

@@ -16,10 +16,9 @@ from tactcad.design.tree import CommonTables
 
 from . import manifest as manifests
 from .cache import Cache, default_root
-from .contents import Contents
 from .formats import ExportOptions, part_formats
 from .inputs import Inputs, digest, first_installed, inputs_from_json, inputs_of, reasons
-from .manifest import FileRecord, Manifest, PartRecord
+from .manifest import Contents, FileRecord, Manifest, PartRecord
 from .publication import REFUSE, Work, left_unfinished, looked_at, replacing
 from .workers import Task, relayed, side_by_side
 

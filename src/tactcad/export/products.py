@@ -20,9 +20,9 @@ from tactcad.scenes import make_scene
 from tactcad.scenes.rig import ARRAY
 from tactcad.scenes.scene import Placement, Scene
 
-from .contents import sha256_of
 from .formats import ExportOptions, PartFormat, part_formats
 from .inputs import digest
+from .manifest import sha256_of
 from .shapes import Shapes, picture_bytes
 from .step_text import Header
 

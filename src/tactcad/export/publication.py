@@ -22,7 +22,7 @@ from tactcad.design.files import absolute, flush_entry, in_one_line
 from tactcad.design.messages import CheckFailure, InputError
 from tactcad.design.staging import MAKING, OWN, staged_folder
 
-from .contents import NAME, NOTHING, Contents, contents, remove, sealed, sha256_of
+from .manifest import NAME, NOTHING, Contents, contents, remove, sealed, sha256_of
 
 SHOWN = 5  # names in a message
 REFUSE, KEEP, DISCARD = "refuse", "keep", "discard"  # what to do with files that are not ours

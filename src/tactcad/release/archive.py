@@ -1,7 +1,7 @@
 """Zips with the same bytes in every process, each sealed: its comment holds the SHA-256 of all before it.
 They take their places together, and nobody's file is lost.
 
-An edited zip is recognised by its seal without unpacking it; a forged one is not (as in export/contents.py).
+An edited zip is recognised by its seal without unpacking it; a forged one is not (as in export/manifest.py).
 The places are examined before the work, and again before the new zips replace the old: a zip that is not
 exactly as tactcad wrote it, and was not to be discarded, is kept as NAME-kept-1.zip.
 """
@@ -22,7 +22,7 @@ from typing import BinaryIO
 from tactcad.design.files import PIECE, flush_entry, folder_for, in_one_line, refuse_link
 from tactcad.design.messages import CheckFailure, InputError, shortened
 from tactcad.design.staging import staged_folder
-from tactcad.export.contents import CHANGED, MOST_BYTES, PROTECTED, sha256_of
+from tactcad.export.manifest import CHANGED, MOST_BYTES, PROTECTED, sha256_of
 from tactcad.export.publication import DISCARD, REFUSE, SHOWN, Say, flush, free_name, named
 from tactcad.shutdown import no_signals
 

@@ -13,11 +13,10 @@ from tactcad.design.files import refuse_overwriting, scratch_folder
 from tactcad.design.messages import CheckFailure
 from tactcad.design.tree import CommonTables
 from tactcad.export.cache import Cache, default_root
-from tactcad.export.contents import sha256_of
 from tactcad.export.formats import ExportOptions, part_formats
 from tactcad.export.golden_file import check_golden, golden_path
 from tactcad.export.kept_checks import checked
-from tactcad.export.manifest import FileRecord, read_manifest
+from tactcad.export.manifest import FileRecord, read_manifest, sha256_of
 from tactcad.export.pipeline import Progress, export
 from tactcad.export.publication import REFUSE
 from tactcad.scenes import make_scene, scene_names

@@ -14,7 +14,7 @@ from tactcad.design.files import as_csv
 from tactcad.design.tree import CommonTables
 from tactcad.drawing.engine.boxes import part_box
 from tactcad.export import inspection
-from tactcad.export.contents import sha256_of
+from tactcad.export.manifest import sha256_of
 from tactcad.parts.array.element import least_passes
 from tactcad.parts.bought.electronic_parts import BARE_BOARD, BOARD, ELECTRONIC, MECHANICAL
 from tactcad.parts.language.description import Part

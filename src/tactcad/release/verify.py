@@ -13,8 +13,8 @@ from pathlib import Path
 from tactcad.drawing.guide import page_path
 from tactcad.export import inspection
 from tactcad.export import strength_table as strength
-from tactcad.export.contents import sha256_of
 from tactcad.export.formats import has_limits
+from tactcad.export.manifest import sha256_of
 from tactcad.parts.language.description import NOT_ORDERED
 from tactcad.parts.language.stock import cut_section
 from tactcad.scenes import bom

@@ -252,8 +252,8 @@ def _checks(_: Study, design: CommonTables) -> dict[str, Any]:
 
 
 def _export(design: CommonTables, folder: Path) -> dict[str, Any]:
-    from tactcad.export.contents import sha256_of
     from tactcad.export.formats import ExportOptions
+    from tactcad.export.manifest import sha256_of
     from tactcad.export.pipeline import export
     from tactcad.scenes import scene_names
 

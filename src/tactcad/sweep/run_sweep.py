@@ -16,8 +16,8 @@ from typing import TYPE_CHECKING, Any
 from tactcad import __version__
 from tactcad.design.files import absolute, scratch_folder, whole_file, write_whole
 from tactcad.design.messages import CheckFailure
-from tactcad.export.contents import NAME as MANIFEST
-from tactcad.export.contents import sealed
+from tactcad.export.manifest import NAME as MANIFEST
+from tactcad.export.manifest import sealed
 from tactcad.shutdown import unfinished
 
 from .designs_taken import prepared

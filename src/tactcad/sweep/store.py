@@ -18,7 +18,7 @@ from tactcad.design.files import absolute, make_folder, read_json, write_whole
 from tactcad.design.messages import CheckFailure, InputError
 from tactcad.design.staging import OWN
 from tactcad.export.cache import MARK_NAME, Cache, as_entry, from_entry
-from tactcad.export.contents import sha256_of
+from tactcad.export.manifest import sha256_of
 
 from .measured import EXPORT, as_bytes, export_folder, from_bytes
 from .study import Study

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from tactcad.design.files import write_whole
 from tactcad.design.messages import CheckFailure, InputError
-from tactcad.export.contents import read_sealed
+from tactcad.export.manifest import read_sealed
 from tactcad.report.figures import percent
 from tactcad.report.plots import BLUE, GREY, drawn, panels
 from tactcad.report.report import ReportSection, ReportTable, ValidationReport, to_html

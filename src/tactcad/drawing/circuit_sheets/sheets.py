@@ -39,8 +39,7 @@ from ..engine.ink import (
 from ..engine.layout_check import sheets_of
 from ..engine.paper import A3, HEIGHT, MARGIN, Page, block_of, notes
 from ..engine.sheet_files import Written, files_of, pdf_runs
-from .channel import around_page, channel_page
-from .converter import HEADS, converter_channels, converter_notes, converter_page
+from .channel import CONVERTER_HEADS, HEADS, around_page, channel_page, converter_channels, converter_notes
 from .symbols import printed
 
 Place = Callable[[float, float], Point]  # mm of the array to mm of the paper
@@ -139,10 +138,7 @@ def _marks(layout: Layout, on: Place) -> list[Item]:
 
 
 ROW = 5.5  # mm
-CHANNELS = (
-    "Board, Channel, Element, Gauge, Arms, Leads, Terminals, Lead connector, Switch, Multiplexer, Decoder"
-)
-CHANNEL_HEADS = (*CHANNELS.split(", "), "Read at")
+CARD_HEADS = (*HEADS, "Switch", "Multiplexer", "Decoder", "Read at")
 DESIGNATORS = (
     "Symbols IEC 60617, letters of designators IEC 81346-2: B gauge, C capacitor, D diode, J connector, "
     "Q transistor, R resistor, U circuit, W lead, X terminal"
@@ -189,12 +185,12 @@ def circuit_sheets(design: Design, draft: bool = False, sample: bool = False) ->
         for e in wiring(layout, circuit)
     ]
     if converter := converter_of(design):
-        first = converter_page(circuit, converter_notes(layout, converter, DESIGNATORS))
-        heads: tuple[str, ...] = HEADS
+        first = channel_page(circuit, converter_notes(layout, converter, DESIGNATORS))
+        heads: tuple[str, ...] = CONVERTER_HEADS
         channels = [*converter_channels(circuit, wiring(layout, circuit))]
     else:
         first = channel_page(circuit, _channel_notes(layout))
-        heads, channels = CHANNEL_HEADS, [*_channels(circuit)]
+        heads, channels = CARD_HEADS, [*_channels(circuit)]
     pages = [
         first,
         around_page(circuit),

@@ -23,10 +23,9 @@ from ..engine.paper import A0, A1, A2, A3, A4, SERIES, Paper, Scale, TitleBlock,
 from ..engine.sheet_files import Written, files_of, pdf_runs
 from .broken import broken
 from .compose import NoPlace, compose
-from .prism import prism_plan
+from .prism import prism_plan, turned_plan
 from .sheet_plan import SectionPlane, SheetPlan, View
 from .tolerances import frame_of, times
-from .turned import turned_plan
 
 LEAST_WHOLE = 1 / 2  # scale: below it a long part is drawn broken rather than smaller
 SAME = 1e-9  # mm
