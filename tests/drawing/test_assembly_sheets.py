@@ -363,12 +363,11 @@ def test_what_is_wrong_in_a_written_drawing_is_found(assembly):
 @pytest.mark.parametrize("assembly", SCENES[:1], ids=["array"], indirect=True)
 def test_a_drawing_that_lacks_a_sheet_is_not_written(assembly, monkeypatch):
     design, scene, rows, _, sheets = assembly
-    order = assembly_file.AssemblyOrder(design, scene, tuple(rows), {})
     monkeypatch.setattr(assembly_file, "assembly_sheets", lambda *_: sheets)
-    assert pdf_runs(assembly_file.assembly_written(order).pdf)
+    assert pdf_runs(assembly_file.assembly_written(design, scene, rows, {}).pdf)
     monkeypatch.setattr(assembly_file, "assembly_sheets", lambda *_: sheets[:-1])
     with pytest.raises(CheckFailure, match="no drawing was written"):
-        assembly_file.assembly_written(order)
+        assembly_file.assembly_written(design, scene, rows, {})
 
 
 @pytest.mark.parametrize("assembly", SCENES[:1], ids=["array"], indirect=True)

@@ -13,7 +13,7 @@ from tactcad.circuit.bridges import netlist
 from tactcad.design.load import read
 from tactcad.design.messages import CheckFailure
 from tactcad.drawing.circuit_sheets import sheets
-from tactcad.drawing.circuit_sheets.sheets import CircuitOrder, circuit_written
+from tactcad.drawing.circuit_sheets.sheets import circuit_written
 from tactcad.drawing.engine.layout_check import layout_faults
 from tactcad.drawing.engine.sheet_files import pdf_runs
 from tactcad.export.board_files import table_file, wiring_file
@@ -40,7 +40,7 @@ READ_BY = ("multiplexer", "converter")
 
 
 def everything_stands_there(design) -> None:
-    pages = pdf_runs(circuit_written(CircuitOrder(design)).pdf)
+    pages = pdf_runs(circuit_written(design).pdf)
     first, said = pages[0], [run for page in pages for run in page]
     revision, circuit = design.design.revision, netlist(Layout(design))
     for n, page in enumerate(pages, start=1):
@@ -75,7 +75,7 @@ def test_each_pin_of_the_decoder_and_what_sets_the_gain_as_in_the_netlist():
     """Beside every stub of the decoder stands its own net; the gain's pins are drawn, and its resistor."""
     for changes in ({}, {"readout.amplifier": "AD8221"}):
         design = variant(changes)
-        first = pdf_runs(circuit_written(CircuitOrder(design)).pdf)[0]
+        first = pdf_runs(circuit_written(design).pdf)[0]
         circuit = netlist(Layout(design))
         decoder, amplifier = circuit.on_board("decoder", 1), circuit.on_board("amplifier", 1)
         assert decoder.net("E3") == "A1_ENABLE" and "ENABLE" in first
@@ -94,7 +94,7 @@ def test_the_card_has_what_the_boards_ask_of_it(changes, outputs, inputs):
     nets = {pin.net for part in parts for pin in part.pins}
     digital = {net for net in nets if re.fullmatch(r"A\d|ENABLE\d+", net)}
     assert len(digital) == outputs and len([net for net in nets if net.startswith("OUT")]) == inputs
-    text = " ".join(pdf_runs(circuit_written(CircuitOrder(design)).pdf)[0])
+    text = " ".join(pdf_runs(circuit_written(design).pdf)[0])
     assert f"The card needs {outputs} digital outputs, A0 to A2" in text
     assert re.search(rf"and {inputs} differential inputs?, OUT and GND of a board", text)
 
@@ -107,7 +107,7 @@ def test_a_converters_sheet_says_what_the_controller_is_asked_for(power, said):
     converter that is not another channel's input."""
     design = variant({"readout.converter": "AD7124-8", "readout.power": power})
     circuit = netlist(Layout(design))
-    first, around = pdf_runs(circuit_written(CircuitOrder(design)).pdf)[:2]
+    first, around = pdf_runs(circuit_written(design).pdf)[:2]
     text = " ".join(first)
     nets = {p.net for c in circuit.of_kind("connector") for p in c.pins if c.designator.endswith("J1")}
     assert {"SCLK", "DIN", "ON", "CS1", "CS2"} <= nets and "CS1 to CS2" in text
@@ -122,13 +122,13 @@ def test_a_converters_sheet_says_what_the_controller_is_asked_for(power, said):
 
 
 def test_no_general_tolerance_on_a_sheet_without_dimensions():
-    pages = pdf_runs(circuit_written(CircuitOrder(read("macro-array"))).pdf)
+    pages = pdf_runs(circuit_written(read("macro-array")).pdf)
     assert not any("2768" in run or "8015" in run for page in pages for run in page)
 
 
 def test_no_sample_before_the_output_has_settled():
     design = read("macro-array")  # 12.4 us
-    text = " ".join(pdf_runs(circuit_written(CircuitOrder(design)).pdf)[0])
+    text = " ".join(pdf_runs(circuit_written(design).pdf)[0])
     said = float(re.search(r"settled after ([\d.]+) us", text)[1])
     settled = settling_time(design) * 1e6
     assert settled <= said < settled + 1
@@ -141,7 +141,7 @@ def test_no_sample_before_the_output_has_settled():
 
 def test_the_plan_names_short_arms_of_two_digits_too():
     design = variant({"array.row_arms": [[4] * 12, [4] * 12]})
-    plan = pdf_runs(circuit_written(CircuitOrder(design)).pdf)[3]
+    plan = pdf_runs(circuit_written(design).pdf)[3]
     assert "Wiring plan" in plan and {f"E{n}" for n in range(1, 25)} <= set(plan)
 
 

@@ -81,7 +81,7 @@ class FamilyReadout:
     netlist  (layout) to the circuit
     tracks   (layout, circuit) to the circuit with the resistance of its boards' tracks
     wiring   (layout, circuit) to the bytes of the table of leads to cut
-    sheets   orders of the circuit's drawing to what is written
+    sheets   (design, draft, sample) to the circuit's sheets as written
     signals  (design) to V/N of every element
     """
 

@@ -307,15 +307,15 @@ def part_sheets(plan: Plan) -> Iterator[Batch]:
 
     def make(part: Part, files: Sequence[Batch]) -> Written:
         from tactcad.drawing.parts import part_sheet
-        from tactcad.solids.step import to_bytes
 
         def digest_of(job: Batch) -> str:
             return sha256_of(shapes.cache.get_or_make(job.files[0].key, lambda: job.make()[0]))
 
         made_from = tuple(part_sheet.MadeFrom(job.files[0].path, digest_of(job)) for job in files)
-        shape = to_bytes(shapes.of(part))
-        order = part_sheet.Order(design, part, shape, made_from, options.draft, options.sample)
-        return part_sheet.written(order)
+        shape = shapes.text_of(part)
+        return part_sheet.written(
+            part_sheet.Order(design, part, shape, made_from, options.draft, options.sample)
+        )
 
     for part in plan.parts:
         if part.process in NOT_MADE:
@@ -338,13 +338,13 @@ def assembly_sheets(plan: Plan) -> Iterator[Batch]:
     design, options, shapes = plan.design, plan.options, plan.shapes
 
     def make(scene: Scene) -> Written:
-        from tactcad.drawing.assemblies.assembly_sheets import AssemblyOrder, assembly_written
+        from tactcad.drawing.assemblies.assembly_sheets import assembly_written
         from tactcad.scenes.bom import bom_rows
-        from tactcad.solids.step import to_bytes
+        from tactcad.solids.step import from_bytes
 
         rows = bom_rows(scene, design.design, {})
-        solids = {part.part_no: to_bytes(shapes.of(part)) for part in scene.parts}
-        return assembly_written(AssemblyOrder(design, scene, rows, solids, options.draft, options.sample))
+        solids = {part.part_no: from_bytes(shapes.text_of(part)) for part in scene.parts}
+        return assembly_written(design, scene, rows, solids, options.draft, options.sample)
 
     for scene in plan.scenes:
         common = (design.design, _tables(design, "tolerance"), options.draft, options.sample)
@@ -359,10 +359,7 @@ def circuit_sheets(plan: Plan) -> Iterator[Batch]:
     draft, sample = plan.options.draft, plan.options.sample
 
     def make() -> Written:
-        from tactcad.drawing.circuit_sheets.sheets import CircuitOrder
-
-        written = family_of(plan.design).must("readout", "export").sheets.found
-        return written(CircuitOrder(plan.design, draft, sample))
+        return family_of(plan.design).must("readout", "export").sheets(plan.design, draft, sample)
 
     key = digest(("circuit drawing", plan.shapes.made_by, plan.design, draft, sample))
     yield _drawing(f"{plan.design.name}-circuit_{plan.revision}", "", key, make, FILES, 100)

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from math import isclose
 from typing import TYPE_CHECKING
 
@@ -71,36 +71,23 @@ def _list_pages(list_: Laid) -> list[Page]:
     return pages
 
 
-@dataclass(frozen=True)
-class AssemblyOrder:
-    """One scene to draw: its bill of materials, and every part's solid by number, as the kernel's text."""
-
-    design: CommonTables
-    scene: Scene
-    rows: tuple[BomRow, ...]
-    shapes: Mapping[str, bytes]
-    draft: bool = False
-    sample: bool = False
-
-    @property
-    def name(self) -> str:
-        return f"{self.design.name}-{self.scene.name}"
-
-
-def assembly_written(order: AssemblyOrder) -> Written:
-    """All sheets of the scene as PDF and SVG.
+def assembly_written(
+    design: CommonTables,
+    scene: Scene,
+    rows: Sequence[BomRow],
+    shapes: Mapping[str, TopoDS_Shape],
+    draft: bool = False,
+    sample: bool = False,
+) -> Written:
+    """All sheets of the scene (`assembly_sheets`) as PDF and SVG.
 
     Raises CheckFailure if they cannot be drawn, or differ from the scene when read back.
     """
-    from tactcad.solids.step import from_bytes
-
-    shapes = {number: from_bytes(data) for number, data in order.shapes.items()}
-    sheets = assembly_sheets(order.design, order.scene, order.rows, shapes, order.draft, order.sample)
-    of = order.design.design
-    made = files_of(sheets, order.name, "assembly", of)
-    wrong = assembly_faults(made.pdf, order.name, of.revision, order.rows)
+    sheets, name = assembly_sheets(design, scene, rows, shapes, draft, sample), f"{design.name}-{scene.name}"
+    made = files_of(sheets, name, "assembly", design.design)
+    wrong = assembly_faults(made.pdf, name, design.design.revision, rows)
     if wrong:
-        raise CheckFailure(f"drawings: {order.name}: {'; '.join(wrong[:3])}; no drawing was written")
+        raise CheckFailure(f"drawings: {name}: {'; '.join(wrong[:3])}; no drawing was written")
     return made
 
 

@@ -5,7 +5,7 @@ channels, the leads' way, the wiring list. As PDF, read back, and SVG.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from math import ceil
 
 from tactcad.circuit.bridges import netlist
@@ -146,33 +146,18 @@ DESIGNATORS = (
 LEAD_HEADS = ("Lead", "Element", "From", "To", "Colour", "Wire", "Cut to, mm", "Bundle")
 
 
-@dataclass(frozen=True)
-class CircuitOrder:
-    """The circuit of a design to draw."""
-
-    design: CommonTables
-    draft: bool = False
-    sample: bool = False
-
-    @property
-    def name(self) -> str:
-        return f"{self.design.name}-circuit"
-
-
-def circuit_written(order: CircuitOrder) -> Written:
-    """All its sheets as PDF and SVG.
+def circuit_written(of: CommonTables, draft: bool = False, sample: bool = False) -> Written:
+    """All sheets of a design's circuit as PDF and SVG.
 
     Raises CheckFailure if a layout is not clean, or the PDF lacks a component when read back.
     """
-    design = taken_as(order.design, Design, "the circuit's sheets")
-    sheets = circuit_sheets(design, order.draft, order.sample)
-    made = files_of(sheets, order.name, "circuit", design.design)
+    design = taken_as(of, Design, "the circuit's sheets")
+    name = f"{design.name}-circuit"
+    made = files_of(circuit_sheets(design, draft, sample), name, "circuit", design.design)
     runs = " ".join(run for page in pdf_runs(made.pdf) for run in page)
     for gauge in netlist(Layout(design)).of_kind("gauge"):
         if gauge.designator not in runs:
-            raise CheckFailure(
-                f"drawings: {order.name}: {gauge.designator} is missing; no drawing was written"
-            )
+            raise CheckFailure(f"drawings: {name}: {gauge.designator} is missing; no drawing was written")
     return made
 
 

@@ -54,10 +54,6 @@ class Order:
     draft: bool = False
     sample: bool = False
 
-    @property
-    def name(self) -> str:
-        return self.part.part_no
-
 
 def part_plan(
     part: Part, files: Sequence[MadeFrom], plans: Plans, spare: bool = False, shortened: bool = False

@@ -32,11 +32,9 @@ def _step(part: Part, shapes: Shapes, head: Header, _: object) -> bytes:
 
 
 def _step_pmi(part: Part, shapes: Shapes, head: Header, _: object) -> bytes:
-    from tactcad.solids.step import to_bytes
+    from ..step_pmi import part_step_pmi
 
-    from .. import step_pmi
-
-    return step_pmi.part_step_pmi(part, to_bytes(shapes.of(part)), head)
+    return part_step_pmi(part, shapes.text_of(part), head)
 
 
 def _dxf(part: Part, shapes: Shapes, head: Header, _: object) -> bytes:
