@@ -22,11 +22,11 @@ from tactcad.drawing.parts.measures import (
     THICKNESS,
     Owner,
     Quantity,
-    Radius,
     Slope,
     Span,
     Spot,
     level,
+    radius_of,
     variables,
 )
 from tactcad.drawing.parts.part_sheet import MadeFrom, part_plan
@@ -313,6 +313,6 @@ def test_radius_and_slope_measure_what_they_say():
     start, centre, end = Spot(OUTER, 0), Spot(OUTER, 0, centre=True), Spot(OUTER, 1)
     at = {start: (3.0, 4.0), centre: (0.0, 0.0), end: (4.0, 5.0)}
     values = {point.place(k): xy[k] for point, xy in at.items() for k in (0, 1)}
-    assert Radius(OUTER, 0).of(values) == 5.0
+    assert radius_of(OUTER, 0).of(values) == 5.0
     assert Slope(start, end).of(values) == pytest.approx(45.0)
     assert str(centre.place(1)) == "outer.0.cy"

@@ -236,7 +236,7 @@ class Strip:
             self.sheet.via(net[slug.number], at[slug.number], (x, self.y + 2.6))
         for side in (-1, 1):
             row = sorted((p for p in pads if p.x * side > 0), key=lambda p: p.y)
-            last, before, capped = at[row[0].number], "", None
+            last, before, capped = at[row[0].number], "", False
             edge = x + side * (max(abs(p.x) + p.w / 2 for p in row) + 1.35)
             for pad in row:
                 own, here = net.get(pad.number, ""), at[pad.number]
@@ -247,16 +247,10 @@ class Strip:
                     self.sheet.path(own, here, (x, here[1]), (x, self.y))
                 elif own in ON_PLANE:
                     self.sheet.via(own, here, (here[0] + side * (pad.w / 2 + 0.5), here[1]), width=TRACK)
-                elif own:
-                    cap = next((c for c in caps if self.board[c].net("1") == own), None)
-                    apart = (0.3 if capped else 0.15) if cap else 0.0  # pads wider than a column, courtyards
-                    edge = self.column(own, round(edge + side * apart, 3), here[1], side * 0.05)
-                    capped = cap
-                    self.sheet.path(own, here, (edge, here[1]))
-                    if cap:
-                        caps.remove(cap)
-                        edge = self._cap(cap, edge, here[1], side)
-                    edge = round(edge + side * PITCH, 3)
+                elif own:  # pads are wider than a column, courtyards than that
+                    left = len(caps)
+                    edge = self._out(own, here, here[1], edge, side, caps, 0.3 if capped else 0.15)
+                    capped = len(caps) < left
                 last = here
 
     def around(self, name: str, caps: Sequence[str]) -> None:
@@ -300,14 +294,25 @@ class Strip:
 
     def _side(self, own: str, here: Point, y: float, edge: float, side: int, caps: list[str]) -> float:
         """A pin's way to its column or, if nothing else is on its net, to its capacitor."""
-        cap = next((c for c in caps if self.board[c].net("1") == own), None)
-        if own.startswith("REGCAP"):
-            self.sheet.path(own, here, (edge, y), (edge, y - 1.5))
-            self.closed.append((edge, own))
-        else:
-            edge = self.column(own, round(edge + side * (0.3 if cap else 0.0), 3), y, side * 0.05)
-            self.sheet.path(own, here, (here[0], y), (edge, y))
-        if cap:
+        if not own.startswith("REGCAP"):
+            return self._out(own, here, y, edge, side, caps)
+        self.sheet.path(own, here, (edge, y), (edge, y - 1.5))
+        self.closed.append((edge, own))
+        return self._beyond(own, edge, y, side, caps)
+
+    def _out(
+        self, own: str, here: Point, y: float, edge: float, side: int, caps: list[str], apart: float = 0.3
+    ) -> float:
+        """A pin's way out to the next column, `apart` further if a capacitor is next to it; and the next
+        column's least place."""
+        apart = apart if any(self.board[c].net("1") == own for c in caps) else 0.0
+        edge = self.column(own, round(edge + side * apart, 3), y, side * 0.05)
+        self.sheet.path(own, here, (here[0], y), (edge, y))
+        return self._beyond(own, edge, y, side, caps)
+
+    def _beyond(self, own: str, edge: float, y: float, side: int, caps: list[str]) -> float:
+        """The next column's least place, beyond the net's capacitor if one is to be next to this one."""
+        if cap := next((c for c in caps if self.board[c].net("1") == own), None):
             caps.remove(cap)
             edge = self._cap(cap, edge, y, side)
         return round(edge + side * PITCH, 3)
@@ -325,13 +330,8 @@ class Strip:
                 self.sheet.path(own, last, (last[0], ends), (here[0], ends), here)
                 continue
             y = here[1] - pad.h / 2 - 0.3 - 0.4 * (len(pads) - k)
-            cap = next((c for c in caps if self.board[c].net("1") == own), None)
-            edge = self.column(own, round(edge + side * (0.3 if cap else 0.0), 3), y, side * 0.05)
-            self.sheet.path(own, here, (here[0], y), (edge, y))
-            if cap:
-                caps.remove(cap)
-                edge = self._cap(cap, edge, y, side)
-            edge, before, last = edge + side * PITCH, own, here
+            edge = self._out(own, here, y, edge, side, caps)
+            before, last = own, here
         return edge
 
     def _cap(self, name: str, x: float, y: float, side: int) -> float:

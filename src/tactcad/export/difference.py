@@ -55,7 +55,7 @@ class Change:
         """The change's size: per cent of a number, millimetres of a contour."""
         if self.moved is not None:
             return f"up to {self.moved:.6g} mm apart"
-        if _is_number(self.old) and _is_number(self.new) and self.old:
+        if is_number(self.old) and is_number(self.new) and self.old:
             return f"{100 * (self.new - self.old) / abs(self.old):+.3g} %"
         return ""
 
@@ -87,14 +87,14 @@ def _compare(old: Any, new: Any, path: tuple[str, ...]) -> Iterator[Change]:
 def _same(old: Any, new: Any, name: str) -> bool:
     if isinstance(old, list) and isinstance(new, list):
         return len(old) == len(new) and all(_same(a, b, name) for a, b in zip(old, new))
-    if _is_number(old) and _is_number(new):
+    if is_number(old) and is_number(new):
         if name.endswith(BY_SHARE):
             return isclose(old, new, rel_tol=SHARE, abs_tol=0.0)
         return abs(old - new) <= LENGTH_MM
     return type(old) is type(new) and old == new
 
 
-def _is_number(value: Any) -> bool:
+def is_number(value: Any) -> bool:
     return isinstance(value, int | float) and not isinstance(value, bool)
 
 

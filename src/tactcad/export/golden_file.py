@@ -23,7 +23,7 @@ from tactcad.parts.language.description import NOT_MADE
 from tactcad.parts.language.finding import Finding
 
 from .board_files import board_record
-from .difference import Change, differences
+from .difference import Change, differences, is_number
 from .geometry import Record, contour_of, geometry
 
 Severity = Literal["fail", "flag"]
@@ -290,7 +290,7 @@ def _part_fault(part: dict[str, Any]) -> str:
         return "it has no contours"
     for rows in contours:
         lists = isinstance(rows, list) and rows and all(isinstance(row, list) for row in rows)
-        if not lists or not all(_is_number(value) for row in rows for value in row):
+        if not lists or not all(is_number(value) for row in rows for value in row):
             return "a contour is no list of rows of numbers"
         try:
             contour_of(rows)
@@ -314,11 +314,7 @@ def _is_plain(value: Any) -> bool:
     """A number, text, truth value or null, or a list of such, or a list of lists of numbers."""
     if isinstance(value, list):
         return all(_is_plain(v) for v in value)
-    return value is None or isinstance(value, str | bool) or _is_number(value)
-
-
-def _is_number(value: Any) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool)
+    return value is None or isinstance(value, str | bool) or is_number(value)
 
 
 # --- letters of parts ---

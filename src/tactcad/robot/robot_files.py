@@ -13,11 +13,12 @@ import numpy as np
 from tactcad.design.family import family_of
 from tactcad.design.messages import InputError
 from tactcad.export.inputs import digest
+from tactcad.export.part_formats.usual import part_stl
 from tactcad.export.products import Batch, Output, Plan
 from tactcad.export.shapes import Shapes
 from tactcad.parts.language.description import NOT_MADE, Part
 from tactcad.scenes.scene import Placement
-from tactcad.solids import CHORD_MM, USUAL
+from tactcad.solids import USUAL
 
 from . import mjcf, taxel_table, urdf
 from .mechanism import Inertia, Mechanism, Solid, mesh_name, seen, together
@@ -46,7 +47,7 @@ def _made(mechanism: Mechanism, shapes: Shapes, meshes: dict[str, Part]) -> Sequ
     refuse_foreign_meshes(f"{name}.urdf", texts[0], meshes)
     refuse_foreign_meshes(f"{name}.xml", texts[1], meshes)
     tables = [taxel_table.csv_bytes(taxels), taxel_table.json_bytes(taxels, step)]
-    return [*tables, *texts, *(stl(part, shapes) for part in meshes.values())]
+    return [*tables, *texts, *(part_stl(p.part_no, shapes.of(p), USUAL, MM) for p in meshes.values())]
 
 
 def refuse_foreign_meshes(name: str, text: bytes, known: Collection[str]) -> None:
@@ -98,17 +99,3 @@ def _box(p: Placement, shapes: Shapes) -> tuple[np.ndarray, np.ndarray]:
     """Middle and half sides, m, of an axis-parallel part."""
     (low, high), R = np.array(_measured(p.part, shapes)["box"]), np.array(p.rotation)
     return MM * (R @ (low + high) / 2 + p.origin), MM * np.abs(R) @ (high - low) / 2
-
-
-def stl(part: Part, shapes: Shapes) -> bytes:
-    """A part's mesh as binary STL in metres, closed."""
-    import trimesh
-    from trimesh.exchange.stl import export_stl
-
-    from tactcad.export.part_formats.usual import HEADING, check_stl
-    from tactcad.solids.triangles import triangles
-
-    points, faces = triangles(shapes.of(part), CHORD_MM, USUAL.angular)
-    data = export_stl(trimesh.Trimesh(points * MM, faces, process=False))
-    check_stl(part.part_no, data, part.volume * MM**3, None)
-    return f"tactcad {part.part_no}, m".encode("ascii", "replace")[:HEADING].ljust(HEADING) + data[HEADING:]

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import csv
 import json
 from collections import Counter
 from collections.abc import Iterable, Mapping
 from dataclasses import asdict, dataclass, fields, replace
-from io import StringIO
 from math import isfinite
 from pathlib import Path
 from typing import Any
@@ -15,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from tactcad.design.family import family_of
-from tactcad.design.files import read_json
+from tactcad.design.files import as_csv, read_json
 from tactcad.design.messages import InputError
 from tactcad.design.tree import CommonTables
 from tactcad.stacks.stack import SEED
@@ -129,14 +127,12 @@ def json_bytes(taxels: Taxels, timestep: float) -> bytes:
 
 def csv_bytes(taxels: Taxels) -> bytes:
     """A row a taxel; lists are parted by blanks."""
-    text = StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow([*(f.name for f in fields(Taxel)), "schema", "version"])
+    rows: list[list[object]] = [[*(f.name for f in fields(Taxel)), "schema", "version"]]
     for t in taxels.taxels:
         # None: empty
         cells = (" ".join(map(str, v)) if isinstance(v, tuple) else v for v in vars(t).values())
-        writer.writerow([*cells, SCHEMA, VERSION])
-    return text.getvalue().encode()
+        rows.append([*cells, SCHEMA, VERSION])
+    return as_csv(rows, "\n")
 
 
 def read_taxels(path: str | Path) -> Taxels:

@@ -20,12 +20,12 @@ from ..engine.boxes import Point
 from .measures import (
     OUTER,
     THICKNESS,
+    Distance,
     Level,
     MeasureDifference,
     Offset,
     Owner,
     Quantity,
-    Radius,
     Round,
     Slope,
     Span,
@@ -37,6 +37,7 @@ from .measures import (
     halfway,
     in_part,
     level,
+    radius_of,
     size,
     widest,
 )
@@ -281,7 +282,9 @@ def radius_callouts(sketch: Sketch, view: View, part: Part) -> list[Callout]:
     for owner, contour in contours(part):
         if contour.as_circle():
             continue
-        arcs = [(f"{owner} radius", Radius(owner, i), s) for i, s in enumerate(contour) if isinstance(s, Arc)]
+        arcs = [
+            (f"{owner} radius", radius_of(owner, i), s) for i, s in enumerate(contour) if isinstance(s, Arc)
+        ]
         for c in part.characteristics:
             limited = [arc for arc in arcs if arc[2].name in c.between]
             callouts += equal_radii(sketch, view, limited, c.name)
@@ -291,10 +294,10 @@ def radius_callouts(sketch: Sketch, view: View, part: Part) -> list[Callout]:
 
 
 def equal_radii(
-    sketch: Sketch, view: View, arcs: Sequence[tuple[str, Radius, Arc]], states: str = ""
+    sketch: Sketch, view: View, arcs: Sequence[tuple[str, Distance, Arc]], states: str = ""
 ) -> list[Callout]:
     """Named arcs whose radii are not determined yet, equal ones in one callout, which `states` names."""
-    kinds: dict[float, list[tuple[str, Radius, Arc]]] = {}
+    kinds: dict[float, list[tuple[str, Distance, Arc]]] = {}
     for name, row, arc in arcs:
         kinds.setdefault(round(arc.radius, 6), []).append((name, row, arc))
     callouts = []

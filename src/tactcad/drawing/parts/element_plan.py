@@ -21,7 +21,6 @@ from .measures import (
     OUTER,
     THICKNESS,
     Level,
-    Radius,
     Round,
     Slope,
     Span,
@@ -29,6 +28,7 @@ from .measures import (
     conventions,
     halfway,
     level,
+    radius_of,
     rounds,
     size,
 )
@@ -158,7 +158,7 @@ def _radii(sketch: Sketch, view: View, o: Outline, names: Sequence[str], states:
     none for a full round, whose width defines it.
     """
     named = ((n, o.index[n], o.segment(n)) for n in names if n in o)
-    arcs = [(n.replace("_", " "), Radius(OUTER, i), s) for n, i, s in named if isinstance(s, Arc)]
+    arcs = [(n.replace("_", " "), radius_of(OUTER, i), s) for n, i, s in named if isinstance(s, Arc)]
     return equal_radii(sketch, view, arcs, states)
 
 

@@ -277,22 +277,6 @@ class Given:
 
 
 @dataclass(frozen=True)
-class Radius(OfVariables):
-    """Radius of segment i of a contour, from its centre to its start, mm."""
-
-    contour: Owner
-    i: int
-
-    @property
-    def names(self) -> tuple[Variable, ...]:
-        return (*xy(Spot(self.contour, self.i)), *xy(Spot(self.contour, self.i, True)))
-
-    def of(self, values: Values) -> float:
-        x, y, cx, cy = (values[n] for n in self.names)
-        return hypot(x - cx, y - cy)
-
-
-@dataclass(frozen=True)
 class Slope(OfVariables):
     """Direction of a line from start to end, degrees from the x axis."""
 
@@ -314,6 +298,11 @@ class Distance(OfVariables):
     def of(self, values: Values) -> float:
         x0, y0, x1, y1 = (values[n] for n in self.names)
         return hypot(x1 - x0, y1 - y0)
+
+
+def radius_of(contour: Owner, i: int) -> Distance:
+    """Radius of segment i of a contour, from its start to its centre, mm."""
+    return Distance(Spot(contour, i), Spot(contour, i, True))
 
 
 @dataclass(frozen=True)
@@ -366,7 +355,7 @@ class Width(OfVariables):
         return abs(self.a.of(values)) + abs(self.b.of(values))
 
 
-Measure = Given | Span | Offset | Width | Radius | Slope | Distance | MeasureDifference | CrossProduct
+Measure = Given | Span | Offset | Width | Slope | Distance | MeasureDifference | CrossProduct
 
 
 def conventions(owner: Owner, contour: Contour) -> list[Measure]:

@@ -41,7 +41,6 @@ from .measures import (
     Level,
     MeasureDifference,
     Owner,
-    Radius,
     Round,
     Span,
     Spot,
@@ -49,6 +48,7 @@ from .measures import (
     conventions,
     halfway,
     level,
+    radius_of,
     rounds,
     size,
     widest,
@@ -329,7 +329,7 @@ def turned_plan(part: Part, notes: Sequence[str]) -> SheetPlan:
         else:
             side: Side = "right" if z > (z0 + z1) / 2.0 else "left"
             linears.append(Linear(d, side, (z, -radius), (z, radius)))
-    arcs = [("radius", Radius(PROFILE, i), s) for i, s in enumerate(profile) if isinstance(s, Arc)]
+    arcs = [("radius", radius_of(PROFILE, i), s) for i, s in enumerate(profile) if isinstance(s, Arc)]
     callouts += equal_radii(sketch, view, arcs)
     margin = 0.04 * (z1 - z0)
     bored = not all(any(p == (0.0, z) for s in profile for p in (s.start, s.end)) for z in (z0, z1))

@@ -95,8 +95,8 @@ PICTURE = PartFormat(
 HEADING = 80  # bytes, which readers skip (3D Systems' StereoLithography interface specification, 1989)
 
 
-def part_stl(part_no: str, shape: TopoDS_Shape, meshing: Meshing) -> bytes:
-    """The file of a shape.
+def part_stl(part_no: str, shape: TopoDS_Shape, meshing: Meshing, mm: float = 1.0) -> bytes:
+    """The file of a shape, in mm or in metres.
 
     Parameters
     ----------
@@ -106,6 +106,8 @@ def part_stl(part_no: str, shape: TopoDS_Shape, meshing: Meshing) -> bytes:
         In mm.
     meshing
         Turn between facets, and the promised relative error of the volume.
+    mm
+        One millimetre in the file's unit: 1, or 1e-3.
 
     Raises
     ------
@@ -116,15 +118,16 @@ def part_stl(part_no: str, shape: TopoDS_Shape, meshing: Meshing) -> bytes:
     from trimesh.exchange.stl import export_stl
 
     from tactcad.profiling import making
-    from tactcad.solids.measure import measure
+    from tactcad.solids.measure import volume
     from tactcad.solids.triangles import triangles
 
     with making("mesh", part_no):
         points, faces = triangles(shape, CHORD_MM, meshing.angular)
-        data = export_stl(trimesh.Trimesh(points, faces, process=False))
-    heading = f"tactcad {part_no}, mm".encode("ascii", "replace")[:HEADING].ljust(HEADING)
-    check_stl(part_no, heading + data[HEADING:], measure(shape)["volume"], meshing.error)
-    return heading + data[HEADING:]
+        data = export_stl(trimesh.Trimesh(points * mm, faces, process=False))
+    unit = "mm" if mm == 1.0 else "m"
+    data = f"tactcad {part_no}, {unit}".encode("ascii", "replace")[:HEADING].ljust(HEADING) + data[HEADING:]
+    check_stl(part_no, data, volume(shape) * mm**3, meshing.error)
+    return data
 
 
 def check_stl(part_no: str, data: bytes, volume: float, allowed: float | None) -> None:

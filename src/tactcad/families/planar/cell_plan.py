@@ -23,11 +23,11 @@ from tactcad.drawing.parts.measures import (
     Level,
     MeasureDifference,
     Owner,
-    Radius,
     Span,
     Spot,
     conventions,
     level,
+    radius_of,
     rounds,
 )
 from tactcad.drawing.parts.prism import FRONT, side_view
@@ -233,7 +233,7 @@ def _cell_view(
     turns, first, name = len(owners), owners[0], f"{label} radius"
     square = turns == 1
     linears = _square(sketch, first, openings[0]) if square else _beams(sketch, shown, cell, owners)
-    arcs = [(name, Radius(first, i), s) for i, s in enumerate(openings[0]) if isinstance(s, Arc)]
+    arcs = [(name, radius_of(first, i), s) for i, s in enumerate(openings[0]) if isinstance(s, Arc)]
     callouts = []
     for callout in equal_radii(sketch, view, arcs):  # as the radius of as many equal openings
         count, _, text = callout.lines[0].rpartition("× ")
