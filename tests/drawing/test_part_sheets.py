@@ -55,7 +55,7 @@ ELEMENT = "macro-array-element-a8mm"
 
 def sheets_of(orders: list[Order]) -> list:
     """Made by processes, in the orders' order."""
-    made = dict(side_by_side([Task(order.name, partial(written, order)) for order in orders]))
+    made = dict(side_by_side([Task(order.part.part_no, partial(written, order)) for order in orders]))
     return [made[n] for n in range(len(orders))]
 
 

@@ -389,10 +389,11 @@ def crash(*_) -> bytes:
 def test_a_crash_of_the_kernel_is_reported_with_the_file(monkeypatch):
     from tactcad.solids.build import build
     from tactcad.solids.occt import end_threads
+    from tactcad.solids.step import to_bytes
 
     class Built:
-        def of(self, part):
-            return build(part)
+        def text_of(self, part):
+            return to_bytes(build(part))
 
     monkeypatch.setattr(step_pmi, "part_step_pmi", crash)
     (form,) = (f for f in part_formats() if f.kind == "step-pmi")

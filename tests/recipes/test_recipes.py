@@ -247,7 +247,7 @@ def test_a_format_takes_its_module_beside_its_test(tree):
 def test_an_incomplete_format_is_refused_at_import(tree, text, said):
     tree.write("export/part_formats/lacking.py", text)
     done = subprocess.run(
-        [sys.executable, "-c", "import tactcad.export.manifest"],
+        [sys.executable, "-c", "import tactcad.export.pipeline"],
         env=os.environ | {"PYTHONPATH": str(tree.src)},
         capture_output=True,
         text=True,

@@ -19,7 +19,8 @@ from .cache import Cache, default_root
 from .formats import ExportOptions, part_formats
 from .inputs import Inputs, digest, first_installed, inputs_from_json, inputs_of, reasons
 from .manifest import Contents, FileRecord, Manifest, PartRecord
-from .publication import REFUSE, Work, left_unfinished, looked_at, replacing
+from .publication import REFUSE, left_unfinished, looked_at, replacing
+from .shapes import Shapes
 from .workers import Task, relayed, side_by_side
 
 if TYPE_CHECKING:
@@ -36,6 +37,8 @@ KERNEL = first_installed("cadquery-ocp", "cadquery-ocp-novtk")
 LIBRARIES = ("build123d", KERNEL, "ezdxf", "numpy", "scipy")
 DRAWN_WITH = ("matplotlib", "reportlab")  # for drawings: font and PDF
 FOR_ROBOTS = ("contact", "lab", "robot")  # further rooms for robots' files
+# Kinds of files that parts are ordered by, the one that the bill names last.
+ORDERED = [form.kind for form in sorted(part_formats(), key=lambda form: form.ordered) if form.ordered]
 
 
 class Progress(Protocol):
@@ -115,7 +118,11 @@ def export(
             return _unchanged(out, work.earlier, progress)
         for reason in why:
             progress.line(f"{out}: {reason}")
-        return _rebuild(design, options, Path(out), work, cache, inputs, tuple(why), progress)
+        shapes = Shapes(cache, digest((inputs.sources, inputs.libraries)))
+        count, taken, made = _rebuild(design, options, work.folder, shapes, inputs, progress)
+    cache.trim()
+    progress.line(f"{out}: {count} files, {len(made)} made, {taken} taken from the cache")
+    return Exported(Path(out), count, made, tuple(shapes.built), tuple(why))
 
 
 def _unchanged(out: str | Path, earlier: Contents, progress: Progress) -> Exported:
@@ -139,23 +146,20 @@ def _reasons(earlier: Contents, now: Inputs) -> list[str]:
 def _rebuild(
     design: CommonTables,
     options: ExportOptions,
-    out: Path,
-    work: Work,
-    cache: Cache,
+    folder: Path,
+    shapes: Shapes,
     inputs: Inputs,
-    why: tuple[str, ...],
     progress: Progress,
-) -> Exported:
+) -> tuple[int, int, tuple[str, ...]]:
+    """Number of all files, and of those taken from the cache; and those made."""
     from tactcad.scenes import make_scene
     from tactcad.scenes.scene import at_detail
 
     from .products import Plan
-    from .shapes import Shapes
 
     scenes = [at_detail(make_scene(design, name, options.pose), options.detail) for name in options.scenes]
-    plan = Plan(design, options, scenes, Shapes(cache, digest((inputs.sources, inputs.libraries))))
+    plan = Plan(design, options, scenes, shapes)
     jobs = plan.jobs()
-    folder = work.folder
     made = _write_products(folder, plan, jobs, progress)
     products = [file for job in jobs for file in job.files]
     records = [_record(folder, file, design) for file in products]
@@ -167,11 +171,7 @@ def _rebuild(
     wrong = manifests.check_manifest(folder)
     if wrong:
         raise CheckFailure(f"the finished export does not hold: {'; '.join(wrong)}")
-    work.publish()
-    cache.trim()
-    count = len(records) + 1
-    progress.line(f"{out}: {count} files, {len(made)} made, {len(products) - len(made)} taken from the cache")
-    return Exported(out, count, made, tuple(plan.shapes.built), why)
+    return len(records) + 1, len(products) - len(made), made
 
 
 def _write_products(folder: Path, plan: Plan, jobs: Sequence[Batch], progress: Progress) -> tuple[str, ...]:
@@ -248,8 +248,7 @@ def _write_bills(
     from tactcad.scenes import bom
 
     revision, soldered = design.design.revision, _soldered(design)
-    ranked = sorted((form for form in part_formats() if form.ordered), key=lambda form: form.ordered)
-    files = {r.part_no: (r.path, r.sha256) for form in ranked for r in records if r.kind == form.kind}
+    files = {r.part_no: (r.path, r.sha256) for kind in ORDERED for r in records if r.kind == kind}
     written = []
     for scene in scenes:
         rows = bom.bom_rows(scene, design.design, files)

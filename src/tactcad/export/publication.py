@@ -76,45 +76,19 @@ def left_unfinished(directory: str | Path) -> bool:
 
 @dataclass(frozen=True)
 class Work:
-    """DIR while it is replaced: `folder` to write into; `earlier` is what lay in DIR before."""
+    """DIR while it is replaced: `folder` to write into, its manifest last; `earlier` is what lay in DIR."""
 
-    out: Path
     schema: str
-    others: str
-    say: Say
     folder: Path
     earlier: Contents
 
     def write(self, files: Mapping[str, bytes]) -> None:
-        """Write the files and a manifest of them, and publish them."""
+        """Write the files and a manifest of them."""
         for path, data in files.items():
             (self.folder / path).parent.mkdir(parents=True, exist_ok=True)
             (self.folder / path).write_bytes(data)
         listed = [{"path": path, "sha256": sha256_of(data)} for path, data in files.items()]
         (self.folder / NAME).write_bytes(sealed({"schema": self.schema, "files": listed}))
-        self.publish()
-
-    def publish(self) -> None:
-        """Make `folder`, with its manifest, the new DIR; the earlier one is removed or kept.
-
-        Raises CheckFailure if the earlier one is kept, unasked, for what appeared in it meanwhile.
-        """
-        out, apart = self.out, self.folder.with_name(APART)
-        if out.is_dir():
-            self.folder.chmod(stat.S_IMODE(out.stat().st_mode) | 0o700)
-        flush(self.folder)
-        self.folder.rename(apart)
-        if not os.path.lexists(out):
-            apart.rename(out)
-        elif not _exchange(apart, out):
-            apart.rename(self.folder)
-            out.rename(apart)
-            self.folder.rename(out)
-        flush_entry(out.parent)
-        if kept := _settled(apart, out, self.schema, self.others, self.earlier):
-            if self.others != KEEP:
-                raise CheckFailure(f"{out}: the new folder is in place; {kept}")
-            self.say(f"{out}: {kept}")
 
 
 def _print(text: str) -> None:
@@ -123,9 +97,8 @@ def _print(text: str) -> None:
 
 @contextmanager
 def replacing(directory: str | Path, schema: str, others: str = REFUSE, say: Say = _print) -> Iterator[Work]:
-    """Write a folder, DIR, anew; what killed runs left is settled first.
-
-    If anything is raised inside, the earlier folder stays.
+    """Write a folder, DIR, anew, and give it its name when the block ends well and has written a manifest;
+    else the earlier folder stays. What killed runs left is settled first.
 
     Parameters
     ----------
@@ -141,7 +114,7 @@ def replacing(directory: str | Path, schema: str, others: str = REFUSE, say: Say
     InputError
         If DIR may not be replaced (see `looked_at`), or the place cannot be written to.
     CheckFailure
-        If the disk is full, or as `Work.publish`.
+        If the disk is full, or the earlier folder was kept, unasked, for what appeared in it meanwhile.
     """
     out = absolute(directory)
 
@@ -157,11 +130,34 @@ def replacing(directory: str | Path, schema: str, others: str = REFUSE, say: Say
         looked_at(out, schema, others)
         out.parent.mkdir(parents=True, exist_ok=True)
         with staged_folder(out.parent, f".{out.name}", recover) as own:
-            work = Work(out, schema, others, say, own / MAKING, looked_at(out, schema, others))
+            work = Work(schema, own / MAKING, looked_at(out, schema, others))
             if work.earlier.foreign and others == DISCARD:
                 say(f"{out}: to be discarded: {named(work.earlier.foreign)}")
             work.folder.mkdir()
             yield work
+            if not (work.folder / NAME).exists():
+                return
+            _put_in_place(work.folder, out)
+            if kept := _settled(own / APART, out, schema, others, work.earlier):
+                if others != KEEP:
+                    raise CheckFailure(f"{out}: the new folder is in place; {kept}")
+                say(f"{out}: {kept}")
+
+
+def _put_in_place(new: Path, out: Path) -> None:
+    """Give the new folder its name; an earlier one is then APART beside it."""
+    apart = new.with_name(APART)
+    if out.is_dir():
+        new.chmod(stat.S_IMODE(out.stat().st_mode) | 0o700)
+    flush(new)
+    new.rename(apart)
+    if not os.path.lexists(out):
+        apart.rename(out)
+    elif not _exchange(apart, out):
+        apart.rename(new)
+        out.rename(apart)
+        new.rename(out)
+    flush_entry(out.parent)
 
 
 def _settled(folder: Path, out: Path, schema: str, others: str, before: Contents) -> str:
