@@ -138,16 +138,6 @@ def _cell(value: Any) -> str:
     return text if len(text) <= WIDEST else f"{text[: WIDEST - 3]}..."
 
 
-class Quiet:
-    """Progress of an export that nobody watches."""
-
-    def line(self, text: str) -> None:
-        """A line that would be kept on a terminal."""
-
-    def step(self, done: int, total: int, text: str) -> None:
-        """A piece of work that begins."""
-
-
 @dataclass(repr=False)
 class LoadedDesign:
     """A design with its questions. It never changes, but for the parts that `scene(...).add` puts in.
@@ -293,7 +283,7 @@ class LoadedDesign:
         """Write every file of these scenes, or of all, to a folder, all or nothing."""
         from tactcad.export.formats import ExportOptions
         from tactcad.export.manifest import read_export
-        from tactcad.export.pipeline import export
+        from tactcad.export.pipeline import Quiet, export
         from tactcad.scenes.scene import REST
 
         for where, wish in (("drawings", drawings), ("guide", guide)):

@@ -51,6 +51,16 @@ class Progress(Protocol):
         """`done` of `total` pieces of work are finished; `text` is the next one."""
 
 
+class Quiet:
+    """Progress that nobody watches: of a worker, or in a notebook."""
+
+    def line(self, text: str) -> None:
+        pass
+
+    def step(self, done: int, total: int, text: str) -> None:
+        pass
+
+
 @dataclass(frozen=True)
 class Exported:
     """Result of an export: its folder, how many files it holds, which were made anew, which parts the kernel

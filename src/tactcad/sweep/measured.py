@@ -254,23 +254,13 @@ def _checks(_: Study, design: CommonTables) -> dict[str, Any]:
 def _export(design: CommonTables, folder: Path) -> dict[str, Any]:
     from tactcad.export.formats import ExportOptions
     from tactcad.export.manifest import sha256_of
-    from tactcad.export.pipeline import export
+    from tactcad.export.pipeline import Quiet, export
     from tactcad.scenes import scene_names
 
     folder.parent.mkdir(parents=True, exist_ok=True)
-    done = export(design, ExportOptions(tuple(scene_names(design))), folder, _Quiet())
+    done = export(design, ExportOptions(tuple(scene_names(design))), folder, Quiet())
     manifest = (folder / "manifest.json").read_bytes()
     return {"files": done.files, "manifest_sha256": sha256_of(manifest)}
-
-
-class _Quiet:
-    """No messages: a worker has no terminal."""
-
-    def line(self, text: str) -> None:
-        pass
-
-    def step(self, done: int, total: int, text: str) -> None:
-        pass
 
 
 Floats = NDArray[np.float64]
@@ -336,23 +326,31 @@ def closed_forms(
     rungs = [rung for rung in study.measure.rungs if rung in ladder.CLOSED_FORMS]
     if not rungs:
         return
+    for rows, number, d, section in sections(study, columns, refused):
+        for rung in rungs:
+            result = ladder.evaluate(section, rung)
+            all_valid = result.valid.all()
+            if not all_valid:
+                said = [why and f"{rung} E{number}: {why}" for why in result.reason.flat]
+                refused.add(rows, np.array(said, object))
+            values = [result.stiffness, expected_error_of(section, rung)]
+            if STRENGTH in study.measure.what:
+                values += _forces(d, section, rung, result)
+            for name, column in zip(names_of(study, rung, number), values):
+                results[name][rows] = column if all_valid else np.where(result.valid, column, np.nan)
+
+
+def sections(
+    study: Study, columns: dict[str, Column], refused: Refused
+) -> Iterator[tuple[Rows, int, Design, HingeSection]]:
+    """Every element that is measured, of many designs at once: their rows, its number, the designs, and its
+    section. Designs without it are refused, as `alike` refuses."""
     for rows, many in alike(study, columns, refused):
         for number in study.elements:
             if number > len(many.elements):
                 refused.add(rows, f"the design has no element {number}")
-                continue
-            section = element_section(many, many.elements[number - 1])
-            for rung in rungs:
-                result = ladder.evaluate(section, rung)
-                all_valid = result.valid.all()
-                if not all_valid:
-                    said = [why and f"{rung} E{number}: {why}" for why in result.reason.flat]
-                    refused.add(rows, np.array(said, object))
-                values = [result.stiffness, expected_error_of(section, rung)]
-                if STRENGTH in study.measure.what:
-                    values += _forces(many.design, section, rung, result)
-                for name, column in zip(names_of(study, rung, number), values):
-                    results[name][rows] = column if all_valid else np.where(result.valid, column, np.nan)
+            else:
+                yield rows, number, many.design, element_section(many, many.elements[number - 1])
 
 
 def _forces(d: Design, section: HingeSection, rung: str, result: ladder.Result) -> list[Floats]:

@@ -255,17 +255,14 @@ def _varied(table: dict[str, Any], base: dict[str, Any]) -> dict[str, Varied]:
         for i, end in enumerate(one.range or ()):
             spec.read(end, f"{where}.range[{i}]")
         if one.normal:
-            _read_normal(design, path, spec, one.normal)
+            middle = value_at(design, path)
+            if middle is None:
+                what = "the design gives no value to vary about"
+                raise InputError(f"{where}.normal", what, legal="a range")
+            for end in (middle - one.normal, middle + one.normal):
+                spec.read(end, f"{where}.normal")
         varied[path] = one
     return varied
-
-
-def _read_normal(design: CommonTables, path: str, spec: Any, half: float) -> None:
-    middle = value_at(design, path)
-    if middle is None:
-        raise InputError(f"vary.{path}.normal", "the design gives no value to vary about", legal="a range")
-    for end in (middle - half, middle + half):
-        spec.read(end, f"vary.{path}.normal")
 
 
 def _refuse_contradiction(study: Study, path: str, one: Varied) -> None:
@@ -318,7 +315,11 @@ def _refuse_measures(study: Study) -> None:
     family = family_of(study.design)
     if study.measure.rungs:
         family.must("variables", "measure.what: a rung")
-    most = max([len(family.layout(study.design).elements), *map(len, _row_arms(study))])
+    rows = (
+        study.vary["array.row_arms"].values if "array.row_arms" in study.vary else None
+    )  # arrays themselves
+    counts = [sum(map(len, each)) for each in rows or ()]
+    most = max([len(family.layout(study.design).elements), *counts])
     for path in study.vary:
         override = path.startswith("element.override.") and int(path.split(".")[2])
         if override and override > most:
@@ -329,9 +330,3 @@ def _refuse_measures(study: Study) -> None:
         )
     if len(set(study.elements)) < len(study.elements):
         raise InputError("measure.elements", "an element twice", legal="each once")
-
-
-def _row_arms(study: Study) -> list[list[float]]:
-    """Arms of every array of the study, if the arrays themselves vary."""
-    one = study.vary.get("array.row_arms")
-    return [sum(map(list, rows), []) for rows in (one.values or ())] if one else []

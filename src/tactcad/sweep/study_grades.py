@@ -17,12 +17,11 @@ from tactcad.mechanics.ladder import RUNGS
 from tactcad.mechanics.register import rungs
 from tactcad.mechanics.section import HingeSection
 from tactcad.mechanics.validity import reasons
-from tactcad.parts.array.hinge_section import element_section
 from tactcad.scenes import scene_names
 from tactcad.stacks.virtual_build import widest
 
 from .designs_taken import designs_taken
-from .measured import CLOSED_FORMS_A_TASK, Refused, alike
+from .measured import CLOSED_FORMS_A_TASK, Refused, sections
 from .study import BUILDS, CHECKS, EXPORT, Study
 
 OWN_MESH = tuple(c for c in CANDIDATES if c.mesh == rungs()[c.rung].meshes[0])  # a study names no other
@@ -87,7 +86,7 @@ def _promised(study: Study) -> tuple[dict[Candidate, float], dict[Candidate, flo
     of the first designs' mean. Every design is looked at once."""
     present: set[int] = set()
     first: HingeSection | None = None
-    for section in _sections(study):
+    for section in _all_sections(study):
         inside = np.flatnonzero(reasons(section, MEASURED_FOR).ravel() == "")
         present |= set(zones(section).ravel()[inside].tolist())
         first = section.rows(inside) if first is None and len(inside) else first
@@ -97,14 +96,12 @@ def _promised(study: Study) -> tuple[dict[Candidate, float], dict[Candidate, flo
     return {c: max(data[z]["promised"][c.name] for z in present) for c in OWN_MESH}, seconds_each(first)
 
 
-def _sections(study: Study) -> Iterator[HingeSection]:
+def _all_sections(study: Study) -> Iterator[HingeSection]:
     """Every element measured, of many designs at a time; designs that cannot be read are left out."""
     for start in range(0, study.count, CLOSED_FORMS_A_TASK):
         stop = min(start + CLOSED_FORMS_A_TASK, study.count)
-        columns = designs_taken(study, start, stop)
-        for _, many in alike(study, columns, Refused(stop - start)):
-            there = (many.elements[number - 1] for number in study.elements if number <= len(many.elements))
-            yield from (element_section(many, place) for place in there)
+        found = sections(study, designs_taken(study, start, stop), Refused(stop - start))
+        yield from (section for *_, section in found)
 
 
 def _seconds(study: Study, each: dict[Candidate, float], workers: int) -> float:

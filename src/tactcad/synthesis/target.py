@@ -48,10 +48,6 @@ def _range(spec: Number, meaning: str) -> Numbers:
     return Numbers(spec, 2, 2, meaning)
 
 
-def _percent(meaning: str) -> Number:
-    return Number("%", 0.1, 50, meaning)
-
-
 @dataclass(frozen=True)
 class Wish:
     """[target]: what the sensor is to reach."""
@@ -67,7 +63,7 @@ class Wish:
         DEFAULT_DESIGN,
     )
     half_width: float | None = given(
-        _percent("half-width of the 95 % interval of K_obj over the whole range, at most"),
+        Number("%", 0.1, 50, "half-width of the 95 % interval of K_obj over the whole range, at most"),
         None,
         "the best to be had",
     )

@@ -91,11 +91,9 @@ def warm_up(layout: Layout) -> float:
     return WARM * max(grid, ANALOGUE_OHM * SET_FARAD)
 
 
-def round_time(layout: Layout) -> float:
-    """Until every element of the fullest board has one result, s."""
-    return fullest(layout) * settling(layout)
-
-
 def on_time(layout: Layout) -> float:
-    """Time from ON until every element has one result, s; for bridges that are always on, a round."""
-    return round_time(layout) + (warm_up(layout) if layout.design.readout.power == "duty" else 0.0)
+    """Time from ON until every element of the fullest board has one result, s; for bridges always on,
+    a round."""
+    return fullest(layout) * settling(layout) + (
+        warm_up(layout) if layout.design.readout.power == "duty" else 0.0
+    )

@@ -281,11 +281,6 @@ def shortest(value: float) -> str:
     return text.removesuffix(".0")
 
 
-def blank_ledge_zone(design: Design) -> float:
-    """Width of the zone of a blank's ledge, mm: the elements' ledges lie in one as wide."""
-    return round(2 * (design.tolerance.pad_height + design.tolerance.ledge), 9)
-
-
 def blank(layout: Layout) -> Part:
     r"""An element without arm: fills the shorter row, or an empty one, so that both rows are clamped equally
     and the stop plate has two ledges.
@@ -300,6 +295,8 @@ def blank(layout: Layout) -> Part:
     hinge = layout.elements[0].hinge
     face, ledge = layout.body_bottom(hinge), layout.ledge
     front = round(layout.clamp_edge - d.element.seat_length, 6)
+    # as far from the dowel hole as any element's ledge: pad height and ledge over the pad
+    zone = round(2 * (d.tolerance.pad_height + d.tolerance.ledge), 9)
     corners = [
         Corner((front, face), edge="front_face"),
         *rear_corners(layout, face),
@@ -318,11 +315,7 @@ def blank(layout: Layout) -> Part:
             within("thickness", d.sheet.thickness, d.tolerance.sheet_thickness, between=FACES),
             dowel_hole_limits(d),
         ),
-        # as far from the dowel hole as any element's ledge: pad height and ledge over the pad
-        geometric=(
-            Geometric("ledge", "position", blank_ledge_zone(d), ("ledge",), ("A",)),
-            screw_places("A"),
-        ),
+        geometric=(Geometric("ledge", "position", zone, ("ledge",), ("A",)), screw_places("A")),
         datums=(DatumFeature("A", "dowel_hole"),),
     )
 
