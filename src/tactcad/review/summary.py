@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import asdict
 from html import escape
 from typing import Any
@@ -70,7 +70,8 @@ def markdown(old: Side, new: Side, changes: Sequence[Change], meaning: Meaning) 
         told.append("")
     told += _some([f"- Not the sum: {line}." for line in meaning.interactions], MOST_NOTES, "elements")
     for effect in meaning.effects:
-        told += [f"- {title}: {_codes(names)}." for title, names in _lists(effect) if names]
+        lists = [(title, [*map(_code, names)]) for title, names in _lists(effect) if names]
+        told += [f"- {title}: {_shortened(names)}." for title, names in lists]
         turned = [f"- **now** {_code(text)}" for text in effect.now]
         turned += [f"- no longer {_code(text)}" for text in effect.no_longer]
         told += _some(turned, MOST_TURNED, "findings that turned")
@@ -204,12 +205,6 @@ def _shortened(names: Sequence[str]) -> str:
 
 def _some(told: Sequence[str], most: int, what: str) -> list[str]:
     return [*told[:most]] + ([f"- … and {len(told) - most} more {what}."] if len(told) > most else [])
-
-
-def _codes(names: Iterable[str]) -> str:
-    names = list(names)
-    some = ", ".join(map(_code, names[:MOST_NAMES]))
-    return some if len(names) <= MOST_NAMES else f"{some} and {len(names) - MOST_NAMES} more"
 
 
 def _code(text: str) -> str:
