@@ -13,7 +13,7 @@ from tactcad.design.load import DEFAULT_DESIGN
 from tactcad.lab import pads
 from tactcad.lab.calibration import ElementCalibration, calibrate
 from tactcad.lab.calibration_file import Sensitivity
-from tactcad.lab.combine import DISAGREE, Interval, Slopes, combine
+from tactcad.lab.combine import DISAGREE, Interval, Slopes, combine_each
 from tactcad.lab.grasp import common_slopes, evaluate
 from tactcad.lab.load_cell import LoadCell, series_removed
 from tactcad.lab.readings import CalibrationReadings, GraspReadings
@@ -253,7 +253,7 @@ def _known(touch: Touch, array: Truth, clean: np.ndarray, share: np.ndarray) -> 
     noise = np.moveaxis(np.array([[b * b, a * b], [a * b, a * a]]), 2, 0) * READING_NOISE**2
     sure: Slopes = replace(slopes, from_signal=noise, signal_dof=int(KNOWN)).coupled(share)
     pairs = [[i, 0] for i in range(1, len(array.element))]
-    return [combine(sure, LEVEL, members)[0] for members in (None, *pairs)]
+    return [combine_each([(sure, members)], LEVEL)[0][0] for members in (None, *pairs)]
 
 
 def _readings(array: Truth, signal: np.ndarray) -> GraspReadings:

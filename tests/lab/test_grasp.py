@@ -15,7 +15,7 @@ from tactcad.contact import springs
 from tactcad.design.messages import InputError
 from tactcad.lab import calibration, grasp, readings
 from tactcad.lab.calibration_file import Sensitivity
-from tactcad.lab.combine import combine, scatter
+from tactcad.lab.combine import combine, combine_each, scatter
 from tactcad.lab.load_cell import LoadCell
 from tactcad.lab.readings import CalibrationReadings, GraspReadings
 from tactcad.mechanics import lumped
@@ -139,7 +139,7 @@ def test_a_pair_has_fieller_s_interval():
         np.zeros(4),
     )
     slopes, _ = grasp.common_slopes(reading.element, reading.signal, known)
-    found, _, _ = combine(slopes, 0.95, [3, 0])
+    found, _, _ = combine_each([(slopes, [3, 0])], 0.95)[0]
     n, d = slopes.f[0] - slopes.f[3], slopes.s[3] - slopes.s[0]
     c = slopes.covariance[0] + slopes.covariance[3]
     from tactcad.lab.regression import t_quantile

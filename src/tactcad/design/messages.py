@@ -60,15 +60,18 @@ class CheckFailure(RuntimeError):
     """A check failed or a request cannot be met. Commands print it and exit with status 1."""
 
 
-def shortened(value: object, most: int = 60) -> str:
-    """repr(value), cut to `most` characters, so that a hostile value cannot flood the terminal."""
+SHOWN = 60  # characters of a value
+
+
+def shortened(value: object) -> str:
+    """repr(value), cut to SHOWN characters, so that a hostile value cannot flood the terminal."""
     try:
         text = repr(value)
     except RecursionError:
         text = f"a deeply nested {type(value).__name__}"
     except ValueError:  # Python shows no integer of more than 4300 digits
         text = f"a very large {type(value).__name__}"
-    return text if len(text) <= most else text[: most - 3] + "..."
+    return text if len(text) <= SHOWN else text[: SHOWN - 3] + "..."
 
 
 def hidden(text: str) -> str:

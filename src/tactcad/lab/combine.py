@@ -79,8 +79,8 @@ class Slopes:
         return replace(self, f=self.f + (share - np.diag(np.diag(share))) @ self.f)
 
 
-def combine(slopes: Slopes, level: float, members: list[int] | None = None) -> tuple[Interval, float, float]:
-    """The K_obj (N/mm) that makes f + x s most equal over some elements.
+def combine(slopes: Slopes, level: float) -> tuple[Interval, float, float]:
+    """The K_obj (N/mm) that makes f + x s most equal over all elements.
 
     With two elements the interval is Fieller's. The search runs over an angle, x = scale tan(angle), so that
     an interval that runs through infinity is treated like any other.
@@ -90,8 +90,6 @@ def combine(slopes: Slopes, level: float, members: list[int] | None = None) -> t
     slopes : Slopes
     level : float
         Confidence level of the interval.
-    members : list of int, optional
-        Indices of the elements, by default all.
 
     Returns
     -------
@@ -101,7 +99,7 @@ def combine(slopes: Slopes, level: float, members: list[int] | None = None) -> t
     widened : float
         Factor on the standard error for the elements' disagreement; 1 if they agree.
     """
-    return combine_each([(slopes, members)], level)[0]
+    return combine_each([(slopes, None)], level)[0]
 
 
 def combine_each(

@@ -31,6 +31,7 @@ from tactcad.lab.regression import KNOWN, t_quantile
 
 from .calibration_file import Sensitivity
 
+LEVEL = 0.95  # of expected intervals
 UNIFORM = 3**-0.5  # standard deviation over half-width of a uniform distribution
 # Of each element's force by the layer rung, against the others': 0.2 % of the mean force where pads have
 # lifted, 0.06 %
@@ -673,7 +674,6 @@ def expected(
     shared: tuple[np.ndarray, ...] = (),
     stiffness: np.ndarray | None = None,
     height: np.ndarray | None = None,
-    level: float = 0.95,
 ) -> Expected:
     """The intervals that `fit` gives on average, by its own equations made linear about the truth.
 
@@ -725,7 +725,7 @@ def expected(
         row = np.zeros((G, model.size))
         row[:, free] = _solve(N, np.broadcast_to(quantity[:, None], (G, len(free), 1)))[..., 0]
         se, t, moved = _errors(
-            priors, calibration.dof, dof, level, row, row[:, free] @ quantity, priors.others
+            priors, calibration.dof, dof, LEVEL, row, row[:, free] @ quantity, priors.others
         )
         pull = np.einsum("eij,gej->gei", priors.of_element, row[:, priors.calibrated])
         alike = sum(np.einsum("gei,ei->g", pull, each) ** 2 for each in shared)

@@ -103,7 +103,7 @@ def take(log: LabLog, by: LogMap) -> Taken:
         does not change; a force or load at its limit; channels that are swapped; too few elements left.
     """
     time = _time(log, by)
-    drive = _numbers(log, by.steps.column, by) if by.steps.column and by.steps.by == "plateau" else None
+    drive = _numbers(log, by.steps.column) if by.steps.column and by.steps.by == "plateau" else None
     spans = _spans(log, by, time, drive)
     volts = {c.element: _volts(log, name, by) for name, c in by.channels.items()}
     columns = {c.element: name for name, c in by.channels.items()}
@@ -148,7 +148,7 @@ def _pressed(kind: str, steps: tuple[LogStep, ...], element: int) -> tuple[LogSt
     return tuple(s for s in steps if kind == "calibration" and s.values["element"] == element)
 
 
-def _numbers(log: LabLog, name: str, by: LogMap, legal: str = "numbers alone") -> np.ndarray:
+def _numbers(log: LabLog, name: str, legal: str = "numbers alone") -> np.ndarray:
     values = log.column(name)
     if values.dtype.kind == "U":
         row = next((i for i, v in enumerate(values) if v and np.isnan(number(v.replace(",", ".")))), 0)
@@ -159,7 +159,7 @@ def _numbers(log: LabLog, name: str, by: LogMap, legal: str = "numbers alone") -
 def _time(log: LabLog, by: LogMap) -> np.ndarray:
     """Seconds from the first row."""
     if by.log.time is not None:
-        time = _numbers(log, by.log.time, by, TIMES) * SECONDS[by.log.time_unit]
+        time = _numbers(log, by.log.time, TIMES) * SECONDS[by.log.time_unit]
     elif log.time is not None:
         time = log.time
     elif by.log.rate is not None:
@@ -181,7 +181,7 @@ def _time(log: LabLog, by: LogMap) -> np.ndarray:
 
 def _volts(log: LabLog, name: str, by: LogMap) -> np.ndarray:
     own = by.channels[name]
-    raw = _numbers(log, name, by)
+    raw = _numbers(log, name)
     raw = np.where(np.isfinite(raw), raw, np.nan) * VOLTAGES[by.signal.unit]
     return raw * by.signal.factor * own.factor + own.offset
 
@@ -197,7 +197,7 @@ def _spans(log: LabLog, by: LogMap, time: np.ndarray, drive: np.ndarray | None) 
             if b < a:
                 raise InputError(f"{by.path}: steps.times", "no row of the log in it", value=list(span))
     elif rule.by == "marks":
-        found = _marked(log, str(rule.column), by)
+        found = _marked(log, str(rule.column))
     else:
         assert drive is not None
         found = [
@@ -256,7 +256,7 @@ def _of_one_state(log: LabLog, by: LogMap, time: np.ndarray, a: int, b: int) -> 
     """A plateau cut where its element, run or sample changes: the stage is back at zero when a run begins.
     Parts shorter than `hold` are left out."""
     names = [by.quantities[n].column for n in STATES if n in by.quantities]
-    columns = [np.round(_numbers(log, name, by)[a : b + 1]) for name in names if name is not None]
+    columns = [np.round(_numbers(log, name)[a : b + 1]) for name in names if name is not None]
     cuts = [a, *(i for i in range(a + 1, b + 1) if any(c[i - a] != c[i - a - 1] for c in columns)), b + 1]
     if len(cuts) == 2:
         return [(a, b)]
@@ -272,7 +272,7 @@ def _trimmed(drive: np.ndarray, a: int, b: int) -> tuple[int, int]:
     return (a + int(still[0]), a + int(still[-1])) if len(still) else (a, b)
 
 
-def _marked(log: LabLog, column: str, by: LogMap) -> list[tuple[int, int]]:
+def _marked(log: LabLog, column: str) -> list[tuple[int, int]]:
     marks = log.column(column)
     texts = marks if marks.dtype.kind == "U" else np.array([f"{m:g}" for m in marks])
     edges = np.flatnonzero(np.concatenate([[True], texts[1:] != texts[:-1], [True]]))
@@ -300,7 +300,7 @@ def _values(
             legal = "as many" if once else "as many, or the same again and again"
             raise InputError(f"{by.path}: {name}.values", what, legal=legal)
         return _scaled(np.resize(cycle, len(spans)), q, scale)
-    column = _numbers(log, str(q.column), by)
+    column = _numbers(log, str(q.column))
     found = np.array([column[a : b + 1].mean() for a, b in spans])
     if not np.isfinite(found).all():
         row = spans[int(np.argmax(~np.isfinite(found)))][0]

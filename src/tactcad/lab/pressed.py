@@ -189,7 +189,7 @@ def _chosen(
     best = inf
     for rung in candidates:
         if rung == "springs":
-            pressed = _on_springs(pads, body, alone, load, angle)
+            pressed = _on_springs(pads, alone, load, angle)
         else:
             pressed = _on_body(pads, body, load, angle, rung)
         deep = depth_share(pads, body, pressed.force)
@@ -235,7 +235,7 @@ def _on_body(pads: Pads, body: Body, load: float, angle: tuple[float, float], ru
     return contact.press(load=load, angle=angle)
 
 
-def _on_springs(pads: Pads, body: Body, alone: float, load: float, angle: tuple[float, float]) -> Pressed:
+def _on_springs(pads: Pads, alone: float, load: float, angle: tuple[float, float]) -> Pressed:
     """Each pad alone, loaded at its middle: no tilt, no coupling."""
     back = pads.height + pads.x * tan(radians(angle[0])) + pads.y * tan(radians(angle[1]))
     K, at = 1 / pads.compliance[:, 0, 0], np.array([load])
