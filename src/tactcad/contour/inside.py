@@ -7,11 +7,11 @@ from bisect import bisect_right
 from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from itertools import combinations, product
-from math import atan2, cos, dist, inf, pi, sin, sqrt, tau
+from math import atan2, cos, dist, inf, pi, sqrt, tau
 
 from .contour import ROUNDING_MM, Contour
 from .nearest import box_around, distance, distance_to, gap, meeting_points
-from .segment import Line, Point, Segment
+from .segment import Line, Point, Segment, direction
 
 
 def side(contour: Contour, p: Point) -> int:
@@ -180,13 +180,8 @@ def _folded(a: Segment, b: Segment, joint: Point) -> bool:
 
 def _leaving(s: Segment, joint: Point) -> Point:
     """Unit direction in which a segment leaves one of its ends."""
-    at_start = s.start == joint
-    if isinstance(s, Line):
-        (x, y), (u, v) = (s.start, s.end) if at_start else (s.end, s.start)
-        return (u - x) / s.length, (v - y) / s.length
-    along = pi / 2 if (s.sweep > 0) == at_start else -pi / 2
-    angle = (s.start_angle if at_start else s.end_angle) + along
-    return cos(angle), sin(angle)
+    sign, (x, y) = 1 if s.start == joint else -1, direction(s, joint)
+    return sign * x, sign * y
 
 
 def _close_pairs(segments: Sequence[Segment], reach: float) -> Iterator[tuple[int, int]]:

@@ -10,12 +10,12 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import combinations_with_replacement
-from math import dist, hypot, pi
+from math import dist, pi
 from typing import Literal
 
 from .contour import ROUNDING_MM, Contour
 from .nearest import Box, box_around, common_normals, gap, meeting_points
-from .segment import Arc, Line, Point, Segment
+from .segment import Arc, Line, Point, Segment, direction
 
 # Directions closer than this are taken as equal: sine of the angle, above the rounding of short tangents.
 SAME_DIRECTION = 1e-6
@@ -114,17 +114,6 @@ def _pieces(contour: Contour) -> list[_Piece]:
         )
         for i, s in enumerate(run)
     ]
-
-
-def direction(s: Segment, p: Point) -> Point:
-    """Unit direction in which the segment runs at one of its points."""
-    if isinstance(s, Line):
-        dx, dy = s.end[0] - s.start[0], s.end[1] - s.start[1]
-    else:
-        turn = 1 if s.ccw else -1
-        dx, dy = -turn * (p[1] - s.centre[1]), turn * (p[0] - s.centre[0])
-    size = hypot(dx, dy)
-    return (dx / size, dy / size)
 
 
 def _side(piece: _Piece, p: Point, q: Point) -> Literal["material", "void"] | None:

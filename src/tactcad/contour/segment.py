@@ -5,6 +5,7 @@ End points are stored, never computed, so that neighbours in a chain share them 
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from math import atan2, cos, hypot, pi, sin, tau
@@ -112,7 +113,22 @@ def rotated(p: Point, centre: Point, angle: float) -> Point:
 
 def turned(s: Segment, centre: Point, angle: float) -> Segment:
     """The segment turned counter-clockwise about a centre, radians."""
-    start, end = rotated(s.start, centre, angle), rotated(s.end, centre, angle)
-    if isinstance(s, Arc):
-        return Arc(start, end, rotated(s.centre, centre, angle), s.ccw, s.name)
-    return Line(start, end, s.name)
+    return mapped(s, lambda p: rotated(p, centre, angle))
+
+
+def mapped(s: Segment, at: Callable[[Point], Point], mirrored: bool = False) -> Segment:
+    """The segment with its points moved by a motion of the plane, which may turn it over."""
+    if isinstance(s, Line):
+        return Line(at(s.start), at(s.end), s.name)
+    return Arc(at(s.start), at(s.end), at(s.centre), s.ccw != mirrored, s.name)
+
+
+def direction(s: Segment, p: Point) -> Point:
+    """Unit direction in which the segment runs at one of its points."""
+    if isinstance(s, Line):
+        dx, dy = s.end[0] - s.start[0], s.end[1] - s.start[1]
+    else:
+        turn = 1 if s.ccw else -1
+        dx, dy = -turn * (p[1] - s.centre[1]), turn * (p[0] - s.centre[0])
+    size = hypot(dx, dy)
+    return (dx / size, dy / size)

@@ -48,15 +48,6 @@ class CutFile:
     gap: float
     flat: bool  # everything on Z = 0, seen from +Z
 
-    @property
-    def area(self) -> float:
-        """Area inside the outline less the openings, mm2."""
-        return self.outer.area - sum(c.area for c in self.openings)
-
-    @property
-    def cut_length(self) -> float:
-        return self.outer.length + sum(c.length for c in self.openings)
-
 
 def _section(part: Part) -> Extrusion:
     cut = cut_section(part)

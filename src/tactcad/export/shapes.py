@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
-from functools import partial
 from typing import TYPE_CHECKING
 
 from .cache import Cache
@@ -28,40 +27,30 @@ class Shapes:
 
     def of(self, part: Part) -> TopoDS_Shape:
         """The part's shape in its own frame."""
-        return self._shape(part, partial(self._built, part))
+        if part.part_no not in self._known:
+            from tactcad.solids.step import from_bytes
+
+            # always through the text, so that a shape from the cache and one just built give equal files
+            self._known[part.part_no] = from_bytes(self.text_of(part))
+        return self._known[part.part_no]
 
     def drawn(self, part: Part) -> TopoDS_Shape:
         """The part's shape for pictures of several parts."""
         from tactcad.parts.bought.screws import for_pictures
 
-        shown = for_pictures(part)
-        return self.of(part) if shown is part else self._shape(shown, partial(_shape_bytes, shown))
+        return self.of(for_pictures(part))
 
     def text_of(self, part: Part) -> bytes:
         """The part's shape as the kernel's own text (BREP)."""
-        return self.cache.get_or_make(self._key(part), partial(self._built, part))
 
-    def _key(self, part: Part) -> str:
-        return f"shape {self.made_by} {digest(part)}"
+        def make() -> bytes:
+            from tactcad.solids.build import build
+            from tactcad.solids.step import to_bytes
 
-    def _shape(self, part: Part, make: Callable[[], bytes]) -> TopoDS_Shape:
-        if part.part_no not in self._known:
-            from tactcad.solids.step import from_bytes
+            self.built.append(part.part_no)
+            return to_bytes(build(part))
 
-            # always through the text, so that a shape from the cache and one just built give equal files
-            self._known[part.part_no] = from_bytes(self.cache.get_or_make(self._key(part), make))
-        return self._known[part.part_no]
-
-    def _built(self, part: Part) -> bytes:
-        self.built.append(part.part_no)
-        return _shape_bytes(part)
-
-
-def _shape_bytes(part: Part) -> bytes:
-    from tactcad.solids.build import build
-    from tactcad.solids.step import to_bytes
-
-    return to_bytes(build(part))
+        return self.cache.get_or_make(f"shape {self.made_by} {digest(part)}", make)
 
 
 def picture_bytes(

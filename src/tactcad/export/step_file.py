@@ -19,7 +19,6 @@ from OCP.TDataStd import TDataStd_Name
 from OCP.TDF import TDF_Label
 from OCP.TDocStd import TDocStd_Document
 from OCP.TopAbs import TopAbs_SOLID
-from OCP.TopExp import TopExp_Explorer
 from OCP.TopoDS import TopoDS_Shape
 from OCP.XCAFDoc import XCAFDoc_ColorSurf, XCAFDoc_DocumentTool, XCAFDoc_ShapeTool
 
@@ -28,7 +27,7 @@ from tactcad.parts.language.description import Part
 from tactcad.profiling import under_way
 from tactcad.scenes.scene import Placement, Scene
 from tactcad.solids.measure import volume
-from tactcad.solids.occt import TDF_LabelSequence, location
+from tactcad.solids.occt import TDF_LabelSequence, location, subshapes
 from tactcad.solids.step import leave_unmended, set_up_writer, silence
 from tactcad.solids.valid import is_clear_prism, is_valid
 
@@ -228,7 +227,7 @@ def assembly_in(document: TDocStd_Document) -> Assembly:
         _name_of(top),
         tuple(instances),
         shapes,
-        {name: tuple(map(volume, _solids(shape))) for name, shape in shapes.items()},
+        {name: tuple(map(volume, subshapes(shape, TopAbs_SOLID))) for name, shape in shapes.items()},
         all(is_valid(shape, is_clear_prism(shape)) for shape in shapes.values()),
     )
 
@@ -236,14 +235,6 @@ def assembly_in(document: TDocStd_Document) -> Assembly:
 def _name_of(label: TDF_Label) -> str:
     name = TDataStd_Name()
     return name.Get().ToExtString() if label.FindAttribute(TDataStd_Name.GetID_s(), name) else ""
-
-
-def _solids(shape: TopoDS_Shape) -> list[TopoDS_Shape]:
-    explorer, solids = TopExp_Explorer(shape, TopAbs_SOLID), []
-    while explorer.More():
-        solids.append(explorer.Current())
-        explorer.Next()
-    return solids
 
 
 def check_part(data: bytes, read: Assembly, part: Part) -> None:

@@ -14,8 +14,8 @@ from functools import cached_property
 from html import escape
 from math import ceil, pi
 
-from tactcad.contour import Arc, Contour, Line, Point, Segment, circle, rectangle
-from tactcad.contour.segment import turned
+from tactcad.contour import Arc, Contour, Line, Point, circle, rectangle
+from tactcad.contour.segment import mapped, turned
 from tactcad.export.dxf import layered_dxf
 from tactcad.parts.language.description import Extrusion, Part
 from tactcad.parts.language.stock import cut_section, stock_of
@@ -44,11 +44,9 @@ class NestedPiece:
 
     def _placed(self, contour: Contour) -> Contour:
         x0, y0, _, y1 = self.section.outer.box
-        if not self.quarter:
-            return Contour(tuple(_moved(s, self.x - x0, self.y - y0) for s in contour))
-        return Contour(
-            tuple(_moved(turned(s, (0.0, 0.0), pi / 2), self.x + y1, self.y - x0) for s in contour)
-        )
+        dx, dy = (y1, -x0) if self.quarter else (-x0, -y0)
+        run = (turned(s, (0.0, 0.0), pi / 2) if self.quarter else s for s in contour)
+        return Contour(tuple(mapped(s, lambda p: (p[0] + (self.x + dx), p[1] + (self.y + dy))) for s in run))
 
     @cached_property
     def contours(self) -> tuple[Contour, ...]:
@@ -107,13 +105,6 @@ def _tab(outline: Contour) -> Line:
     side = max(sides or flat, key=lambda s: round(s.length, 6))
     share = min(TAB / side.length, 1.0) / 2
     return Line(side.at(0.5 - share), side.at(0.5 + share))
-
-
-def _moved(s: Segment, dx: float, dy: float) -> Segment:
-    start, end = ((x + dx, y + dy) for x, y in (s.start, s.end))
-    if isinstance(s, Line):
-        return replace(s, start=start, end=end)
-    return replace(s, start=start, end=end, centre=(s.centre[0] + dx, s.centre[1] + dy))
 
 
 def nests(ordered: Iterable[tuple[Part, int, int]], wire: bool) -> list[Nest]:

@@ -11,7 +11,7 @@ from tactcad.checks.shop import Machining
 from tactcad.contour import Arc, Contour
 from tactcad.contour.inside import clearance, side
 from tactcad.contour.nearest import distance
-from tactcad.contour.necks import direction
+from tactcad.contour.segment import direction
 from tactcad.parts.language.description import (
     Extrusion,
     Hole,

@@ -20,7 +20,7 @@ from math import atan2, degrees, hypot
 import numpy as np
 
 from tactcad.contour import Arc, Contour, Line
-from tactcad.contour.necks import direction
+from tactcad.contour.segment import direction, mapped
 from tactcad.parts.language.description import Extrusion, Hole, Part, Pocket, Revolution, Vector
 
 
@@ -130,15 +130,7 @@ def in_part(pocket: Pocket, contour: Contour) -> Contour:
         x, y, _ = pocket.at
         return (round(x + p[0] * ux + p[1] * vx, 12), round(y + p[0] * uy + p[1] * vy, 12))
 
-    turned = ux * vy - uy * vx < 0
-    return Contour(
-        tuple(
-            Line(at(s.start), at(s.end), s.name)
-            if isinstance(s, Line)
-            else Arc(at(s.start), at(s.end), at(s.centre), s.ccw != turned, s.name)
-            for s in contour
-        )
-    )
+    return Contour(tuple(mapped(s, at, ux * vy - uy * vx < 0) for s in contour))
 
 
 def xy(point: Spot) -> tuple[Variable, Variable]:
