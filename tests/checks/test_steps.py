@@ -20,7 +20,7 @@ from tactcad.parts.rigs import stand
 from tactcad.parts.rules import load
 from tactcad.scenes import make_scene, scene_names
 from tactcad.scenes.builder import Builder
-from tactcad.scenes.moves import TWEEZED, guide_json, settles, step_moves
+from tactcad.scenes.moves import CLAMP, TWEEZED, guide_json, settles, step_moves
 from tactcad.scenes.scene import DOWN, STILL, Contact, Held, Move, Need, Placement, Scene, Step
 
 pytestmark = pytest.mark.cad
@@ -158,6 +158,25 @@ def test_one_hand_holds_what_the_other_screws(beside, over, free, shelf):
     said = [f.message for f in found(made) if f.check == "fingers"]
     none = "step 'SC1': C1: no fingertip presses it down, and no two hold it, 100 mm apart at most, while SC1"
     assert [m.startswith(none) for m in said] == ([] if free else [True])
+
+
+@pytest.mark.parametrize(
+    ("wide", "tools", "most"), [(120, (), 100), (120, (CLAMP,), 0), (310, (CLAMP,), 300)]
+)
+def test_a_clamp_holds_what_a_hand_does_not_span(wide, tools, most):
+    """A cover too wide for a hand, screwed from below: by the jaws of a clamp, up to its opening."""
+    cover = Placement("C1", block("COVER-WIDE", wide, wide, 10, *TAPPED.features), (0, 0, 20))
+    plate = Placement(
+        "P1",
+        block("PLATE-WIDE", wide, wide, 10, Hole("screw", (0, 0, 10), (0, 0, -1), 3.4, 10, True)),
+        (0, 0, 10),
+    )
+    screw = Placement("SC1", cap_screw("M3", 16.0), (0, 0, 10), ((1, 0, 0), (0, 1, 0), (0, 0, 1)))
+    met = (Contact("SC1", "C1", "thread"), Contact("SC1", "P1", "touch"), Contact("C1", "P1", "touch"))
+    last = step("SC1", tools=tools)
+    made = Scene("wide", (plate, cover, screw), met, steps=(step("P1"), step("C1"), last))
+    said = [f.message for f in found(made) if f.check == "fingers"]
+    assert len(said) == bool(most) and all(f"{most} mm apart at most" in message for message in said)
 
 
 def test_a_spanner_wants_room_to_turn():

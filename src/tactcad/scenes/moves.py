@@ -29,6 +29,7 @@ TWEEZED = "tweezers"
 # from Dandekar et al., J. Biomech. Eng. 125, 2003; not read).
 FINGERTIP = (12.0, 10.0)
 PRESS = "arbor press or vice with soft jaws"
+CLAMP = "hand clamp, soft jaws"
 
 Box = tuple[Vector, Vector]
 

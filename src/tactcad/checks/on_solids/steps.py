@@ -22,7 +22,7 @@ from tactcad.parts.array.layout import LEVER
 from tactcad.parts.language.description import Vector
 from tactcad.parts.language.finding import Finding
 from tactcad.parts.language.metric import METRIC
-from tactcad.scenes.moves import FINGERTIP, PRESS, TWEEZED, Moment, entering, moments
+from tactcad.scenes.moves import CLAMP, FINGERTIP, PRESS, TWEEZED, Moment, entering, moments
 from tactcad.scenes.scene import FREEDOMS, HAND, STILL, Held, Placement, Scene, Step
 from tactcad.solids.build import build
 from tactcad.solids.changed import closed
@@ -47,6 +47,7 @@ GRIP = 4.0  # mm of a pin's end that two fingertips cover
 FINGER = 40.0  # mm of a finger behind its tip; chosen: two of its joints
 HEADED = ("cap screw", "nut")  # a set screw presses by itself on what it holds
 SPAN = 100.0  # mm between thumb and finger of one hand; chosen: half an adult's span
+OPENING = 300.0  # mm between a hand clamp's jaws, as wide as fingertips; chosen: a usual small bar clamp's
 TWEEZERS, TWEEZERS_LONG = (1.0, 1.0), 20.0  # mm: the tip of plastic ones, and behind it; chosen
 # Chosen, in mm: an arbor press's ram over a pin, and the wall of the sleeve that is its stop; an open-ended
 # spanner of a usual kind: its head over the flats, its handle's length from the nut, its thickness.
@@ -352,7 +353,9 @@ class Trial:
 
     def _held_room(self, step: Step, moment: Moment, loose: Sequence[str]) -> Iterator[Finding]:
         """While a part's first screw is driven one hand holds it: by a fingertip that presses it on what it
-        stands on, or else by two fingertips opposite each other; the other hand has the key."""
+        stands on, or else by two fingertips opposite each other, or the jaws of a clamp that the step names;
+        the other hand has the key."""
+        span = OPENING if CLAMP in step.tools else SPAN
         (name,) = moment.move.designators
         at, boxes = np.array(moment.move.path[-1]), self._standing(moment)
         driven = [self._mesh(self.placed[name]).translate(list(self.placed[name].origin + at))]
@@ -380,11 +383,11 @@ class Trial:
         largest = sorted(loose, key=lambda n: -float(np.prod(boxes[n][1] - boxes[n][0])))
         for n, k, (low, wide) in product(largest, (0, 1, 2), tips):
             near, far = (_fingertip(boxes[n], k, side, low, wide, FINGER) for side in (0, 1))
-            if boxes[n][1][k] - boxes[n][0][k] <= SPAN and free(near) and free(far):
+            if boxes[n][1][k] - boxes[n][0][k] <= span and free(near) and free(far):
                 return
         message = (
             f"step '{step.title}': {' '.join(loose)}: no fingertip presses it down, and no two hold it, "
-            f"{SPAN:g} mm apart at most, while {name} is driven"
+            f"{span:g} mm apart at most, while {name} is driven"
         )
         yield Finding("fingers", "fail", loose[0], (), 0.0, THICK, message)
 

@@ -15,7 +15,7 @@ from tactcad.parts.language.limits import Characteristic
 from tactcad.parts.language.stock import PLACE
 from tactcad.scenes import scene_names
 from tactcad.scenes.builder import Builder, telling
-from tactcad.scenes.moves import PRESS
+from tactcad.scenes.moves import CLAMP, PRESS
 from tactcad.scenes.requirement import LEAST_PRESS, Deviations, DimensionLimits, Requirement, summed, variable
 from tactcad.scenes.rig import ARRAY, plain_rig, rig_of
 from tactcad.scenes.scene import Scene
@@ -104,7 +104,7 @@ def scene(design: PlanarDesign, _pose: object = None) -> Scene:
         length = parts.screw_length(layout) or 0.0
         for x, y in parts.screw_places(layout):
             b.screw(parts.SCREW, length, (x, y, layout.board_z - design.hall.board), (0, 0, 1), board, cover)
-        b.step("Screws", (0, 0, -45), said("Screws"), tools=("hand clamp, soft jaws",))
+        b.step("Screws", (0, 0, -45), said("Screws"), tools=(CLAMP,))
     else:
         b.supplies += bill_lines("cells adhesive", {})
     b.supplies += cell_board.supplies(layout)
