@@ -117,14 +117,13 @@ def as_json(done: PressedArray, design: str) -> object:
             "approach": done.approach,
             "signal_unit": done.signal_unit[0],
             "expected_error": done.expected_error,
-            "elements": [{"no": e.number} | _without_number(e) for e in done.elements],
+            "elements": [
+                {"no" if name == "number" else name: value for name, value in vars(e).items()}
+                for e in done.elements
+            ],
             "pairs": done.pairs,
         }
     )
-
-
-def _without_number(element: object) -> dict[str, object]:
-    return {name: value for name, value in vars(element).items() if name != "number"}
 
 
 def as_text(done: PressedArray) -> str:

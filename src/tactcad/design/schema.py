@@ -126,13 +126,10 @@ def table_schema(kind: type) -> dict[str, Any]:
         if "spec" not in f.metadata:
             continue
         spec = f.metadata["spec"]
-        properties[f.name] = {**spec.schema(), "description": _described(spec)}
+        described = f"{spec.meaning} ({spec.unit})" if spec.unit else spec.meaning
+        properties[f.name] = {**spec.schema(), "description": described}
         if f.default is dataclasses.MISSING:
             required.append(f.name)
         elif f.default is not None:
             properties[f.name]["default"] = f.default
     return {"type": "object", "properties": properties, "required": required, "additionalProperties": False}
-
-
-def _described(spec: Spec) -> str:
-    return f"{spec.meaning} ({spec.unit})" if spec.unit else spec.meaning

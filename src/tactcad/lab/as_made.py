@@ -197,7 +197,10 @@ def report(design: Design, rung: str, rows: Sequence[AsMade]) -> str:
     outside, undecided = ([r for r in readings if r.verdict == v] for v in ("outside", "undecided"))
     lines += [f"outside its tolerance: {_reading_text(r)}" for r in outside]
     lines += [f"undecided, the uncertainty reaches across a limit: {_reading_text(r)}" for r in undecided]
-    return "\n".join(lines + _missing(readings) + _plastic(rows))
+    lines += _missing(readings)
+    if plastic := ", ".join(str(row.number) for row in rows if not row.made.elastic):
+        lines.append(f"invalid: above yield at this force as made: no. {plastic}")
+    return "\n".join(lines)
 
 
 def _cells(row: AsMade) -> list[str]:
@@ -243,11 +246,6 @@ def _missing(readings: Sequence[Reading]) -> list[str]:
 
 def _which(some: Sequence[Reading], all_: Sequence[Reading]) -> str:
     return "every element" if len(some) == len(all_) else "no. " + ", ".join(str(r.number) for r in some)
-
-
-def _plastic(rows: Sequence[AsMade]) -> list[str]:
-    numbers = ", ".join(str(row.number) for row in rows if not row.made.elastic)
-    return [f"invalid: above yield at this force as made: no. {numbers}"] if numbers else []
 
 
 def document(design: Design, rung: str, rows: Sequence[AsMade]) -> dict[str, Any]:

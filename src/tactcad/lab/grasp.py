@@ -426,14 +426,10 @@ def _limits(
 
 def coupled(slopes: list[Slopes], coupling: np.ndarray) -> list[Slopes]:
     """The slopes at shares of a coupling, [element, element], and at the same of an even one."""
-    shapes = (coupling, _even(coupling))
-    return [each.coupled(share * shape) for shape in shapes for share in COUPLED for each in slopes]
-
-
-def _even(coupling: np.ndarray) -> np.ndarray:
-    """A coupling that is equal between any two pads: the mean of the given one."""
     n = len(coupling)
-    return np.full((n, n), (coupling.sum() - np.trace(coupling)) / (n * (n - 1)))
+    even = np.full((n, n), (coupling.sum() - np.trace(coupling)) / (n * (n - 1)))  # between any two the mean
+    shapes = (coupling, even)
+    return [each.coupled(share * shape) for shape in shapes for share in COUPLED for each in slopes]
 
 
 def drift_terms(load: np.ndarray, time: np.ndarray) -> np.ndarray | None:
