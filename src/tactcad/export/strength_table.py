@@ -7,9 +7,9 @@ import numpy as np
 
 from tactcad.design.files import as_csv
 from tactcad.design.tree import Design
-from tactcad.mechanics import ladder, strength
+from tactcad.mechanics import strength
 from tactcad.parts.array.element import element_number
-from tactcad.parts.array.hinge_section import design_alloy, hinge_section
+from tactcad.parts.array.hinge_section import design_alloy, hinges
 from tactcad.parts.array.layout import Layout
 from tactcad.parts.array.stop_gap import overloads
 
@@ -20,9 +20,7 @@ def elements(design: Design) -> dict[str, dict]:
     """Hinge, stiffness (N/mm) and force at yield (N) of every element by the default rung; None outside its
     range."""
     layout = Layout(design)
-    hinges = hinge_section(layout, layout.elements)
-    known = ladder.evaluate(hinges, ladder.DEFAULT_RUNG)
-    at_yield = strength.yield_force_where_known(hinges, design_alloy(design))
+    known = hinges(layout)
     return {
         place.designator: {
             "part_no": element_number(design, place),
@@ -32,10 +30,10 @@ def elements(design: Design) -> dict[str, dict]:
             "hinge_length_mm": place.hinge.l,
             "fillet_radius_mm": place.hinge.r,
             "arm_height_mm": place.hinge.h,
-            "stiffness_n_per_mm": float(K) if valid else None,
-            "yield_force_n": float(force) if valid else None,
+            "stiffness_n_per_mm": None if why else float(K),
+            "yield_force_n": None if why else float(force),
         }
-        for place, K, force, valid in zip(layout.elements, known.stiffness, at_yield, known.valid)
+        for place, K, force, why in zip(layout.elements, known.stiffness, known.yield_force, known.broken)
     }
 
 
@@ -47,10 +45,8 @@ def strength_bytes(layout: Layout) -> bytes:
     blank and the last column gives the reason.
     """
     design, places = layout.design, layout.elements
-    section, alloy = hinge_section(layout, places), design_alloy(design)
-    stiffness = ladder.evaluate(section, ladder.DEFAULT_RUNG).stiffness
-    yields = strength.yield_force_where_known(section, alloy)
-    states = overloads(layout)
+    known, alloy, states = hinges(layout), design_alloy(design), overloads(layout)
+    stiffness, yields = known.stiffness, known.yield_force
     rated = np.array([state.rated_force for state in states])
     goodman = strength.goodman(alloy, rated * alloy.yield_strength / yields)
     rows = []

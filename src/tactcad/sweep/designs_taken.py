@@ -15,23 +15,23 @@ A field of a design is named by its path, as in messages: "element.hinge_thickne
 
 from __future__ import annotations
 
+import dataclasses
+import re
 import warnings
+from dataclasses import replace
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-if TYPE_CHECKING:
-    from .study import Study, Varied
-import dataclasses
-import re
-from dataclasses import replace
-
 from tactcad.design.family import family_of
 from tactcad.design.fields import NumberRows, Numbers, Spec
 from tactcad.design.load import paths
 from tactcad.design.tree import CommonTables, Hinge
+
+if TYPE_CHECKING:
+    from .study import Study, Varied
 
 _PLACE = re.compile(r"(?P<field>[^\[\]]+)(?P<places>(?:\[(?:0|[1-9][0-9]{0,3})\])*)")
 _OVERRIDE = re.compile(r"override\.(?P<number>[1-9][0-9]{0,3})\.(?P<name>\w+)")

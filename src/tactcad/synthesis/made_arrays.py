@@ -360,12 +360,12 @@ def variance_shares(sensor: MadeSensor, count: int = COUNT, seed: int = SHARES_S
     some = {k: v for k, v in others.items() if v.element or k in (IN_PLAY, SHEET, MODULUS)}
     variables = {k: replace(v, wire=0) for k, v in some.items()}  # shares are of causes that are independent
     n = len(sensor.drawn.stiffness)
+    by_belief = {"calibrated": (CALIBRATION,), "inspected": (GAUGES, INSPECTION), "drawn": (GAUGES,)}
+    apiece = (READINGS, CONTACT, *by_belief[sensor.target.known.how])
 
     def draw() -> dict[str, Array]:
         parts = made(variables, count, "normal", rng)
-        causes = {
-            name: rng.standard_normal((count, n, 2)) for name in (READINGS, CONTACT, *_of_belief(sensor))
-        }
+        causes = {name: rng.standard_normal((count, n, 2)) for name in apiece}
         alike = {name: rng.uniform(-1.0, 1.0, count) for name in (CELL, COUPLING)}
         soft = dict(zip((LAYER, CLAMP), sensor.softening(count, "normal", rng)))
         return {**parts, **causes, **alike, **soft}
@@ -426,9 +426,3 @@ def _estimator(sensor: MadeSensor, rest: dict[str, Array]) -> Callable[[dict[str
         return -np.log(x / at + x * known.load_cell * causes[CELL])
 
     return estimate
-
-
-def _of_belief(sensor: MadeSensor) -> tuple[str, ...]:
-    """Causes by the knowledge of the elements."""
-    how = sensor.target.known.how
-    return {"calibrated": (CALIBRATION,), "inspected": (GAUGES, INSPECTION), "drawn": (GAUGES,)}[how]

@@ -234,11 +234,6 @@ def _elements(got: Synthesis) -> list[dict[str, Any]]:
     ]
 
 
-def report_json(got: Synthesis) -> bytes:
-    """The record as JSON."""
-    return (json.dumps(record(got), indent=1) + "\n").encode()
-
-
 def report_page(got: Synthesis) -> bytes:
     """The page (HTML, UTF-8), pictures inside."""
     r = record(got)
@@ -650,4 +645,5 @@ def complete(got: Synthesis, out: str | Path) -> None:
 
 
 def _report(got: Synthesis) -> dict[str, bytes]:
-    return {"report.json": report_json(got), "report.html": report_page(got)}
+    text = json.dumps(record(got), indent=1) + "\n"
+    return {"report.json": text.encode(), "report.html": report_page(got)}

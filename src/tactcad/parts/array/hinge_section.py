@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Callable, Sequence
-from functools import cache
+from dataclasses import dataclass
+from functools import cache, lru_cache
 from operator import attrgetter
 from typing import TypeVar
 
@@ -13,7 +14,7 @@ import numpy as np
 from tactcad.design.materials import ALLOYS, OPTIONAL, PROPERTIES, Alloy
 from tactcad.design.sensing import ADC_NOISE, AMPLIFIERS, MULTIPLEXERS, SWITCHES, Converter
 from tactcad.design.tree import Design
-from tactcad.mechanics import ladder, validity
+from tactcad.mechanics import ladder, strength, validity
 from tactcad.mechanics.gauge_signal import Gauge
 from tactcad.mechanics.ladder import elasticity
 from tactcad.mechanics.readout import ReadOut, sample_noise, transmission
@@ -46,6 +47,30 @@ def hinge_section(layout: Layout, places: Sequence[ElementPlace]) -> HingeSectio
     own = [own_parameters(p.hinge, p.load_arm, p.body_length) for p in places]
     stacked = {n: np.stack(np.broadcast_arrays(*(each[n] for each in own)), axis=-1) for n in own[0]}
     return HingeSection.of(**stacked, **shared_parameters(layout.design))
+
+
+@dataclass(frozen=True)
+class Hinges:
+    """Every element's hinge by the default rung, by number; NaN beyond its range.
+
+    stiffness    K, N/mm
+    yield_force  N at the pad
+    broken       why the estimator refuses it (a validity.Reason, or None)
+    """
+
+    section: HingeSection
+    stiffness: Array
+    yield_force: Array
+    broken: np.ndarray
+
+
+@lru_cache(maxsize=16)
+def hinges(layout: Layout) -> Hinges:
+    """The layout's hinges, computed once."""
+    s = hinge_section(layout, layout.elements)
+    known = ladder.evaluate(s)
+    at_yield = strength.yield_force_where_known(s, design_alloy(layout.design))
+    return Hinges(s, known.stiffness, at_yield, known.broken)
 
 
 def arms(layout: Layout) -> Array:

@@ -117,26 +117,27 @@ class Layout:
     @cached_property
     def elements(self) -> tuple[ElementPlace, ...]:
         """Every element, by number."""
-        places: list[ElementPlace] = []
-        for row, arms in enumerate(self.design.array.row_arms, start=1):
-            for index, arm in enumerate(arms):
-                number = len(places) + 1
-                hinge = self.hinge_of(number)
-                hinge_x = self.pad_inner + arm
-                places.append(
-                    ElementPlace(
-                        number=number,
-                        row=row,
-                        index=index,
-                        y=self.position_y(index),
-                        arm=arm,
-                        hinge=hinge,
-                        hinge_x=hinge_x,
-                        load_arm=arm - self.design.element.pad_length / 2,
-                        body_length=rounded(self.clamp_edge - hinge_x - hinge.l / 2, 9),
-                    )
-                )
-        return tuple(places)
+        return tuple(
+            ElementPlace(
+                number=number,
+                row=row,
+                index=index,
+                y=self.position_y(index),
+                arm=arm,
+                hinge=hinge,
+                hinge_x=self.pad_inner + arm,
+                load_arm=arm - self.design.element.pad_length / 2,
+                body_length=rounded(self.clamp_edge - (self.pad_inner + arm) - hinge.l / 2, 9),
+            )
+            for number, row, index, arm, hinge in self._arms
+        )
+
+    @cached_property
+    def _arms(self) -> tuple[tuple[int, int, int, float, HingeShape], ...]:
+        """Number, row, index, arm and hinge of every element."""
+        rows = enumerate(self.design.array.row_arms, start=1)
+        arms = [(row, index, arm) for row, arms in rows for index, arm in enumerate(arms)]
+        return tuple((n, *arm, self.hinge_of(n)) for n, arm in enumerate(arms, start=1))
 
     @property
     def common_hinge(self) -> HingeShape:
@@ -156,12 +157,7 @@ class Layout:
     def clamp_edge(self) -> float:
         """x where spacers and rear bodies begin, one line for all arms: the longest arm's seat behind its
         slot."""
-        ends = []
-        number = 0
-        for arms in self.design.array.row_arms:
-            for arm in arms:
-                number += 1
-                ends.append(self.pad_inner + arm + self.hinge_of(number).l / 2)
+        ends = [self.pad_inner + arm + hinge.l / 2 for *_, arm, hinge in self._arms]
         # rounded to a nanometre, so that one decimal design does not become 11.399999999999999
         return rounded(reduce(larger, ends) + self.design.element.seat_length, 6)
 

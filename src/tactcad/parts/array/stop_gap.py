@@ -12,7 +12,7 @@ from math import floor, hypot, sqrt
 import numpy as np
 
 from tactcad.design.materials import ALLOYS
-from tactcad.mechanics import ladder, strain, strength, validity
+from tactcad.mechanics import ladder, strain, strength
 from tactcad.mechanics.section import Array
 from tactcad.mechanics.strength import (
     deflection_share,
@@ -25,7 +25,7 @@ from tactcad.mechanics.strength import (
 
 from ..bought.standard_parts import dowel_diameter
 from .clamp import STOP_PLATE_FLAT, lean
-from .hinge_section import arms, design_alloy, hinge_section, in_design
+from .hinge_section import arms, design_alloy, hinges, in_design
 from .layout import ElementPlace, HingeShape, Layout
 
 # Gaps are cut in steps of half their usual tolerance; below ten of them, finer.
@@ -72,7 +72,7 @@ def unrated_gap(layout: Layout, place: ElementPlace) -> tuple[str, ...]:
     blank, since it is out of the estimator's range. No note if [stop.gaps] lists the arm."""
     if layout.design.stop.gaps and place.arm in layout.design.stop.gaps:
         return ()
-    (why,) = validity.first_broken(hinge_section(layout, (place,)), ladder.DEFAULT_RUNG)
+    why = hinges(layout).broken[place.number - 1]
     if why is None:
         return ()
     return (
@@ -115,7 +115,7 @@ def stop_limits(layout: Layout, give: float | None = None) -> StopLimits:
         If an element has no hinge.
     """
     d = layout.design
-    s, arm, overload = hinge_section(layout, layout.elements), arms(layout), d.rating.overload_force
+    s, arm, overload = hinges(layout).section, arms(layout), d.rating.overload_force
     ladder.require_range(s, "section")
     K, give = ladder.stiffness_beyond_the_fit(s), layout.stop_give if give is None else give
     rated = d.material.yield_strength / d.rating.deflection_factor / strain.stress_beyond_the_fit(s, 1.0)
@@ -175,18 +175,22 @@ class Overload:
 
 def overloads(layout: Layout) -> list[Overload]:
     """Every element of the layout, by number."""
-    design, places = layout.design, layout.elements
+    design, places, known = layout.design, layout.elements, hinges(layout)
     load, rating = design.rating.overload_force, design.rating
-    s, alloy, arm = hinge_section(layout, places), design_alloy(design), arms(layout)
-    known = ladder.evaluate(s, ladder.DEFAULT_RUNG)
-    K, gap, give = known.stiffness, np.array(stop_gaps(layout)), layout.stop_give
+    s, K, yields, alloy, arm = (
+        known.section,
+        known.stiffness,
+        known.yield_force,
+        design_alloy(design),
+        arms(layout),
+    )
+    gap, give = np.array(stop_gaps(layout)), layout.stop_give
     tip, tolerance = tip_compliance(s, K, arm), design.stop.tolerance
     largest = gap + tolerance + seat(layout)
     closing = np.minimum(largest / tip, load)
     beyond = load - closing
     # beyond the estimator's range K is NaN, and so are all figures but the gap
     stress = overload_stress(s, K, arm, give, closing, load)
-    yields = strength.yield_force_where_known(s, alloy)
     figures = {
         "gap": largest,
         "earliest": (gap - tolerance) / tip,

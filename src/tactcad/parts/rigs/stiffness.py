@@ -250,16 +250,14 @@ class CalibrationLoad:
 
 def calibration_loads(design: Design) -> tuple[CalibrationLoad, ...]:
     """Every element, by number."""
-    from tactcad.mechanics import ladder, strength  # numpy, which only checks and guides need
+    from tactcad.mechanics import strength  # numpy, which only checks and guides need
 
-    from ..array.hinge_section import design_alloy, hinge_section, in_design
+    from ..array.hinge_section import hinges, in_design
 
     c, layout = present(design.calibration), Layout(design)
-    s = hinge_section(layout, layout.elements)
-    known = ladder.evaluate(s, ladder.DEFAULT_RUNG)
-    yields = strength.yield_force_where_known(s, design_alloy(design))
+    known = hinges(layout)
     loads = []
-    for place, K, why, at_yield in zip(layout.elements, known.stiffness, known.broken, yields):
+    for place, K, why, at_yield in zip(layout.elements, known.stiffness, known.broken, known.yield_force):
         share = c.load_cell_stiffness / (c.load_cell_stiffness + K)
         rated = strength.rated_deflection(at_yield, K, design.rating)
         deflection = c.travel * share
