@@ -192,75 +192,32 @@ def extreme_deviates(
     list of int
         Indices of at most a tenth of the readings, the furthest off first.
     """
-    n = len(x)
-    left = _Left(x, y, run, weight)
+    n, left = len(x), np.arange(len(x))
     smallest = float(rounding(y[:, None])[0])
     removed: list[int] = []
     outliers = 0
     for step in range(max(1, n // 10)):
-        dof = n - step - left.runs - 1
-        if dof < 2 or step - outliers > PATIENCE or left.sxx <= np.finfo(float).tiny:
+        dof = len(left) - len(np.unique(run[left])) - 1
+        if dof < 2 or step - outliers > PATIENCE or spare_steps(x[left], run[left]) < 0:
             break
-        scale = sqrt(left.sum_of_squares() / dof)
+        lines = fit_lines(x[left], y[left, None], run[left], weight[left])
+        residual = lines.residual[:, 0] * np.sqrt(lines.weight)
+        scale = sqrt(float(residual @ residual) / dof)
         if scale <= smallest:
             break
-        worst, deviate = left.worst()
+        deviate = np.abs(residual) / np.sqrt(np.maximum(1 - lines.leverage, 1e-12))
+        worst = int(deviate.argmax())
+        removed.append(int(left[worst]))
         t = float(stdtrit(dof - 1, 1 - alpha / (2 * (n - step))))
-        removed.append(worst)
-        if deviate / scale > t * sqrt(dof / (dof - 1 + t * t)):
+        if deviate[worst] / scale > t * sqrt(dof / (dof - 1 + t * t)):
             outliers = step + 1
-        left.remove(worst)
+        left = np.delete(left, worst)
     return removed[:outliers]
 
 
 # Largest number of bad readings that may mask one another; more costs time and finds nothing in good data. Of
 # up to 200 readings a tenth is tried.
 PATIENCE = 20
-
-
-class _Left:
-    """The fit of one response to the readings that are left, updated as readings are removed one by one.
-
-    The runs' means and the slope change in closed form (least squares with one row deleted), so that a
-    removal costs a few sums and no fit.
-    """
-
-    def __init__(self, x: np.ndarray, y: np.ndarray, run: np.ndarray, weight: np.ndarray) -> None:
-        runs, self.run = np.unique(run, return_inverse=True)
-        self.runs = len(runs)
-        self.w = weight / weight.mean()
-        self.total = np.bincount(self.run, self.w)[self.run]  # weight of each one's run
-        self.x, yc = (v - np.bincount(self.run, self.w * v)[self.run] / self.total for v in (x, y))
-        self.sxx = float(self.w @ self.x**2)
-        self.residual = yc - ((self.w * self.x) @ yc / self.sxx if self.sxx else 0.0) * self.x
-
-    def sum_of_squares(self) -> float:
-        return float(self.w @ self.residual**2)
-
-    def worst(self) -> tuple[int, float]:
-        """Index of the reading with the largest weighted residual after scaling by its leverage, and that
-        residual."""
-        unexplained = np.maximum(1 - self.w * (1 / self.total + self.x**2 / self.sxx), 1e-12)
-        square = self.w * self.residual**2 / unexplained
-        i = int(square.argmax())
-        return i, sqrt(square[i])
-
-    def remove(self, i: int) -> None:
-        """Remove reading i: it stays in the arrays as a run of its own without residual."""
-        x, r, w, total = (float(v[i]) for v in (self.x, self.residual, self.w, self.total))
-        same_run = self.run == self.run[i]
-        self.run[i], self.x[i], self.residual[i], self.total[i] = -1 - i, 0.0, 0.0, w
-        same_run[i] = False
-        if not same_run.any():
-            self.runs -= 1
-            return
-        rest = total - w
-        self.sxx -= w * x * x * total / rest
-        change = -w * x * r * total / rest / self.sxx if self.sxx > 0 else 0.0  # of the slope
-        self.residual -= change * self.x
-        self.residual[same_run] += w * (r - change * x) / rest
-        self.x[same_run] += w * x / rest
-        self.total[same_run] = rest
 
 
 @dataclass(frozen=True)
