@@ -392,8 +392,7 @@ def solid(part: Part, shapes: Shapes) -> bool:
 
 
 def part_facts(part: Part, shapes: Shapes) -> dict:
-    """The kernel's measurements on a part (mm): surface area, volume, centre, box; compared with the closed
-    forms."""
+    """The kernel's measurements on a part (solids/measure.py), compared with the closed forms."""
     key = f"facts {shapes.made_by} {digest(part)}"
     return json.loads(shapes.cache.get_or_make(key, lambda: json.dumps(_measured(part, shapes)).encode()))
 

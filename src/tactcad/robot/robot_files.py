@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Collection, Iterator, Sequence
 from functools import partial
 from pathlib import PurePosixPath
@@ -14,7 +13,7 @@ from tactcad.design.family import family_of
 from tactcad.design.messages import InputError
 from tactcad.export.inputs import digest
 from tactcad.export.part_formats.usual import part_stl
-from tactcad.export.products import Batch, Output, Plan
+from tactcad.export.products import Batch, Output, Plan, part_facts
 from tactcad.export.shapes import Shapes
 from tactcad.parts.language.description import NOT_MADE, Part
 from tactcad.scenes.scene import Placement
@@ -78,24 +77,13 @@ def solids(mechanism: Mechanism, shapes: Shapes, drawn: bool) -> tuple[Solid, tu
     return base, tuple(arms)
 
 
-def _measured(part: Part, shapes: Shapes) -> dict:
-    """Volume, centre, inertia (mm, density 1) and box of a part, by the kernel."""
-
-    def measured() -> bytes:
-        from tactcad.solids.measure import bounding_box, moments
-
-        return json.dumps(moments(shapes.of(part)) | {"box": bounding_box(shapes.of(part))}).encode()
-
-    return json.loads(shapes.cache.get_or_make(f"moments {shapes.made_by} {digest(part)}", measured))
-
-
 def _inertia(p: Placement, shapes: Shapes) -> Inertia:
-    facts, R, mass = _measured(p.part, shapes), np.array(p.rotation), MM * p.part.mass
+    facts, R, mass = part_facts(p.part, shapes), np.array(p.rotation), MM * p.part.mass
     tensor = R @ np.array(facts["inertia"]) @ R.T * mass / facts["volume"] * MM**2
     return Inertia(mass, MM * (R @ np.array(facts["centre"]) + p.origin), tensor)
 
 
 def _box(p: Placement, shapes: Shapes) -> tuple[np.ndarray, np.ndarray]:
     """Middle and half sides, m, of an axis-parallel part."""
-    (low, high), R = np.array(_measured(p.part, shapes)["box"]), np.array(p.rotation)
+    (low, high), R = np.array(part_facts(p.part, shapes)["box"]), np.array(p.rotation)
     return MM * (R @ (low + high) / 2 + p.origin), MM * np.abs(R) @ (high - low) / 2

@@ -29,17 +29,18 @@ def measure(shape: TopoDS_Shape) -> dict:
     Returns
     -------
     dict
-        `volume` (mm3), `area` of the surface (mm2), `centre` of mass (mm), and `box` as (least, largest)
-        corner (mm).
+        `volume` (mm3), `area` of the surface (mm2), `centre` of mass (mm), `inertia` about that at density
+        1, 3 x 3 (mm5), and `box` as (least, largest) corner (mm).
     """
     solid, surface = GProp_GProps(), GProp_GProps()
     BRepGProp.VolumeProperties_s(shape, solid)
     BRepGProp.SurfaceProperties_s(shape, surface)
-    centre = solid.CentreOfMass()
+    centre, matrix = solid.CentreOfMass(), solid.MatrixOfInertia()
     return {
         "volume": solid.Mass(),
         "area": surface.Mass(),
         "centre": [centre.X(), centre.Y(), centre.Z()],
+        "inertia": [[matrix.Value(i, j) for j in (1, 2, 3)] for i in (1, 2, 3)],
         "box": bounding_box(shape),
     }
 
@@ -49,15 +50,6 @@ def volume(shape: TopoDS_Shape) -> float:
     solid = GProp_GProps()
     BRepGProp.VolumeProperties_s(shape, solid)
     return solid.Mass()
-
-
-def moments(shape: TopoDS_Shape) -> dict:
-    """`volume` (mm3), `centre` of mass (mm), and `inertia` about that at density 1, 3 x 3 (mm5)."""
-    solid = GProp_GProps()
-    BRepGProp.VolumeProperties_s(shape, solid)
-    centre, matrix = solid.CentreOfMass(), solid.MatrixOfInertia()
-    inertia = [[matrix.Value(i, j) for j in (1, 2, 3)] for i in (1, 2, 3)]
-    return {"volume": solid.Mass(), "centre": [centre.X(), centre.Y(), centre.Z()], "inertia": inertia}
 
 
 def bounding_box(shape: TopoDS_Shape) -> list[list[float]]:
