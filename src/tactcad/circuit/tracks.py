@@ -6,7 +6,6 @@ without resistance. A net keeps its name on its plane and at its connector.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import replace
 from math import dist, pi
 
@@ -33,7 +32,8 @@ def with_tracks(layout: Layout, circuit: Netlist) -> Netlist:
     for board in boards(layout):
         copper = made[len(board.places)]
         nodes, tracks = _nodes(copper)
-        names = {node: _named(board, node) for node in {*nodes.values(), *_ends(tracks)}}
+        ends = (node for a, b, _ in tracks for node in (a, b))
+        names = {node: _named(board, node) for node in {*nodes.values(), *ends}}
         own = [c for c in circuit.components if c.designator.startswith(f"A{board.number}-")]
         for c in own:
             name = c.designator.partition("-")[2]
@@ -69,12 +69,6 @@ def _named(board: ReadBoard, node: str) -> str:
     """A board's node in the array's circuit."""
     net, mark, number = node.partition("__")
     return array_net(board, net) + (f"{mark}{board.number}_{number}" if mark else "")
-
-
-def _ends(tracks: list[Between]) -> Iterator[str]:
-    for a, b, _ in tracks:
-        yield a
-        yield b
 
 
 def _nodes(board: BoardCopper) -> tuple[dict[tuple[str, str], str], list[Between]]:

@@ -80,27 +80,18 @@ class Plan:
 
     def jobs(self) -> list[Batch]:
         """All jobs of the options."""
-        return [job for each in PRODUCTS if each.asked(self) for job in each.jobs(self)]
+        return [job for asked, jobs in PRODUCTS if asked(self) for job in jobs(self)]
 
 
-@dataclass(frozen=True)
-class Product:
-    """A kind of files: its option, and the jobs that make it."""
-
-    asked: Callable[[Plan], bool]
-    jobs: Callable[[Plan], Iterator[Batch]]
+Jobs = Callable[[Plan], Iterator[Batch]]
+PRODUCTS: list[tuple[Callable[[Plan], bool], Jobs]] = []  # every kind of files: its option, and what makes it
 
 
-PRODUCTS: list[Product] = []
-
-
-def product(
-    asked: Callable[[Plan], bool] = lambda _: True,
-) -> Callable[[Callable[[Plan], Iterator[Batch]]], Callable[[Plan], Iterator[Batch]]]:
+def product(asked: Callable[[Plan], bool] = lambda _: True) -> Callable[[Jobs], Jobs]:
     """Marks the function of a kind of files. The manifest has kinds in the order of these functions."""
 
-    def enter(jobs: Callable[[Plan], Iterator[Batch]]) -> Callable[[Plan], Iterator[Batch]]:
-        PRODUCTS.append(Product(asked, jobs))
+    def enter(jobs: Jobs) -> Jobs:
+        PRODUCTS.append((asked, jobs))
         return jobs
 
     return enter
@@ -374,13 +365,8 @@ def _drawing(
     stem: str, part_no: str, key: str, make: Callable[[], Written], turn: int, size: int = 0
 ) -> Batch:
     """Both files of a drawing."""
-
-    def both() -> Sequence[bytes]:
-        made = make()
-        return made.pdf, made.svg
-
     files = (Output(f"drawings/{stem}.{e}", "drawing", part_no, f"{key} {e}") for e in ("pdf", "svg"))
-    return Batch(tuple(files), both, turn, size)
+    return Batch(tuple(files), make, turn, size)
 
 
 def solid(part: Part, shapes: Shapes) -> bool:

@@ -9,10 +9,9 @@ import os
 import re
 from calendar import timegm
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import cache, lru_cache
 from html import escape
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from tactcad.design.tree import Identity
 
@@ -30,9 +29,8 @@ GREY = "#c9ced4"
 GRAPHICS = re.compile(rb"^(?:n [-\d. mlch]*|S|f\*|[\d.]+ [Gwg]|\[[\d. ]*\] 0 d)\n", re.MULTILINE)
 
 
-@dataclass(frozen=True)
-class Written:
-    """A drawing."""
+class Written(NamedTuple):
+    """A drawing's files."""
 
     pdf: bytes
     svg: bytes
