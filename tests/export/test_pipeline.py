@@ -24,7 +24,7 @@ from tactcad.export.formats import ExportOptions
 from tactcad.export.manifest import check_manifest, read_manifest
 from tactcad.export.pipeline import export
 from tactcad.parts.array.layout import Layout
-from tactcad.parts.language.description import Part
+from tactcad.parts.language.description import Extrusion, Part
 
 pytestmark = pytest.mark.cad
 
@@ -498,14 +498,13 @@ def test_what_is_written_wrong_leaves_the_earlier_export(mine, monkeypatch):
 
 def test_a_measured_part_must_agree_with_its_description(mine, monkeypatch):
     """Centre of mass and box from the kernel are compared with the closed forms."""
-    from tactcad.drawing.engine import boxes
-
     made = variant({"array.row_arms": [[4.7, 6.0]]})
-    centre, box = Part.centre.fget, boxes.part_box
+    centre, box = Part.centre.fget, Extrusion.box.fget
     with monkeypatch.context() as patch, pytest.raises(CheckFailure, match="centre of mass"):
         patch.setattr(Part, "centre", property(lambda self: (centre(self)[0] + 1e-5, *centre(self)[1:])))
         exported(made, mine)
-    monkeypatch.setattr(boxes, "part_box", lambda part: (box(part)[0], [x + 1e-5 for x in box(part)[1]]))
+    larger = property(lambda self: (box(self)[0], tuple(x + 1e-5 for x in box(self)[1])))
+    monkeypatch.setattr(Extrusion, "box", larger)
     with pytest.raises(CheckFailure, match="bounding box is 1e-05 mm from the description's"):
         exported(made, mine)
 

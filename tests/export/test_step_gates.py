@@ -7,7 +7,6 @@ from dataclasses import replace
 import pytest
 
 from tactcad.design.messages import CheckFailure
-from tactcad.drawing.engine.boxes import part_box
 from tactcad.export import step_file as step
 from tactcad.export.products import _compare_box
 from tactcad.export.step_text import Header
@@ -63,7 +62,7 @@ def test_a_part_file_bears_its_number(written):
 
 def test_a_solid_is_as_large_as_its_description(written):
     part, _ = written
-    low, high = part_box(part)
+    low, high = part.body.box
     _compare_box(part, (low, high))
     with pytest.raises(CheckFailure, match="bounding box is 2e-06 mm from"):
         _compare_box(part, (low, (*high[:2], high[2] + 2e-6)))

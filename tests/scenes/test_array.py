@@ -12,7 +12,7 @@ import pytest
 from variants import variant
 
 from tactcad.contour import Arc
-from tactcad.drawing.engine.boxes import part_box, placed
+from tactcad.drawing.engine.boxes import placed
 from tactcad.parts.array.layout import Layout
 from tactcad.parts.language.description import Hole
 from tactcad.parts.language.metric import METRIC
@@ -56,7 +56,7 @@ def direction(p: Placement, v) -> np.ndarray:
 
 def box(p: Placement) -> np.ndarray:
     """Least and largest corner of the placed part's box."""
-    (x0, y0, z0), (x1, y1, z1) = part_box(p.part)
+    (x0, y0, z0), (x1, y1, z1) = p.part.body.box
     corners = np.array([placed(p, (x, y, z)) for x in (x0, x1) for y in (y0, y1) for z in (z0, z1)])
     return np.array([corners.min(axis=0), corners.max(axis=0)])
 
@@ -224,7 +224,7 @@ def test_every_thread_contact_is_a_screw_in_line_with_a_thread_deep_enough(case)
         d = METRIC[hole.thread].d
         assert hole.thread == design.clamp.screw
         # engaged length along the hole's axis, of the screw's shank in the full thread
-        (_, _, z0), (_, _, z1) = part_box(screw.part)
+        (_, _, z0), (_, _, z1) = screw.part.body.box
         ends = [float((np.array(placed(screw, (0, 0, z))) - at) @ into) for z in (max(z0, 0.0), z1)]
         tip, ends = ends[1], sorted(ends)
         engaged = min(ends[1], hole.thread_depth) - max(ends[0], 0.0)
@@ -251,9 +251,7 @@ def test_screws_and_dowels_pass_through_every_part_of_their_row(case):
     ]
     for rod in through:
         point, axis = axis_of(rod)
-        diameter = (
-            part_box(rod.part)[1][0] * 2 if rod.designator[:2] != "SC" else METRIC[design.clamp.screw].d
-        )
+        diameter = rod.part.body.box[1][0] * 2 if rod.designator[:2] != "SC" else METRIC[design.clamp.screw].d
         row = [p for p in stacked if direction(p, (1, 0, 0))[0] * point[0] > 0]
         assert len(row) == 2 * layout.positions + 1
         for p in [*row, *(q for q in scene.placements if q.designator in ("EP1", "EP2"))]:

@@ -11,7 +11,7 @@ import pytest
 from variants import variant
 
 from tactcad.drawing import guide
-from tactcad.drawing.engine.boxes import box_corners, part_box, placed
+from tactcad.drawing.engine.boxes import box_corners, placed
 from tactcad.drawing.engine.layout_check import layout_faults
 from tactcad.drawing.guide import face_map
 from tactcad.parts.language.metric import METRIC
@@ -36,7 +36,7 @@ def case(request):
 
 
 def box(p: Placement) -> np.ndarray:
-    corners = np.array([placed(p, c) for c in box_corners(part_box(p.part))])
+    corners = np.array([placed(p, c) for c in box_corners(p.part.body.box)])
     return np.array([corners.min(axis=0), corners.max(axis=0)])
 
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from variants import FACING_ROWS
 
-from tactcad.drawing.engine.boxes import box_corners, part_box, placed
+from tactcad.drawing.engine.boxes import box_corners, placed
 from tactcad.parts.array.element import WIRE_TOLERANCE, least_passes
 from tactcad.parts.language.description import Hole
 from tactcad.parts.rules import load
@@ -28,7 +28,7 @@ def scene(request):
 
 
 def box(p: Placement) -> np.ndarray:
-    corners = np.array([placed(p, c) for c in box_corners(part_box(p.part))])
+    corners = np.array([placed(p, c) for c in box_corners(p.part.body.box)])
     return np.array([corners.min(axis=0), corners.max(axis=0)])
 
 
@@ -44,7 +44,7 @@ def test_every_counterbore_sinks_the_head_in_it(scene):
         if not screw.part.part_no.startswith("ISO4762-"):
             continue
         axis = np.array(screw.rotation, float)[:, 2]
-        height = -part_box(screw.part)[0][2]
+        height = -screw.part.body.box[0][2]
         for p, hole, at, into in bores:
             deep = float((np.array(screw.origin) - at) @ into)
             aside = np.linalg.norm(np.array(screw.origin) - at - deep * into)
@@ -52,7 +52,7 @@ def test_every_counterbore_sinks_the_head_in_it(scene):
             if into @ axis > 0.999 and aside < 1e-6 and abs(deep - floor) < 1e-6:
                 heads += 1
                 assert deep - height >= -1e-9, f"{screw.designator} stands out of {p.designator}"
-                assert 2 * part_box(screw.part)[1][0] < wide
+                assert 2 * screw.part.body.box[1][0] < wide
     assert heads or scene.name == "bonding"  # which has no screws
 
 

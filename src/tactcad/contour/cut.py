@@ -36,8 +36,8 @@ def cut(
     side = -1.0 if keep == "below" else 1.0
     outline = contour if contour.ccw else contour.reversed()
     pieces = [_snapped(piece, i, at) for s in outline for piece in _split(s, i, at)]
-    kept = [p for p in pieces if side * (_middle(p)[i] - at) > ON_LINE_MM]
-    if kept and all(side * (_middle(p)[i] - at) > -ON_LINE_MM for p in pieces):
+    kept = [p for p in pieces if side * (p.at(0.5)[i] - at) > ON_LINE_MM]
+    if kept and all(side * (p.at(0.5)[i] - at) > -ON_LINE_MM for p in pieces):
         return (outline,)  # nothing lies beyond the line
     # the area lies to the left of the cut: up at the right-hand end of what is kept "below" in x
     forward = -side if axis == "x" else side
@@ -120,10 +120,6 @@ def _on(p: Point, i: int, at: float) -> Point:
 def _snapped(s: Segment, i: int, at: float) -> Segment:
     start, end = (_on(p, i, at) if abs(p[i] - at) < ON_LINE_MM else p for p in (s.start, s.end))
     return Line(start, end, s.name) if isinstance(s, Line) else Arc(start, end, s.centre, s.ccw, s.name)
-
-
-def _middle(s: Segment) -> Point:
-    return s.at(0.5)
 
 
 def _far(a: Point, b: Point) -> bool:

@@ -13,7 +13,6 @@ from typing import Any
 from tactcad.contour import Arc, Contour, Line, Segment
 from tactcad.design.family import family_of
 from tactcad.design.tree import CommonTables
-from tactcad.drawing.engine.boxes import part_box
 from tactcad.drawing.parts.part_sheet import notes_of
 from tactcad.parts.language.description import NOT_MADE, Extrusion, Hole, ModelFile, Part, section
 from tactcad.parts.language.stock import cut_section
@@ -60,7 +59,7 @@ def part_record(part: Part, qty: int) -> Record:
         "area_mm2": surface_area(part),
         "mass_g": part.mass,
         "centre_mm": None if file else part.centre,
-        "box_mm": None if file else part_box(part),
+        "box_mm": None if file else part.body.box,
         "cut_length_mm": cut.cut_length if cut else None,
         "holes": _numbered([_hole(f) for f in part.features if isinstance(f, Hole)] + _round_openings(part)),
         "pockets": _numbered(

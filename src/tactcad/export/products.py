@@ -397,8 +397,7 @@ def _measured(part: Part, shapes: Shapes) -> dict:
 
 
 def _compare_box(part: Part, box: Sequence[Sequence[float]]) -> None:
-    from tactcad.drawing.engine.boxes import part_box
 
-    off = max(abs(a - b) for got, meant in zip(box, part_box(part)) for a, b in zip(got, meant))
+    off = max(abs(a - b) for got, meant in zip(box, part.body.box) for a, b in zip(got, meant))
     if off > 1e-6:
         raise CheckFailure(f"{part.part_no}: bounding box is {off:.3g} mm from the description's")

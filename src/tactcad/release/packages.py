@@ -12,7 +12,6 @@ from math import ceil, floor
 from tactcad.checks.shop import Feed, Shop
 from tactcad.design.files import as_csv
 from tactcad.design.tree import CommonTables
-from tactcad.drawing.engine.boxes import part_box
 from tactcad.export import inspection
 from tactcad.export.manifest import sha256_of
 from tactcad.parts.array.element import least_passes
@@ -202,7 +201,7 @@ def _wire_row(line: OrderLine, taken: Mapping[str, str], shop: Shop) -> Row:
 
 def _machined_row(line: OrderLine, taken: Mapping[str, str], shop: Shop) -> Row:
     part = _made(line)
-    low, high = part_box(part)
+    low, high = part.body.box
     return (
         {"process": part.process}
         | _material(part)

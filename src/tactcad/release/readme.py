@@ -16,7 +16,6 @@ from tactcad import __version__
 from tactcad.checks.shop import Shop
 from tactcad.design.family import family_of
 from tactcad.design.materials import ELECTROLYSIS, family
-from tactcad.drawing.engine.boxes import part_box
 from tactcad.drawing.engine.paper import GENERAL_TOLERANCES
 from tactcad.export import inspection
 from tactcad.export.formats import part_formats
@@ -123,7 +122,7 @@ def parts_table(contents: ReleaseContents, parts: Sequence[Part]) -> list[str]:
     heads = ("part", "rev", "qty", "spares", "material", "size, mm", "finish")
     groups: dict[str, list[tuple[str, ...]]] = {}
     for part in parts:
-        low, high = part_box(part)
+        low, high = part.body.box
         row = (
             part.part_no,
             contents.design.design.of_part(part.part_no).revision,

@@ -196,12 +196,7 @@ def box_corners(box: tuple[Vector, Vector]) -> Iterator[Vector]:
     return product((x0, x1), (y0, y1), (z0, z1))
 
 
-def part_box(part: Part) -> tuple[Vector, Vector]:
-    """Least and largest corner of a part in its own frame, mm, exact."""
-    return part.body.box
-
-
 def box_of(p: Placement) -> Extent:
     """Box of a placed part, in the scene; exact if it is not turned by odd angles."""
-    corners = np.array([placed(p, corner) for corner in box_corners(part_box(p.part))])
+    corners = np.array([placed(p, corner) for corner in box_corners(p.part.body.box)])
     return np.array([corners.min(axis=0), corners.max(axis=0)])
