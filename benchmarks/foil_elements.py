@@ -7,24 +7,28 @@ through half its thickness (tactcad.fem.space). The root's fillet is tangent to 
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from math import pi
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import coo_matrix, csc_matrix
 
 from tactcad.design.messages import CheckFailure
 from tactcad.families.planar.beam import MODES, FoilBeam
 from tactcad.fem import elasticity
 from tactcad.fem.mapped_mesh import merged
-from tactcad.fem.space import AcrossSpace, PlaneSpace
+from tactcad.fem.space import AcrossSpace, PlaneSpace, gauss, lagrange
 
 Array = NDArray[np.float64]
+Index = NDArray[np.int64]
 ORDER = 4
 KEEP = 0.3  # fillet radii off the clamped edge: nearer, a rigid edge makes the stress grow without limit
 WIDER = 1.7  # from a column of elements to the next one away from the root
 BANDS = {"inside": (-0.01, 0.5), "beside": (0.5, 0.97), "edge": (0.97, 1.01)}  # shares of the half width
-SITES = tuple(f"{place} {band}" for place in ("root", "span") for band in BANDS)
+# of the foil's face by shares of the half width, and of the beam's side
+SITES = (*(f"{place} {band}" for place in ("root", "span") for band in BANDS), "root side", "span side")
+FACES = 6  # of them on the face
 
 # Components (x along, y across, z through the foil) that vanish on the planes x = 0, y = 0 and z = 0, and the
 # motion of the end x = s/2 under a relative motion 1 of the two ends.
@@ -112,47 +116,134 @@ def _nodes(ends: Array) -> Array:
     return np.interp(np.arange(ORDER * (len(ends) - 1) + 1) / ORDER, np.arange(len(ends)), ends)
 
 
-def solved(beam: FoilBeam, density: int = 1) -> dict[str, float]:
-    """Stiffness of every mode, N/mm; N mm a radian for bending and twist."""
+def solved(beam: FoilBeam, density: int = 1, modes: Sequence[str] = MODES) -> dict[str, float]:
+    """Stiffness of these modes, N/mm; N mm a radian for bending and twist."""
     space = quarter_mesh(beam, density)
     across = AcrossSpace(np.linspace(0.0, beam.thickness / 2.0, 3), 2)
-    return {mode: k for mode, k, _ in _modes(beam, space, across)}
+    return {mode: k for mode, k, _ in _modes(beam, Solid(beam, space, across), modes)}
 
 
-def stresses(beam: FoilBeam, density: int = 2) -> tuple[dict[str, float], dict[str, Array]]:
-    """Stiffness of every mode, and the largest von Mises stress of the foil's faces by SITES per unit of its
-    relative motion, MPa/mm or MPa/rad."""
+def stresses(
+    beam: FoilBeam, density: int = 2, modes: Sequence[str] = MODES
+) -> tuple[dict[str, float], dict[str, Array]]:
+    """Stiffness of these modes, and the largest von Mises stress of the foil's surface by SITES per unit of
+    its relative motion, MPa/mm or MPa/rad."""
     space = stress_mesh(beam, density)
-    across = AcrossSpace(np.linspace(0.0, beam.thickness / 2.0, 4), 3)
-    lam, mu = elasticity.lame(beam.youngs_modulus, beam.poisson)
+    solid = Solid(beam, space, AcrossSpace(np.linspace(0.0, beam.thickness / 2.0, 4), 3))
     x, y = space.nodes
     half, r = beam.length / 2.0, beam.fillet
-    into = np.maximum(x - (half - r), 0.0)  # the fillet
-    share = y / (beam.width / 2.0 + r - np.sqrt(np.maximum(r**2 - into**2, 0.0)))
+    share = y / half_width(beam, x)
     near = 1e-9 * beam.length
     places = {"root": (x >= half - r - near) & (x <= half - KEEP * r + near), "span": x <= half - r + near}
-    picked = [
-        places[place] & (share > low) & (share <= high) for place in places for low, high in BANDS.values()
-    ]
     stiffness, found = {}, {}
-    for mode, k, u in _modes(beam, space, across):
-        face = _face_stress(space, u, across, lam, mu)
+    for mode, k, u in _modes(beam, solid, modes):
+        every = solid.von_mises(u)
         stiffness[mode] = k
-        found[mode] = np.array([face[own].max() for own in picked])
+        face = [
+            every[on & (share > low) & (share <= high), -1]
+            for on in places.values()
+            for low, high in BANDS.values()
+        ]
+        side = [every[on & (share > BANDS["edge"][0]), :] for on in places.values()]
+        found[mode] = np.array([one.max() for one in (*face, *side)])
     return stiffness, found
 
 
-def _modes(beam: FoilBeam, space: PlaneSpace, across: AcrossSpace) -> Iterator[tuple[str, float, Array]]:
-    """Every mode with its stiffness and its displacements [node, place through the foil, component]."""
-    count, places = space.nodes.shape[1], len(across.nodes)
-    lam, mu = elasticity.lame(beam.youngs_modulus, beam.poisson)
-    A = space.swept_stiffness(across, lam, mu)
-    x, y = (np.repeat(v, places) for v in space.nodes)
-    z = np.tile(across.nodes, count)
+def half_width(beam: FoilBeam, x: Array) -> Array:
+    """Half the width at half the thickness."""
+    r = beam.fillet
+    into = np.maximum(x - (beam.length / 2.0 - r), 0.0)
+    return np.asarray(beam.width / 2.0 + r - np.sqrt(np.maximum(r**2 - into**2, 0.0)))
+
+
+class Solid:
+    """The eighth: a mesh of the plane and of half the thickness, narrower towards the face by the bevel.
+
+    points   of every node, mm, [node of the plane, place through the foil, component]
+    """
+
+    def __init__(self, beam: FoilBeam, space: PlaneSpace, across: AcrossSpace) -> None:
+        (x, y), z = space.nodes, across.nodes
+        narrower = 1.0 - np.outer(1.0 / half_width(beam, x), 2.0 * beam.bevel * z / beam.thickness)
+        shape = len(x), len(z)
+        self.points = np.stack(
+            [np.broadcast_to(x[:, None], shape), y[:, None] * narrower, np.broadcast_to(z, shape)], axis=-1
+        )
+        self.lame = elasticity.lame(beam.youngs_modulus, beam.poisson)
+        layers = np.arange(0, len(z) - 1, across.order)[:, None] + np.arange(across.order + 1)
+        plane = space.elements.reshape(len(space.elements), -1)
+        # [element, node]: the place of each in the list of all
+        self.elements = (len(z) * plane[:, None, :, None] + layers[None, :, None, :]).reshape(
+            len(plane) * len(layers), -1
+        )
+        self.orders = space.order, space.order, across.order
+
+    def _slopes(self, points: list[tuple[float, ...]], own: Index) -> tuple[Array, Array]:
+        """Derivatives by x, y and z of an element's functions at local points, [node, component, point], and
+        the determinants there."""
+        values, slopes = zip(*(lagrange(n, p) for n, p in zip(self.orders, points)))
+        local = []
+        for way in range(3):
+            a, b, c = (slopes[i] if i == way else values[i] for i in range(3))
+            local.append(np.einsum("ap,bq,cr->abcpqr", a, b, c).reshape(len(own), -1))
+        J = np.einsum("nc,knp->pkc", self.points.reshape(-1, 3)[own], np.array(local), optimize=True)
+        det = np.linalg.det(J)
+        flat = np.abs(det) < 1e-12 * np.abs(det).max()  # where the fillet meets the edge
+        J[flat] = np.nan * np.eye(3)
+        inverse = np.full_like(J, np.nan)
+        inverse[~flat] = np.linalg.inv(J[~flat])
+        return np.einsum("pck,knp->ncp", inverse, np.array(local), optimize=True), det
+
+    def stiffness(self) -> csc_matrix:
+        """Unknown 3 n + i is component i of node n."""
+        lam, mu = self.lame
+        points, weights = zip(*(gauss(n + 1) for n in self.orders))
+        weight = np.einsum("p,q,r->pqr", *weights).ravel()
+        size = 3 * self.elements.shape[1]
+        values, rows, columns = [], [], []
+        for own in self.elements:
+            slope, det = self._slopes(points, own)
+            g = slope.reshape(size, -1)
+            T = ((g * (np.abs(det) * weight)) @ g.T).reshape(len(own), 3, len(own), 3)
+            A = lam * T + mu * T.transpose(0, 3, 2, 1)
+            trace = mu * np.einsum("aibi->ab", T)
+            for i in range(3):
+                A[:, i, :, i] += trace
+            place = (3 * own[:, None] + np.arange(3)).ravel()
+            values.append(A.ravel())
+            rows.append(np.repeat(place, size))
+            columns.append(np.tile(place, size))
+        count = self.points.size
+        data, row, column = (np.concatenate(v) for v in (values, rows, columns))
+        return coo_matrix((data, (row, column)), shape=(count, count)).tocsc()
+
+    def von_mises(self, u: Array) -> Array:
+        """Stress at every node, averaged over the elements that meet there, [node of the plane, place]."""
+        lam, mu = self.lame
+        corners = [tuple(np.linspace(-1.0, 1.0, n + 1)) for n in self.orders]
+        flat = u.reshape(-1, 3)
+        total, count = np.zeros((len(flat), 3, 3)), np.zeros(len(flat))
+        for own in self.elements:
+            slope, _ = self._slopes(corners, own)
+            gradient = np.einsum("nc,ndp->pcd", flat[own], slope, optimize=True)
+            strain = 0.5 * (gradient + gradient.transpose(0, 2, 1))
+            s = 2.0 * mu * strain + lam * np.trace(strain, axis1=1, axis2=2)[:, None, None] * np.eye(3)
+            known = np.isfinite(s).all(axis=(1, 2))
+            total[own[known]] += s[known]
+            count[own[known]] += 1.0
+        mean = total / np.maximum(count, 1.0)[:, None, None]
+        deviator = mean - np.trace(mean, axis1=1, axis2=2)[:, None, None] / 3.0 * np.eye(3)
+        return np.sqrt(1.5 * np.einsum("nij,nij->n", deviator, deviator)).reshape(u.shape[:2])
+
+
+def _modes(beam: FoilBeam, solid: Solid, modes: Sequence[str]) -> Iterator[tuple[str, float, Array]]:
+    """These modes with its stiffness and its displacements [node, place through the foil, component]."""
+    A = solid.stiffness()
+    x, y, z = solid.points.reshape(-1, 3).T
     planes = [np.abs(v) < 1e-9 for v in (x, y, z)]
     end = np.abs(x - beam.length / 2.0) < 1e-9
     component = {"x": 0, "y": 1, "z": 2}
-    for mode in MODES:
+    for mode in modes:
         u, held = np.zeros((len(x), 3)), np.zeros((len(x), 3), dtype=bool)
         for plane, letters in zip(planes, _PARITY[mode]):
             for letter in letters:
@@ -168,35 +259,4 @@ def _modes(beam: FoilBeam, space: PlaneSpace, across: AcrossSpace) -> Iterator[t
                 f"rounding moves mode {mode} by {rounding:.1g} of itself: the foil is too thin"
             )
         known[free] = part
-        yield mode, float(8.0 * known @ (A @ known)), known.reshape(count, places, 3)
-
-
-def _face_stress(space: PlaneSpace, u: Array, across: AcrossSpace, lam: float, mu: float) -> Array:
-    """Von Mises stress at the nodes of the foil's face, of stresses averaged over the elements that meet."""
-    nodes = np.linspace(-1.0, 1.0, space.order + 1)
-    V = np.vander(nodes, increasing=True)
-    powers = np.zeros_like(V)
-    powers[:, 1:] = V[:, :-1] * np.arange(1, space.order + 1)
-    D = powers @ np.linalg.inv(V)  # d/dxi of nodal values, at the nodes
-    last = across.nodes[-across.order - 1 :]
-    by_height = np.linalg.inv(np.vander(last - last[-1], increasing=True))[1]
-    dz = np.einsum("k,nkc->nc", by_height, u[:, -across.order - 1 :])
-    e = space.elements
-    p = space.nodes[:, e]
-    along, over = np.einsum("ai,ceij->ceaj", D, p), np.einsum("bj,ceij->ceib", D, p)
-    det = along[0] * over[1] - along[1] * over[0]
-    det = np.where(np.abs(det) < 1e-12 * np.abs(det).max(), np.nan, det)  # where the fillet meets the edge
-    v = u[e, -1]
-    g0, g1 = np.einsum("ai,eijc->eajc", D, v), np.einsum("bj,eijc->eibc", D, v)
-    gx = (g0 * over[1][..., None] - g1 * along[1][..., None]) / det[..., None]
-    gy = (g1 * along[0][..., None] - g0 * over[0][..., None]) / det[..., None]
-    gradient = np.stack([gx, gy, dz[e]], axis=-1)  # component, direction
-    strain = 0.5 * (gradient + np.swapaxes(gradient, -1, -2))
-    s = 2.0 * mu * strain + lam * np.trace(strain, axis1=-2, axis2=-1)[..., None, None] * np.eye(3)
-    total, count = np.zeros((space.nodes.shape[1], 3, 3)), np.zeros(space.nodes.shape[1])
-    known = np.isfinite(s).all(axis=(-1, -2))
-    np.add.at(total, e[known], s[known])
-    np.add.at(count, e[known], 1.0)
-    mean = total / np.maximum(count, 1.0)[:, None, None]
-    deviator = mean - np.trace(mean, axis1=-2, axis2=-1)[:, None, None] / 3.0 * np.eye(3)
-    return np.asarray(np.sqrt(1.5 * np.einsum("nij,nij->n", deviator, deviator)))
+        yield mode, float(8.0 * known @ (A @ known)), known.reshape(solid.points.shape)

@@ -15,7 +15,7 @@ import sys
 from pathlib import Path
 
 import numpy as np
-from foil_elements import SITES, stresses
+from foil_elements import FACES, SITES, stresses
 from numpy.typing import NDArray
 from planar_beams import HIGH, LOW, WIDEST_FILLET, places
 
@@ -35,11 +35,11 @@ def beam_at(unit: Array) -> FoilBeam:
 
 
 def measured(unit: Array) -> Array:
-    """Logarithms of stresses over beam theory's, (6 modes, 6 sites)."""
+    """Logarithms of stresses over beam theory's, (6 modes, 6 sites of the face)."""
     beam = beam_at(unit)
     stiffness, found = stresses(beam)
     base, nominal = closed.base(beam), closed.nominal_stress(beam)
-    return np.log([found[m] / nominal[m] / stiffness[m] * base[m] for m in MODES])
+    return np.log([found[m][:FACES] / nominal[m] / stiffness[m] * base[m] for m in MODES])
 
 
 def kept(values: Array) -> Array:

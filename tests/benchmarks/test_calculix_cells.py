@@ -103,9 +103,7 @@ def test_bevels_take_as_much_off_solids_as_off_the_closed_form(etched):
         return np.array([solid, [beam.stiffness(b)[m] for m in beam.MODES]])
 
     solid, closed = both(etched) / both(replace(etched, bevel=0.0))
-    assert solid.max() < 0.99 and closed == pytest.approx(solid, rel=0.01)
-    plain = [m != "twist" for m in beam.MODES]
-    assert closed[plain] == pytest.approx(solid[plain], rel=beam.BEVELED)
+    assert solid.max() < 0.99 and closed == pytest.approx(solid, rel=0.004)
 
 
 @pytest.mark.nightly

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from foil_elements import solved, stresses
+from foil_elements import FACES, SITES, solved, stresses
 from skfem import Basis, ElementQuad2, MeshQuad, condense, solve
 from skfem.models.poisson import laplace, unit_load
 
@@ -29,11 +29,13 @@ SILICON = FoilBeam(0.1, 0.012, 0.002, 0.004, 160_000.0, 0.22)  # polysilicon
         SOFT,
         STIFF,
         FoilBeam(3.0, 1.2, 0.1, 0.35, 127_000.0, 0.34),
+        replace(SOFT, bevel=0.016),
+        replace(STIFF, bevel=0.016),
         pytest.param(SILICON, marks=pytest.mark.nightly),
     ],
 )
 def test_closed_form_is_within_its_stated_error_of_solid_elements(held_out):
-    stiffness, stated = solved(held_out), beam.fit()["errors"]
+    stiffness, stated = solved(held_out), beam.bevel_errors() if held_out.bevel else beam.fit()["errors"]
     for mode in MODES:
         # density 1 itself errs by up to 0.1 %
         assert beam.stiffness(held_out)[mode] == pytest.approx(
@@ -47,8 +49,26 @@ def test_stress_is_within_its_stated_error_of_solid_elements(held_out):
     _, found = stresses(held_out)
     for mode in MODES:
         assert beam.stress(held_out)[mode] == pytest.approx(
-            found[mode].max(), rel=beam.stress_errors()[mode]["climbed"]
+            found[mode][:FACES].max(), rel=beam.stress_errors()[mode]["climbed"]
         )
+
+
+def test_half_a_bevel_changes_half_as_much():
+    """Of stiffness, by solid elements: between plain beams and the bevel that was solved."""
+    half = replace(SOFT, bevel=0.008)
+    stiffness = solved(half)
+    for mode, stated in beam.fit()["errors"].items():
+        assert beam.stiffness(half)[mode] == pytest.approx(stiffness[mode], rel=stated["climbed"] + 1e-3)
+    assert beam.out_of_range(half) == "" and beam.out_of_range(replace(SOFT, bevel=0.02)).startswith("c/t")
+
+
+def test_a_plain_beam_in_its_plane_is_stressed_most_on_its_side():
+    """What `beam.stress` says of sides: at half the thickness more than on the face; bent out of its plane
+    the beam is stressed most on the face."""
+    _, found = stresses(FoilBeam(1.0, 0.5, 1 / 15, 0.05, 1.0, 0.4), 1)
+    side, face = SITES.index("root side"), SITES.index("root edge")
+    assert all(1.05 < found[m][side] / found[m][face] < 1.14 for m in ("axial", "bend_in", "shear_in"))
+    assert found["bend_out"].argmax() < FACES
 
 
 @pytest.mark.nightly
@@ -167,7 +187,11 @@ def test_shear_tips_the_cell_by_its_lever():
 
 
 def test_the_fit_s_report_keeps_what_is_promised():
-    for errors, most in ((beam.fit()["errors"], 0.005), (beam.stress_errors(), 0.03)):
+    for errors, most in (
+        (beam.fit()["errors"], 0.005),
+        (beam.bevel_errors(), 0.005),
+        (beam.stress_errors(), 0.03),
+    ):
         assert max(e["climbed"] for e in errors.values()) < most
         assert all(e["held_out"] <= e["climbed"] for e in errors.values())
 

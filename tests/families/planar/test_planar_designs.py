@@ -241,6 +241,30 @@ def test_arrays_as_made_have_the_stiffness_of_beams_as_cut(layout):
     assert stress.value(worst)[0] == pytest.approx(np.array(by_hand) / d.material.yield_strength, rel=0.02)
 
 
+def test_sheets_of_etched_parts_tell_undercut_and_tabs():
+    """Both sides etch half the thickness: that over the etch factors read, 1.5 and 3.5. Nothing thinner than
+    0.254 mm is etched without tabs; what a wire cuts has no undercut."""
+    planar, jaw = (PlanarLayout(load(str(file))) for file in (PLANAR, JAW))
+    made = parts.foil(planar), parts.upper_spacer(jaw), parts.upper_spacer(planar)
+    assert [part.process for part in made] == ["etched", "etched", "wire-cut"]
+    thin, thick, wire = (" ".join(part.notes) for part in made)
+    assert "undercut 0.011 to 0.027 a side tabs on the upper" in thin
+    assert "undercut 0.057 to 0.13 a side tabs, if any, on the upper" in thick
+    assert "undercut" not in wire and "tabs, if any, on the upper" in wire
+
+
+def test_the_guide_tells_how_the_array_is_fixed():
+    """By its own screws, of the next length sold, through a machine's plate under the board; or bonded."""
+    screwed, bonded = (PlanarLayout(load(str(file))) for file in (PLANAR, JAW))
+    assert parts.mounting(screwed) == (10.0, 2.0) and parts.screw_length(screwed) == 8.0
+    longest = replace(screwed.design.housing, cover_thickness=15.0)
+    assert parts.mounting(PlanarLayout(replace(screwed.design, housing=longest)))[1] == 0.0
+    text = {s.title: s.text for s in cell_array.scene(screwed.design).steps}
+    assert "its plate, 2 mm thick" in text["Screws"] and "take screws M2x10 instead" in text["Screws"]
+    told = [s.text for s in cell_array.scene(bonded.design).steps if "to the jaw" in s.text]
+    assert len(told) == 1
+
+
 def test_etched_beams_are_beveled_and_those_cut_by_wire_are_not():
     """K of a soft cell goes with w - 1.5 c, c = 0.2 t; the sheet says over what a width is measured."""
     d = load(str(PLANAR))

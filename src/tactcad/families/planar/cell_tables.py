@@ -46,7 +46,8 @@ class FoilLimit:
 @dataclass(frozen=True)
 class FoilProcess:
     """Limits of foil cutting, mm: data/processes.csv. The tolerance is plus and minus on a width, the bevel a
-    share of the thickness by which either edge stands back at both faces."""
+    share of the thickness by which either edge stands back at both faces. Thinner than `loose_from` a part
+    hangs on tabs; `etch_factor` least and most, 0 if nothing is undercut."""
 
     name: str
     thinnest: float
@@ -56,6 +57,8 @@ class FoilProcess:
     inside_radius: FoilLimit
     tolerance: FoilLimit
     bevel: float
+    loose_from: float
+    etch_factor: tuple[float, float]
     source: str
 
     def place(self, length: float) -> float:
@@ -67,8 +70,9 @@ class FoilProcess:
 def _process(row: dict[str, str]) -> FoilProcess:
     pairs = ((row[f"{of}_share"], row[f"{of}_least"]) for of in ("slot", "web", "inside", "tolerance"))
     slot, web, inside, cut = (FoilLimit(float(share), float(least)) for share, least in pairs)
-    low, high, bevel = (float(row[name]) for name in ("thinnest", "thickest", "bevel"))
-    return FoilProcess(row["name"], low, high, slot, web, inside, cut, bevel, row["source"])
+    low, high, bevel, loose = (float(row[name]) for name in ("thinnest", "thickest", "bevel", "loose_from"))
+    factor = float(row["etch_factor_least"]), float(row["etch_factor_most"])
+    return FoilProcess(row["name"], low, high, slot, web, inside, cut, bevel, loose, factor, row["source"])
 
 
 def _chip(row: dict[str, str]) -> Chip:

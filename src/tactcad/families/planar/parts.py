@@ -61,7 +61,7 @@ WEB = 0.8  # mm of base left over the chips' pocket, at least: checks/data/shop.
 FRAME_CORNER = 0.5  # mm; chosen: a cutter of 1 mm, and room for the outer chips
 COPPER = 1.4, 0.6  # mm of tracks and vias beyond the outer chips along x and y: cell_board.CLOSE
 CHIP_ROOM = 0.2  # mm above and around a chip; chosen: soldered boards' usual tolerance
-TABS = "tabs, if any, on the upper and right edges, dressed flush"  # the others are datums, and lie on pins
+TABS = " on the upper and right edges, dressed flush"  # the others are datums, and lie on pins
 SPRING_STEEL = Material("1.4310", 7900, "+C1300", "EN 10151")
 NEODYMIUM = Material("NdFeB, nickel plated", 7500)
 STAINLESS_BAR = Material("X8CrNiS18-9 (1.4305)", 7900, standard="EN 10088-3", magnetic="no")
@@ -102,6 +102,14 @@ def screw_length(layout: PlanarLayout) -> float | None:
     cover, under = layout.design.housing.cover_thickness, stack_height(layout)
     fits = [n for n in CAP_SCREW_LENGTHS[SCREW] if METRIC[SCREW].d <= n - under <= cover]
     return max(fits, default=None)
+
+
+def mounting(layout: PlanarLayout) -> tuple[float, float]:
+    """The array's screws hold it on a machine too: the next length that is sold, mm, and how thick a plate
+    it takes under the board; 0 if none is longer."""
+    own = screw_length(layout) or 0.0
+    longer = min((n for n in CAP_SCREW_LENGTHS[SCREW] if n > own), default=own)
+    return longer, round(longer - own, 9)
 
 
 def dowel_length(layout: PlanarLayout) -> float | None:
@@ -197,8 +205,9 @@ def _sheet(
     material: Material = SPRING_STEEL,
 ) -> Part:
     """A part that is cut from a sheet by its contour; of a kind of all cells, its holes have their places."""
-    process = layout.sheet_process(body.thickness)
-    cut, zone = process.tolerance(body.thickness), foil_zone(layout, process)
+    process, t = layout.sheet_process(body.thickness), body.thickness
+    cut, zone = process.tolerance(t), foil_zone(layout, process)
+    low, high = (t / 2.0 / factor if factor else 0.0 for factor in reversed(process.etch_factor))
     return Part(
         part_no=f"{layout.design.name}-{number}",
         name=name,
@@ -207,7 +216,12 @@ def _sheet(
         body=body,
         features=tuple(features),
         colour=colour,
-        notes=(f"{process.name}; contour within ±{cut:.3g} of the DXF's unless a limit is given", *note),
+        notes=(
+            f"{process.name}; contour within ±{cut:.3g} of the DXF's unless a limit is given",
+            *([f"undercut {low:.2g} to {high:.2g} a side"] if high else ()),
+            *([f"{'tabs' if t < process.loose_from else 'tabs, if any,'}{TABS}"] if kind else ()),
+            *note,
+        ),
         characteristics=_stated(layout, *limits),
         kind=kind,
         **_placed(features if kind else (), {"spigot": zone, "dowel_hole": zone, "screw": PLACE}),
@@ -227,7 +241,7 @@ def foil(layout: PlanarLayout) -> Part:
         limits.append(within(f"beam length, {k.name}", k.beam_length, cut, between=ends))
     own, body = (*limits, spigot, bore), _plain(layout, t, slots)
     over = ("widths measured over the bevel",) if process.bevel else ()
-    note = (TABS, *over, "do not bend, do not tumble; packed flat between cards")
+    note = (*over, "do not bend, do not tumble; packed flat between cards")
     return _sheet(layout, "foil", "Foil", body, holes, own, "#c9ccd1", note, "element", sheet_material(d))
 
 
@@ -300,7 +314,7 @@ def _spacer(layout: PlanarLayout, where: str, t: float, limit: float, key: bool)
     bore = dowel_bore(layout, layout.sheet_process(t), t)
     own = (within("thickness", t, limit, key, between=FACES), bore)
     body, holes = _plain(layout, t, openings), _through(layout, t, bore)
-    number, name, note = f"{where}-spacer", f"{where.capitalize()} spacer", (TABS, "flat, free of burrs")
+    number, name, note = f"{where}-spacer", f"{where.capitalize()} spacer", ("flat, free of burrs",)
     return _sheet(layout, number, name, body, holes, own, "#aab2bd", note, "cells")
 
 

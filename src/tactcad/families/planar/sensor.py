@@ -133,7 +133,9 @@ def stress_error() -> float:
 
 
 def stiffness_error(bevel: float = 0.0) -> float:
-    return max(e["climbed"] for e in beam.fit()["errors"].values()) + (beam.BEVELED if bevel else 0.0)
+    """Stated error of the beams' stiffness, likewise; of beveled beams at least that of plain ones."""
+    beveled = beam.bevel_errors().values() if bevel else ()
+    return max(e["climbed"] for e in (*beam.fit()["errors"].values(), *beveled))
 
 
 def rated_force(layout: PlanarLayout, kind: Kind) -> tuple[float, float]:
