@@ -99,14 +99,14 @@ def scene(design: PlanarDesign, _pose: object = None) -> Scene:
     )
     cover = b.place("C", parts.cover(layout), (0, 0, layout.cover_z), on=upper)
     over = "dowels and posts" if layout.screwed else "the posts"
-    jaw = "" if layout.screwed else said("jaw")
+    jaw = "" if layout.screwed else f" {said('jaw')}"
     b.step("Cover", (0, 0, 26), f"Lower the cover over {over}.{jaw}", sets=_laid(layout, cover, upper))
     if layout.screwed:
         length = parts.screw_length(layout) or 0.0
         for x, y in parts.screw_places(layout):
             b.screw(parts.SCREW, length, (x, y, layout.board_z - design.hall.board), (0, 0, 1), board, cover)
         longer, thick = parts.mounting(layout)
-        mount = said("mount", plate=thick, screw=f"{parts.SCREW}x{longer:g}") if thick else ""
+        mount = f" {said('mount', plate=thick, screw=f'{parts.SCREW}x{longer:g}')}" if thick else ""
         b.step("Screws", (0, 0, -45), said("Screws") + mount, tools=(CLAMP,))
     else:
         b.supplies += bill_lines("cells adhesive", {})

@@ -218,7 +218,7 @@ def _sheet(
         colour=colour,
         notes=(
             f"{process.name}; contour within ±{cut:.3g} of the DXF's unless a limit is given",
-            *([f"undercut {low:.2g} to {high:.2g} a side"] if high else ()),
+            *([f"expected undercut {low:.2g} to {high:.2g} a side"] if high else ()),
             *([f"{'tabs' if t < process.loose_from else 'tabs, if any,'}{TABS}"] if kind else ()),
             *note,
         ),
