@@ -361,13 +361,11 @@ def test_what_is_wrong_in_a_written_drawing_is_found(assembly):
 
 
 @pytest.mark.parametrize("assembly", SCENES[:1], ids=["array"], indirect=True)
-def test_a_drawing_that_lacks_a_sheet_is_not_written(assembly, monkeypatch):
+def test_a_drawing_that_lacks_a_sheet_is_not_written(assembly):
     design, scene, rows, _, sheets = assembly
-    monkeypatch.setattr(assembly_file, "assembly_sheets", lambda *_: sheets)
-    assert pdf_runs(assembly_file.assembly_written(design, scene, rows, {}).pdf)
-    monkeypatch.setattr(assembly_file, "assembly_sheets", lambda *_: sheets[:-1])
+    assert pdf_runs(assembly_file.assembly_written(sheets, design, scene, rows).pdf)
     with pytest.raises(CheckFailure, match="no drawing was written"):
-        assembly_file.assembly_written(design, scene, rows, {})
+        assembly_file.assembly_written(sheets[:-1], design, scene, rows)
 
 
 @pytest.mark.parametrize("assembly", SCENES[:1], ids=["array"], indirect=True)

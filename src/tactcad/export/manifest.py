@@ -14,6 +14,7 @@ import hashlib
 import json
 import os
 import stat
+from collections import Counter
 from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass, field
 from functools import cache
@@ -22,6 +23,8 @@ from typing import Any, NoReturn
 
 from tactcad.design.files import read_bytes, read_json
 from tactcad.design.messages import InputError
+
+from .formats import part_formats
 
 NAME = "manifest.json"
 MOST_BYTES = 1_000_000_000  # none of our files comes near; anything larger is not ours
@@ -291,12 +294,15 @@ def check_manifest(folder: Path) -> list[str]:
     seen = contents(folder, SCHEMA)
     wrong = [f"{path}: {why}" for path, why in seen.foreign.items() if why != PROTECTED]
     wrong += [f"{path}: missing" for path in seen.missing]
-    paths, numbers = [f.path for f in manifest.files], [part.part_no for part in manifest.parts]
+    paths = Counter(file.path for file in manifest.files)
+    numbers = Counter(part.part_no for part in manifest.parts)
     for what, names in (("file", paths), ("part", numbers)):
-        wrong += [f"{what} {n} is listed twice" for n in sorted(set(names)) if names.count(n) > 1]
+        wrong += [f"{what} {name} is listed twice" for name, times in names.items() if times > 1]
     for file in manifest.files:
-        if file.kind not in kinds() or file.part_no not in {"", *numbers}:
-            wrong.append(f"{file.path}: of a kind or part that is not known: {file.kind} {file.part_no}")
+        if file.kind not in kinds():
+            wrong.append(f"{file.path}: kind {file.kind!r} is none of {', '.join(sorted(kinds()))}")
+        if file.part_no and file.part_no not in numbers:
+            wrong.append(f"{file.path}: part {file.part_no!r} is not listed")
     for part in manifest.parts:
         inside = all(a < c < b for a, c, b in zip(part.box_mm[0], part.centre_mm, part.box_mm[1]))
         if not inside or min(part.qty, part.volume_mm3, part.area_mm2, part.mass_g) <= 0:
@@ -306,8 +312,6 @@ def check_manifest(folder: Path) -> list[str]:
 
 @cache
 def kinds() -> set[str]:
-    """Every kind of file of an export."""
-    from .formats import part_formats  # whose modules need this one
-
+    """Every kind of file of an export; a function, as the formats' modules need this one."""
     others = "step-assembly picture bom drawing inspection report netlist wiring robot board gerber"
     return {form.kind for form in part_formats()} | set(others.split())

@@ -329,13 +329,14 @@ def assembly_sheets(plan: Plan) -> Iterator[Batch]:
     design, options, shapes = plan.design, plan.options, plan.shapes
 
     def make(scene: Scene) -> Written:
-        from tactcad.drawing.assemblies.assembly_sheets import assembly_written
+        from tactcad.drawing.assemblies import assembly_sheets as assembly
         from tactcad.scenes.bom import bom_rows
         from tactcad.solids.step import from_bytes
 
         rows = bom_rows(scene, design.design, {})
         solids = {part.part_no: from_bytes(shapes.text_of(part)) for part in scene.parts}
-        return assembly_written(design, scene, rows, solids, options.draft, options.sample)
+        sheets = assembly.assembly_sheets(design, scene, rows, solids, options.draft, options.sample)
+        return assembly.assembly_written(sheets, design, scene, rows)
 
     for scene in plan.scenes:
         common = (design.design, _tables(design, "tolerance"), options.draft, options.sample)

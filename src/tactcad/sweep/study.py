@@ -315,10 +315,8 @@ def _refuse_measures(study: Study) -> None:
     family = family_of(study.design)
     if study.measure.rungs:
         family.must("variables", "measure.what: a rung")
-    rows = (
-        study.vary["array.row_arms"].values if "array.row_arms" in study.vary else None
-    )  # arrays themselves
-    counts = [sum(map(len, each)) for each in rows or ()]
+    arrays = study.vary["array.row_arms"].values if "array.row_arms" in study.vary else None
+    counts = [sum(map(len, rows)) for rows in arrays or ()]
     most = max([len(family.layout(study.design).elements), *counts])
     for path in study.vary:
         override = path.startswith("element.override.") and int(path.split(".")[2])

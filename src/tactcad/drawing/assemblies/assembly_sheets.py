@@ -72,18 +72,13 @@ def _list_pages(list_: Laid) -> list[Page]:
 
 
 def assembly_written(
-    design: CommonTables,
-    scene: Scene,
-    rows: Sequence[BomRow],
-    shapes: Mapping[str, TopoDS_Shape],
-    draft: bool = False,
-    sample: bool = False,
+    sheets: Sequence[DrawnSheet], design: CommonTables, scene: Scene, rows: Sequence[BomRow]
 ) -> Written:
-    """All sheets of the scene (`assembly_sheets`) as PDF and SVG.
+    """The sheets of a scene (`assembly_sheets`) as PDF and SVG.
 
-    Raises CheckFailure if they cannot be drawn, or differ from the scene when read back.
+    Raises CheckFailure if they differ from the scene when read back.
     """
-    sheets, name = assembly_sheets(design, scene, rows, shapes, draft, sample), f"{design.name}-{scene.name}"
+    name = f"{design.name}-{scene.name}"
     made = files_of(sheets, name, "assembly", design.design)
     wrong = assembly_faults(made.pdf, name, design.design.revision, rows)
     if wrong:

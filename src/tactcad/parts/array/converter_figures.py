@@ -94,6 +94,5 @@ def warm_up(layout: Layout) -> float:
 def on_time(layout: Layout) -> float:
     """Time from ON until every element of the fullest board has one result, s; for bridges always on,
     a round."""
-    return fullest(layout) * settling(layout) + (
-        warm_up(layout) if layout.design.readout.power == "duty" else 0.0
-    )
+    warm = warm_up(layout) if layout.design.readout.power == "duty" else 0.0
+    return fullest(layout) * settling(layout) + warm
