@@ -166,3 +166,14 @@ def test_a_manifest_that_cannot_be_true_is_seen(folder, changes):
 def test_no_infinite_numbers():
     with pytest.raises(ValueError, match="not JSON compliant"):
         manifest_bytes(replace(MANIFEST, parts=(replace(PART, mass_g=float("inf")),)))
+
+
+def test_an_empty_folder_is_no_fault_and_an_unreadable_one_is_named(folder, monkeypatch):
+    (folder / "notes").mkdir()
+    assert check_manifest(folder) == []
+
+    def refused(*_: object, onerror, **__: object):
+        onerror(PermissionError(13, "Permission denied", str(folder / "notes")))
+
+    monkeypatch.setattr("os.walk", refused)
+    assert check_manifest(folder) == [f"{folder / 'notes'}: Permission denied"]

@@ -288,11 +288,13 @@ def check_manifest(folder: Path) -> list[str]:
     every part has volume, surface and mass, and its centre in its box.
     """
     try:
-        manifest = read_manifest(folder)
+        manifest, seen = read_manifest(folder), contents(folder, SCHEMA)
     except InputError as error:
         return [f"{error.where}: {error.what}"]
-    seen = contents(folder, SCHEMA)
-    wrong = [f"{path}: {why}" for path, why in seen.foreign.items() if why != PROTECTED]
+    except OSError as error:
+        return [f"{error.filename}: {error.strerror}"]
+    files = {path: why for path, why in seen.foreign.items() if not stat.S_ISDIR(seen.states[path][0])}
+    wrong = [f"{path}: {why}" for path, why in files.items() if why != PROTECTED]
     wrong += [f"{path}: missing" for path in seen.missing]
     paths = Counter(file.path for file in manifest.files)
     numbers = Counter(part.part_no for part in manifest.parts)
