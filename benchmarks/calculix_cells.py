@@ -1,6 +1,7 @@
-"""Six planar cells by CalculiX's C3D20R and by the closed forms: compliance 6 x 6, and the beams' stress.
+"""Eight planar cells, two of them beveled, by CalculiX's C3D20R and by the closed forms: compliance 6 x 6,
+and the beams' stress.
 
-    python benchmarks/calculix_cells.py benchmarks/results/calculix_cells.md    10 minutes; needs ccx
+    python benchmarks/calculix_cells.py benchmarks/results/calculix_cells.md    20 minutes; needs ccx
 
 Meshes are of this file: all four beams whole, clamped at the frame, about a rigid island that is moved in
 each of its six freedoms. Stresses are those that CalculiX gives at its nodes.
@@ -18,7 +19,7 @@ from pathlib import Path
 
 import calculix
 import numpy as np
-from foil_elements import KEEP
+from foil_elements import KEEP, half_width
 from numpy.typing import NDArray
 from tables import lines, write_tables
 
@@ -37,25 +38,27 @@ FILLET = 3  # columns from a fillet's start to KEEP radii off the clamped edge
 NEAREST = 0.02  # fillet radii: the last column
 LEVER = 1.0  # of the beam's length: height of the pad over the foil
 DIRECTIONS = 500  # of forces on the pad
-# t, w/s, s/t, r/w, nu, and the island's side over s; a pinwheel's beams leave 0.3 s from its corner and pass
-# it at 0.1 s
+# t, w/s, s/t, r/w, nu, the island's side over s, and c/t; a pinwheel's beams leave 0.3 s from its corner and
+# pass it at 0.1 s
 SIZES = (
-    ("straight", 0.03, 0.48, 78.0, 0.12, 0.3, 1.2),
-    ("pinwheel", 0.035, 0.11, 60.0, 0.95, 0.33, 0.6),
-    ("straight", 0.48, 0.12, 16.0, 0.5, 0.22, 0.8),
-    ("pinwheel", 0.5, 0.47, 15.5, 0.3, 0.38, 1.0),
-    ("pinwheel", 0.08, 0.25, 50.0, 0.11, 0.3, 0.6),
-    ("straight", 0.2, 0.36, 30.0, 0.97, 0.34, 1.3),
+    ("straight", 0.03, 0.48, 78.0, 0.12, 0.3, 1.2, 0.0),
+    ("pinwheel", 0.035, 0.11, 60.0, 0.95, 0.33, 0.6, 0.0),
+    ("straight", 0.48, 0.12, 16.0, 0.5, 0.22, 0.8, 0.0),
+    ("pinwheel", 0.5, 0.47, 15.5, 0.3, 0.38, 1.0, 0.0),
+    ("pinwheel", 0.08, 0.25, 50.0, 0.11, 0.3, 0.6, 0.0),
+    ("straight", 0.2, 0.36, 30.0, 0.97, 0.34, 1.3, 0.0),
+    ("pinwheel", 0.06, 0.12, 20.0, 0.6, 0.3, 0.7, 0.2),
+    ("straight", 0.1, 0.4, 25.0, 0.4, 0.34, 1.3, 0.1),
 )
 
 
 def cell_of(
-    form: str, t: float, wide: float, slender: float, round_: float, nu: float, island: float
+    form: str, t: float, wide: float, slender: float, round_: float, nu: float, island: float, c: float
 ) -> Cell:
     """Of unit modulus, mm."""
     s = slender * t
     w, a = wide * s, island * s
-    beam = FoilBeam(s, w, t, round_ * w, 1.0, nu)
+    beam = FoilBeam(s, w, t, round_ * w, 1.0, nu, c * t)
     return Cell(beam, roots(form, a, 0.3 * s - a / 2.0, a / 2.0 + 0.1 * s + w / 2.0))
 
 
@@ -74,7 +77,9 @@ def lines_of(beam: FoilBeam, density: int) -> tuple[Array, Array, Array]:
     along = np.concatenate([straight, fillet, last[1:], [half]])
     rows = outward(0.0, min(r / 3.0, w / 8.0, beam.thickness), w / 2.0) / (w / 2.0)
     across = np.concatenate([1.0 - rows[::-1], [1.0]])
-    through = np.array([-0.5, 0.5]) * beam.thickness
+    # a bevel starts at a plane of nodes, and twist stresses a narrow beam most in its side's middle
+    two = beam.bevel > 0.0 or beam.width < 4.0 * beam.thickness
+    through = np.linspace(-0.5, 0.5, 2 + two) * beam.thickness
     return tuple(
         np.interp(np.arange(density * (len(v) - 1) + 1) / density, np.arange(len(v)), v)
         for v in (along, across, through)
@@ -82,18 +87,14 @@ def lines_of(beam: FoilBeam, density: int) -> tuple[Array, Array, Array]:
 
 
 def beam_bricks(beam: FoilBeam, density: int) -> tuple[Array, Index]:
-    """Nodes (n, 3) of a beam along x about its middle, and 20-node bricks in CalculiX's order; a bevelled
-    beam's density is even."""
+    """Nodes (n, 3) of a beam along x about its middle, and 20-node bricks in CalculiX's order."""
     x, across, through = lines_of(beam, 2 * density)  # nodes in the middle of edges too
     x, across = (np.concatenate([-v[:0:-1], v]) for v in (x, across))
-    into = np.maximum(np.abs(x) - (beam.length / 2.0 - beam.fillet), 0.0)
-    edge = beam.width / 2.0 + beam.fillet - np.sqrt(np.maximum(beam.fillet**2 - into**2, 0.0))
     shape = len(x), len(across), len(through)
     grid = np.stack(
         [
             np.broadcast_to(x[:, None, None], shape),
-            (edge[:, None] - 2.0 * beam.bevel * np.abs(through) / beam.thickness)[:, None, :]
-            * across[:, None],
+            _edge(beam, x[:, None], through)[:, None, :] * across[:, None],
             np.broadcast_to(through, shape),
         ],
         axis=-1,
@@ -102,10 +103,15 @@ def beam_bricks(beam: FoilBeam, density: int) -> tuple[Array, Index]:
     return grid[used], cells
 
 
+def _edge(beam: FoilBeam, x: Array, z: Array) -> Array:
+    """Half the width there, mm."""
+    return half_width(beam, np.abs(x)) - 2.0 * beam.bevel * np.abs(z) / beam.thickness
+
+
 @dataclass(frozen=True)
 class Solved:
     """A cell by CalculiX: stiffness 6 x 6, and stresses (xx, yy, zz, xy, yz, zx) by the island's six
-    freedoms, (6, beam, node, 6), at nodes of the foil's faces KEEP fillet radii or more off clamped edges."""
+    freedoms, (6, beam, node, 6), on the foil's surface KEEP fillet radii or more off clamped edges."""
 
     stiffness: Array
     stress: Array
@@ -149,8 +155,10 @@ def by_calculix(cell: Cell, density: int) -> Solved:
         forces = np.array(list(_reactions(path.with_suffix(".dat"))))
         stress = np.array(list(_stresses(path.with_suffix(".frd"), len(every))))
     K = np.einsum("nci,fnc->if", moves, forces.reshape(6, len(island), 3))
-    face = np.abs(np.abs(one[:, 2]) - b.thickness / 2.0) < 1e-9 * b.thickness
-    kept = np.flatnonzero(face & (np.abs(one[:, 0]) <= b.length / 2.0 - KEEP * b.fillet + 1e-9 * b.length))
+    x, y, z = np.abs(one.T)
+    near = 1e-9 * b.length
+    surface = (z > b.thickness / 2.0 - near) | (y > _edge(b, x, z) - near)
+    kept = np.flatnonzero(surface & (x <= b.length / 2.0 - KEEP * b.fillet + near))
     return Solved(K, stress.reshape(6, -1, count, 6)[:, :, kept], every.size)
 
 
@@ -218,8 +226,9 @@ QUANTITIES = (*COMPLIANCES, *(f"stress {mode}" for mode in MODES))
 def by_closed_form(cell: Cell) -> list[tuple[float, float]]:
     """The QUANTITIES, each with its stated relative error."""
     C, stress = np.diag(cell.compliance), closed.stress(cell.beam)
-    found = [(float(C[i]), stiffness_error()) for i in COMPLIANCES.values()]
-    return found + [(stress[m], stress_error()) for m in MODES]
+    bevel = cell.beam.bevel
+    found = [(float(C[i]), stiffness_error(bevel)) for i in COMPLIANCES.values()]
+    return found + [(stress[m], stress_error(bevel)) for m in MODES]
 
 
 @dataclass(frozen=True)
@@ -281,7 +290,7 @@ def made() -> dict[str, str]:
         over = (f"{100.0 * v:.3g} %" for v in (whole.down, whole.sideways, whole.least, whole.most))
         wholes.append([*named, f"{whole.cross:.1g}", *over])
         print(*wholes[-1], sep=" | ", file=sys.stderr, flush=True)
-    heads = "form | t, w/s, s/t, r/w, nu, island/s"
+    heads = "form | t, w/s, s/t, r/w, nu, island/s, c/t"
     return {
         TABLE: lines(f"{heads} | quantity | CalculiX | its error | closed form differs | stated", rows),
         SUMS: lines(f"{heads} | largest cross term | down | sideways | least | most", wholes),

@@ -1,7 +1,7 @@
 """A foil beam with filleted roots between a rigid island and a clamped frame, by solid elements.
 
 The beam is symmetric in all three planes through its middle, so its ends' six relative motions do not mix,
-and each is solved on an eighth of the beam: Lagrange elements of order 4 in the foil's plane and quadratic
+and each is solved on an eighth of the beam: Lagrange elements of order 4 in the foil's plane and cubic
 through half its thickness (tactcad.fem.space). The root's fillet is tangent to the rigid edge.
 """
 
@@ -28,7 +28,6 @@ WIDER = 1.7  # from a column of elements to the next one away from the root
 BANDS = {"inside": (-0.01, 0.5), "beside": (0.5, 0.97), "edge": (0.97, 1.01)}  # shares of the half width
 # of the foil's face by shares of the half width, and of the beam's side
 SITES = (*(f"{place} {band}" for place in ("root", "span") for band in BANDS), "root side", "span side")
-FACES = 6  # of them on the face
 
 # Components (x along, y across, z through the foil) that vanish on the planes x = 0, y = 0 and z = 0, and the
 # motion of the end x = s/2 under a relative motion 1 of the two ends.
@@ -56,43 +55,9 @@ def _end_motion(mode: str, y: Array, z: Array) -> Array:
     )
 
 
-def quarter_mesh(beam: FoilBeam, density: int = 1) -> PlaneSpace:
-    """The quarter 0 <= x <= s/2, y >= 0 of the beam's plane, rows graded towards its edge, columns towards
-    root and fillet, mm."""
-    half, w, r = beam.length / 2.0, beam.width / 2.0, beam.fillet
-    straight, rows = half - r, 2 * density
-    columns = max(2, round(2.5 * straight / beam.width)) * density
-    turns = 3 * density
-    cells = []
-    across = 1.0 - (1.0 - np.linspace(0.0, 1.0, ORDER * rows + 1)) ** 1.5
-    along = np.linspace(0.0, 1.0, ORDER * columns + 1)
-    along = 1.0 - (1.0 - along) ** 1.3
-    x = np.broadcast_to((straight * along)[:, None], (len(along), len(across)))
-    cells.append(np.stack([x, np.broadcast_to(w * across, x.shape)], axis=-1))
-    angle = np.linspace(0.0, pi / 2.0, ORDER * turns + 1)[:, None]
-    blend = across**2  # the middle's columns are even, the edge's follow the arc
-    x = straight + r * ((1.0 - blend) * angle / (pi / 2.0) + blend * np.sin(angle))
-    edge = w + r * (1.0 - np.cos(angle))
-    cells.append(np.stack([x, across * edge], axis=-1))
-    return _meshed(cells)
-
-
-def _meshed(blocks: list[Array]) -> PlaneSpace:
-    every = np.concatenate([_split(grid) for grid in blocks])
-    points, index = merged(every.reshape(len(every), -1, 2))
-    return PlaneSpace(np.ascontiguousarray(points.T), index.reshape(len(every), ORDER + 1, ORDER + 1))
-
-
-def _split(grid: Array) -> Array:
-    """Elements of a block of nodes, each with its (ORDER + 1)^2 own."""
-    nx, ny = ((n - 1) // ORDER for n in grid.shape[:2])
-    step = np.arange(ORDER + 1)
-    return np.array([grid[np.ix_(ORDER * i + step, ORDER * j + step)] for i in range(nx) for j in range(ny)])
-
-
-def stress_mesh(beam: FoilBeam, density: int = 2) -> PlaneSpace:
-    """The same quarter for stresses: columns that widen away from the root, and a line of nodes KEEP fillet
-    radii off the clamped edge."""
+def quarter_mesh(beam: FoilBeam, density: int = 2) -> PlaneSpace:
+    """The quarter 0 <= x <= s/2, y >= 0 of the beam's plane, mm: rows graded towards its edge, columns that
+    widen away from the root, and a line of nodes KEEP fillet radii off the clamped edge."""
     half, w, r = beam.length / 2.0, beam.width / 2.0, beam.fillet
     straight, step, ends = half - r, min(beam.width / 2.0, (half - r) / 1.5) / density, [0.0]
     while ends[-1] < straight:
@@ -111,16 +76,37 @@ def stress_mesh(beam: FoilBeam, density: int = 2) -> PlaneSpace:
     return _meshed(cells)
 
 
+def _meshed(blocks: list[Array]) -> PlaneSpace:
+    every = np.concatenate([_split(grid) for grid in blocks])
+    points, index = merged(every.reshape(len(every), -1, 2))
+    return PlaneSpace(np.ascontiguousarray(points.T), index.reshape(len(every), ORDER + 1, ORDER + 1))
+
+
+def _split(grid: Array) -> Array:
+    """Elements of a block of nodes, each with its (ORDER + 1)^2 own."""
+    nx, ny = ((n - 1) // ORDER for n in grid.shape[:2])
+    step = np.arange(ORDER + 1)
+    return np.array([grid[np.ix_(ORDER * i + step, ORDER * j + step)] for i in range(nx) for j in range(ny)])
+
+
 def _nodes(ends: Array) -> Array:
     """Nodes of elements with these ends."""
     return np.interp(np.arange(ORDER * (len(ends) - 1) + 1) / ORDER, np.arange(len(ends)), ends)
 
 
-def solved(beam: FoilBeam, density: int = 1, modes: Sequence[str] = MODES) -> dict[str, float]:
+def solid(beam: FoilBeam, density: int, through: tuple[int, int] = (1, 3)) -> Solid:
+    """With so many elements `through` half the thickness, of that order: a quadratic one leaves narrow beams'
+    twist 1 % too stiff."""
+    count, order = through
+    across = AcrossSpace(np.linspace(0.0, beam.thickness / 2.0, count * order + 1), order)
+    return Solid(beam, quarter_mesh(beam, density), across)
+
+
+def solved(
+    beam: FoilBeam, density: int = 2, modes: Sequence[str] = MODES, through: tuple[int, int] = (1, 3)
+) -> dict[str, float]:
     """Stiffness of these modes, N/mm; N mm a radian for bending and twist."""
-    space = quarter_mesh(beam, density)
-    across = AcrossSpace(np.linspace(0.0, beam.thickness / 2.0, 3), 2)
-    return {mode: k for mode, k, _ in _modes(beam, Solid(beam, space, across), modes)}
+    return {mode: k for mode, k, _ in _modes(beam, solid(beam, density, through), modes)}
 
 
 def stresses(
@@ -128,16 +114,15 @@ def stresses(
 ) -> tuple[dict[str, float], dict[str, Array]]:
     """Stiffness of these modes, and the largest von Mises stress of the foil's surface by SITES per unit of
     its relative motion, MPa/mm or MPa/rad."""
-    space = stress_mesh(beam, density)
-    solid = Solid(beam, space, AcrossSpace(np.linspace(0.0, beam.thickness / 2.0, 4), 3))
-    x, y = space.nodes
+    eighth = solid(beam, density)
+    x, y = eighth.plane
     half, r = beam.length / 2.0, beam.fillet
     share = y / half_width(beam, x)
     near = 1e-9 * beam.length
     places = {"root": (x >= half - r - near) & (x <= half - KEEP * r + near), "span": x <= half - r + near}
     stiffness, found = {}, {}
-    for mode, k, u in _modes(beam, solid, modes):
-        every = solid.von_mises(u)
+    for mode, k, u in _modes(beam, eighth, modes):
+        every = eighth.von_mises(u)
         stiffness[mode] = k
         face = [
             every[on & (share > low) & (share <= high), -1]
@@ -159,11 +144,13 @@ def half_width(beam: FoilBeam, x: Array) -> Array:
 class Solid:
     """The eighth: a mesh of the plane and of half the thickness, narrower towards the face by the bevel.
 
+    plane    nodes' x and y at half the thickness, mm
     points   of every node, mm, [node of the plane, place through the foil, component]
     """
 
     def __init__(self, beam: FoilBeam, space: PlaneSpace, across: AcrossSpace) -> None:
-        (x, y), z = space.nodes, across.nodes
+        self.plane, z = space.nodes, across.nodes
+        x, y = self.plane
         narrower = 1.0 - np.outer(1.0 / half_width(beam, x), 2.0 * beam.bevel * z / beam.thickness)
         shape = len(x), len(z)
         self.points = np.stack(

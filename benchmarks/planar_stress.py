@@ -1,30 +1,31 @@
 """Solves planar cells' beams by solid elements for their stresses, which estimates interpolate, and measures
 the interpolation on beams that it has not seen.
 
-    python benchmarks/planar_stress.py src/tactcad/families/planar/data    fifteen minutes
+    python benchmarks/planar_stress.py src/tactcad/families/planar/data    half an hour
     python benchmarks/planar_stress.py DIR --few                           a tenth of it, to try
 
-Range and places as for `planar_beams`, but r/w by its logarithm. Then a climb from the worst design of every
-mode pushes its error further.
+Range and places as for `planar_beams`, but r/w by its logarithm. Then climbs from the worst designs of every
+mode push its error further.
 """
 
 from __future__ import annotations
 
 import json
 import sys
+from collections.abc import Callable, Sequence
+from math import expm1, log
 from pathlib import Path
 
 import numpy as np
-from foil_elements import FACES, SITES, stresses
+from foil_elements import SITES, stresses
 from numpy.typing import NDArray
-from planar_beams import HIGH, LOW, WIDEST_FILLET, places
+from planar_beams import CLIMB, HIGH, LOW, STARTS, WIDEST_FILLET, corners, places, pushed
 
 from tactcad.families.planar import beam as closed
 from tactcad.families.planar.beam import MODES, STRESSED, FoilBeam
 
 Array = NDArray[np.float64]
 COLUMNS = [(mode, site) for mode in MODES for site in STRESSED[mode]]
-CLIMB = 12
 
 
 def beam_at(unit: Array) -> FoilBeam:
@@ -34,78 +35,62 @@ def beam_at(unit: Array) -> FoilBeam:
     return FoilBeam(1.0, float(w), float(1.0 / slender), float(min(r, WIDEST_FILLET)), 1.0, float(nu))
 
 
-def measured(unit: Array) -> Array:
-    """Logarithms of stresses over beam theory's, (6 modes, 6 sites of the face)."""
-    beam = beam_at(unit)
-    stiffness, found = stresses(beam)
+def ratios(beam: FoilBeam, modes: Sequence[str] = MODES) -> tuple[dict[str, float], dict[str, Array]]:
+    """Logarithms of what solid elements say over beam theory: of the modes' stiffness, and of their stress by
+    SITES, over beam theory's at that stiffness."""
+    stiffness, found = stresses(beam, modes=modes)
     base, nominal = closed.base(beam), closed.nominal_stress(beam)
-    return np.log([found[m][:FACES] / nominal[m] / stiffness[m] * base[m] for m in MODES])
+    k = {m: log(v / base[m]) for m, v in stiffness.items()}
+    return k, {m: np.log(v / nominal[m]) - k[m] for m, v in found.items()}
 
 
-def kept(values: Array) -> Array:
-    """Columns of the table, of designs' values."""
-    return np.stack([values[:, MODES.index(m), SITES.index(site)] for m, site in COLUMNS], axis=1)
+def kept(by_mode: dict[str, Array]) -> list[float]:
+    """Columns of the table."""
+    return [float(by_mode[mode][SITES.index(site)]) for mode, site in COLUMNS]
 
 
-def errors(units: Array, values: Array, points: Array, c: Array) -> Array:
-    """Of each mode's largest stress on the whole face, relative, (designs, modes)."""
-    at = np.array([closed.place(beam_at(u)) for u in units])
-    told = closed.spline(at, points) @ c
-    by_mode = [told[:, [i for i, (m, _) in enumerate(COLUMNS) if m == mode]].max(axis=1) for mode in MODES]
-    return np.expm1(np.stack(by_mode, axis=1) - values.max(axis=2))
+def errors(unit: Array, points: Array, c: Array, modes: Sequence[str] = MODES) -> list[float]:
+    """Of each mode's largest stress on the whole surface, relative."""
+    beam = beam_at(unit)
+    told = (closed.spline(closed.place(beam)[None], points) @ c)[0]
+    found = ratios(beam, modes)[1]
+    most = {m: max(v for v, (mode, _) in zip(told, COLUMNS) if mode == m) for m in modes}
+    return [abs(expm1(most[m] - found[m].max())) for m in modes]
 
 
-def climbed(unit: Array, mode: int, points: Array, c: Array, rng: np.random.Generator) -> float:
-    """Largest error found by small steps from there."""
-
-    def error(at: Array) -> float:
-        return float(abs(errors(at[None], measured(at)[None], points, c)[0, mode]))
-
-    best, size = error(unit), 0.15
-    for _ in range(CLIMB):
-        near = np.clip(unit + size * rng.normal(size=4), 0.0, 1.0)
-        found = error(near)
-        unit, best, size = (near, found, size) if found > best else (unit, best, 0.9 * size)
-    return best
-
-
-def written(folder: Path, train: Array, values: Array, held: Array, told: Array, climb: bool) -> None:
-    """The table of the solved beams, and the errors."""
-    beams = [beam_at(u) for u in train]
-    rows = np.array([[b.width, 1.0 / b.thickness, b.fillet / b.width, b.poisson] for b in beams])
-    _, first = np.unique(np.round(rows, 6), axis=0, return_index=True)
-    first.sort()
-    lines = [",".join(["w/s", "s/t", "r/w", "nu", *(" ".join(c) for c in COLUMNS)])]
-    lines += [
-        ",".join([f"{v:.6g}" for v in row] + [f"{v:.5f}" for v in of])
-        for row, of in zip(rows[first], kept(values)[first])
-    ]
-    (folder / "beam-stress.csv").write_text("\n".join(lines) + "\n", "utf-8")
-    points = np.array([closed.place(beams[i]) for i in first])
-    c = closed.interpolated(points, np.round(kept(values)[first], 5))
-    rest, rng, report = np.abs(errors(held, told, points, c)), np.random.default_rng(46), {}
-    for i, mode in enumerate(MODES):
-        worst = int(rest[:, i].argmax())
-        most = climbed(held[worst], i, points, c, rng) if climb else float(rest[worst, i])
-        report[mode] = {
-            "rms": round(float(np.sqrt((rest[:, i] ** 2).mean())), 5),
-            "held_out": round(float(rest[:, i].max()), 5),
-            "climbed": round(most, 5),
-        }
-        print(mode, report[mode], flush=True)
-    data = {
-        "source": "python benchmarks/planar_stress.py, solid elements of order 4, density 2",
-        "designs": {"solved": len(first), "held_out": len(held), "climb_steps": CLIMB},
-        "errors": report,
-    }
-    (folder / "beam-stress.json").write_text(json.dumps(data, indent=1) + "\n", "utf-8")
+def table(path: Path, names: Sequence[str], units: Array, row: Callable[[FoilBeam], list[float]]) -> Array:
+    """Writes a row for each beam, once if places name it twice; numbers as they are read back."""
+    beams = [beam_at(u) for u in units]
+    keys = np.array([[b.width, 1.0 / b.thickness, b.fillet / b.width, b.poisson] for b in beams])
+    first = np.sort(np.unique(np.round(keys, 6), axis=0, return_index=True)[1])
+    lines = [",".join(["w/s", "s/t", "r/w", "nu", *names])]
+    for i in first:
+        lines.append(",".join([f"{v:.6g}" for v in keys[i]] + [f"{v:.5f}" for v in row(beams[i])]))
+    path.write_text("\n".join(lines) + "\n", "utf-8")
+    return np.array([[float(v) for v in line.split(",")] for line in lines[1:]])
 
 
 def main(folder: Path, few: bool) -> None:
     share = 10 if few else 1
-    train, held = places(400 // share, 44), places(80 // share, 45)
-    values, told = (np.array([measured(u) for u in units]) for units in (train, held))
-    written(folder, train, values, held, told, climb=not few)
+    train, held = np.concatenate([places(400 // share, 44), corners()]), places(80 // share, 45)
+    names = [" ".join(column) for column in COLUMNS]
+    data = table(folder / "beam-stress.csv", names, train, lambda beam: kept(ratios(beam)[1]))
+    points = np.array(
+        [closed.place(FoilBeam(1.0, w, 1.0 / s, r * w, 1.0, nu)) for w, s, r, nu in data[:, :4]]
+    )
+    c = closed.interpolated(points, data[:, 4:])
+
+    def error(unit: Array, i: int) -> float:
+        return errors(unit, points, c, MODES[i : i + 1])[0]
+
+    report = {
+        "source": "python benchmarks/planar_stress.py, solid elements of order 4, density 2",
+        "designs": {"solved": len(data), "held_out": len(held), "climb_steps": CLIMB, "climbs": STARTS},
+        "errors": pushed(
+            held, np.array([errors(u, points, c) for u in held]), len(held), None if few else error, 46
+        ),
+    }
+    (folder / "beam-stress.json").write_text(json.dumps(report, indent=1) + "\n", "utf-8")
 
 
 if __name__ == "__main__":

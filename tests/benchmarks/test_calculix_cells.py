@@ -52,9 +52,10 @@ def whole(cell):
 
 def test_the_cells_are_in_range_and_of_both_forms():
     beams = [cell.beam for cell in CELLS]
-    assert len(CELLS) == 6 and not any(map(beam.out_of_range, beams))
+    assert len(CELLS) == 8 and not any(map(beam.out_of_range, beams))
     assert {sizes[0] for sizes in calculix_cells.SIZES} == {"straight", "pinwheel"}
     assert min(b.thickness for b in beams) == 0.03 and max(b.thickness for b in beams) == 0.5
+    assert {round(b.bevel / b.thickness, 9) for b in beams} == {0.0, 0.1, 0.2}
 
 
 @pytest.mark.parametrize("cell", range(len(CELLS)))

@@ -53,7 +53,7 @@ class Loads:
 def across(layout: PlanarLayout, kind: Kind) -> float:
     """Largest load across a pad alone, N: yield over its factor, or STOP_SHARE of what closes a stop."""
     d, h, reach = layout.design, layout.pad_height, kind.reach
-    stress = kind.cell.stress(wrench(np.array([1.0, 0.0, 0.0]), h)) * (1.0 + stress_error())
+    stress = kind.cell.stress(wrench(np.array([1.0, 0.0, 0.0]), h)) * (1.0 + stress_error(kind.bevel))
     cover = d.housing.cover_thickness + layout.cover_z - d.planar.thickness / 2.0
     tip = min(kind.table.stop_gap / reach, d.housing.lift / reach, d.housing.side_gap / cover)
     stop = tip / float(kind.cell.compliance[4, 4]) / h

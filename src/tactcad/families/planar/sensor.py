@@ -119,7 +119,7 @@ def reading_noise(chip: Chip) -> Array:
 
 def rated_stress(layout: PlanarLayout, kind: Kind) -> float:
     """Stress of 1 N down with the rated shear, its own error added, MPa."""
-    return kind.cell.stress(_sheared(layout)) * (1.0 + stress_error())
+    return kind.cell.stress(_sheared(layout)) * (1.0 + stress_error(kind.bevel))
 
 
 def _sheared(layout: PlanarLayout) -> Array:
@@ -127,19 +127,19 @@ def _sheared(layout: PlanarLayout) -> Array:
     return wrench(np.array([layout.design.rating.shear, 0.0, -1.0]), layout.pad_height)
 
 
-def stress_error() -> float:
-    """Stated error of the beams' stress: the largest that a climb found, of any mode."""
-    return max(e["climbed"] for e in beam.stress_errors().values())
+def stress_error(bevel: float) -> float:
+    """Stated error of the beams' stress: the largest that a climb found, of any mode; of beveled beams at
+    least that of plain ones."""
+    return _largest(beam.stress_errors(), beam.bevel_errors()["stress"] if bevel else {})
 
 
-# Of K: by climbs on elements that are refined through the foil too; those of the fits were coarse there.
-FINER = 0.007
+def stiffness_error(bevel: float) -> float:
+    """Stated error of the beams' stiffness, likewise."""
+    return _largest(beam.fit()["errors"], beam.bevel_errors()["stiffness"] if bevel else {})
 
 
-def stiffness_error(bevel: float = 0.0) -> float:
-    """Stated error of the beams' stiffness, likewise; of beveled beams at least that of plain ones."""
-    beveled = beam.bevel_errors().values() if bevel else ()
-    return max(FINER, *(e["climbed"] for e in (*beam.fit()["errors"].values(), *beveled)))
+def _largest(*reports: dict[str, dict[str, float]]) -> float:
+    return max(mode["climbed"] for report in reports for mode in report.values())
 
 
 def rated_force(layout: PlanarLayout, kind: Kind) -> tuple[float, float]:
@@ -266,10 +266,10 @@ def run(args: argparse.Namespace, asked: Allowance, design: PlanarDesign) -> int
         for name, heading, unit, scale in HEADINGS
     ]
     print(*aligned([*zip(*columns)]), sep="\n")
+    own = stress_error(layout.process.bevel)
     print(
         f"K against solid elements: within {100 * found[0].expected_error:.2g} %; stress includes its own "
-        f"error of {100 * stress_error():.2g} % and the rated shear; noise is of one reading of "
-        f"{layout.chip.name}"
+        f"error of {100 * own:.2g} % and the rated shear; noise is of one reading of {layout.chip.name}"
     )
     unread = "unread" in layout.chip.source
     print(
@@ -327,4 +327,4 @@ def stop_stress(layout: PlanarLayout, kind: Kind, gap: Any) -> Any:
     force = gap / cell.compliance[2, 2] * (1.0 + cell.stiffening * gap**2)
     stretch = layout.design.material.youngs_modulus * 0.6 * (gap / kind.beam_length) ** 2 * cell.held
     bent = cell.stress(down) * gap + cell.stress(tip) * force
-    return bent * (1.0 + stress_error()) + stretch
+    return bent * (1.0 + stress_error(kind.bevel)) + stretch
