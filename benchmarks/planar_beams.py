@@ -121,7 +121,13 @@ def main(folder: Path, few: bool) -> None:
 
     data = {
         "source": "python benchmarks/planar_beams.py, solid elements of order 4, density 2",
-        "range": {"w/s": [0.1, 0.5], "s/t": [15, 80], "r/w": [0.1, 1.0], "nu": [0.2, 0.4]},
+        "range": {
+            "w/s": [0.1, 0.5],
+            "s/t": [15, 80],
+            "r/w": [0.1, 1.0],
+            "r/s": [0, WIDEST_FILLET],
+            "nu": [0.2, 0.4],
+        },
         "designs": {"fitted": len(train), "held_out": len(held), "climb_steps": CLIMB, "climbs": STARTS},
         "errors": pushed(units, errors(units, values, c), len(held), None if few else error, 36),
         "stiffness": {m: [float(f"{v:.8g}") for v in c[:, i]] for i, m in enumerate(MODES)},

@@ -330,6 +330,14 @@ def test_another_tactcad_never_stands_in_for_the_revision_s(work, capsys):
     assert "is loaded instead" in capsys.readouterr().err and not Path(os.environ["RAN"]).exists()
 
 
+def test_a_design_that_breaks_a_rule_of_today_is_named(work, capsys):
+    """And how to compare it."""
+    work.commit(SHIPPED.replace("hinge_thickness = 0.25", "hinge_thickness = 3.0"))
+    assert main(["diff", "HEAD~1", "HEAD", "small"]) == 2
+    said = capsys.readouterr().err
+    assert said.startswith(f"tactcad: HEAD:{DESIGN}: element.") and said.rstrip().endswith("--their-code")
+
+
 def test_a_design_that_the_present_code_refuses_has_no_causes(work, capsys):
     """Its own code may have taken it; what the records tell is compared."""
     with_code(work, 1.0)

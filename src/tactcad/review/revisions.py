@@ -139,7 +139,10 @@ class _Revision:
             raise InputError(self.source, "is not UTF-8 text", legal="a design file (TOML)") from None
         if their_code is None or self._file(CODE, MOST_BYTES) is None:
             told = f"the code of {self.name}: its design is by the present code"
-            return design_side(self.source, "revision", table, (told,))
+            try:
+                return design_side(self.source, "revision", table, (told,))
+            except InputError as error:  # rules of today refuse designs of then
+                raise InputError(self.source, f"{error}; by its own rules: --their-code") from None
         their_code(f"runs {CODE} of {self.name} ({self.commit[:12]}) of {str(self.repository.root)!r} as you")
         folder = self.repository.checked_out(self.commit)
         try:

@@ -211,7 +211,12 @@ def test_the_fit_s_report_keeps_what_is_promised():
 
 @pytest.mark.parametrize(
     ("change", "said"),
-    [({"width": 2.2}, "w/s = 0.55"), ({"thickness": 0.3}, "s/t = 13.3"), ({"poisson": 0.45}, "nu = 0.45")],
+    [
+        ({"width": 2.2}, "w/s = 0.55"),
+        ({"thickness": 0.3}, "s/t = 13.3"),
+        ({"poisson": 0.45}, "nu = 0.45"),
+        ({"width": 2.0, "fillet": 1.9}, "r/s = 0.475; legal: r/s from 0 to 0.45"),
+    ],
 )
 def test_out_of_range_is_said(change, said):
     assert beam.out_of_range(SOFT) == ""

@@ -104,7 +104,7 @@ def test_no_design_drawn_by_chance_near_it_is_better(file):
     best = cell_targets.search(t).best
     assert best
     rng, tried = np.random.default_rng(2), 0
-    for _ in range(40):
+    for _ in range(200):
         values = {name: round(v * rng.uniform(0.97, 1.06), 3) for name, v in asdict(best.choice).items()}
         values |= {"foil": best.choice.foil, "pitch": min(max(values["pitch"], 3.6), 4.0)}
         found = evaluated(t, CellChoice(**values))

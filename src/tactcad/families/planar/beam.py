@@ -166,12 +166,12 @@ def stress_errors() -> dict[str, dict[str, float]]:
 
 def out_of_range(beam: FoilBeam) -> str:
     """Dimensions of the beam outside the fit's range, with the legal range; empty if none is."""
-    w, s = beam.width, beam.length
-    shape = {"w/s": w / s, "s/t": s / beam.thickness, "r/w": beam.fillet / w, "nu": beam.poisson}
+    w, s, r = beam.width, beam.length, beam.fillet
+    shape = {"w/s": w / s, "s/t": s / beam.thickness, "r/w": r / w, "r/s": r / s, "nu": beam.poisson}
     for name, value in (shape | {"c/t": beam.bevel / beam.thickness}).items():
         low, high = (fit()["range"] | {"c/t": (0.0, BEVEL)})[name]
         if not low * (1 - 1e-9) <= value <= high * (1 + 1e-9):
-            return f"{name} = {value:.3g}; legal: from {low:g} to {high:g}"
+            return f"{name} = {value:.3g}; legal: {name} from {low:g} to {high:g}"
     return ""
 
 
@@ -238,7 +238,7 @@ def stress(beam: FoilBeam) -> dict[str, float]:
     to 0.3 fillet radii off the clamped edge.
 
     Beam theory times what solid elements find over it, interpolated by the place where it is largest, and in
-    proportion to the bevel.
+    proportion to the bevel: 4 % too high where r = 0.15 t and c = 0.05 t (etching leaves r >= t).
     """
     k, plain = stiffness(beam), base(beam)
     over, more = told("beam-stress", beam), told("beam-bevel", beam)
