@@ -258,7 +258,7 @@ def run(args: argparse.Namespace, asked: Allowance, design: PlanarDesign) -> int
         return 0
     print(
         f"{design.name} {design.design.revision}, {design.material.alloy}, {len(found)} cells, "
-        f"{found[0].force:g} N on each pad, {stated_size(size)} overall"
+        f"{found[0].force:g} N on each pad as if no stop closed, {stated_size(size)} overall"
     )
     shown = list({row.kind: row for row in found}.values())
     columns = [
