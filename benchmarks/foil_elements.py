@@ -55,7 +55,7 @@ def _end_motion(mode: str, y: Array, z: Array) -> Array:
     )
 
 
-def quarter_mesh(beam: FoilBeam, density: int = 2) -> PlaneSpace:
+def quarter_mesh(beam: FoilBeam, density: int) -> PlaneSpace:
     """The quarter 0 <= x <= s/2, y >= 0 of the beam's plane, mm: rows graded towards its edge, columns that
     widen away from the root, and a line of nodes KEEP fillet radii off the clamped edge."""
     half, w, r = beam.length / 2.0, beam.width / 2.0, beam.fillet
@@ -110,12 +110,12 @@ def solved(
 
 
 def stresses(
-    beam: FoilBeam, density: int = 2, modes: Sequence[str] = MODES, layers: int | None = None
+    beam: FoilBeam, density: int = 2, modes: Sequence[str] = MODES
 ) -> tuple[dict[str, float], dict[str, Array]]:
     """Stiffness of these modes, and the largest von Mises stress of the foil's surface by SITES per unit of
     its relative motion, MPa/mm or MPa/rad."""
-    if layers is None:  # elements as high as the root is round: one leaves sharp roots' sides 3 % too low
-        layers = min(3, int(np.ceil(beam.thickness / beam.fillet / 2.0 - 1e-9)))
+    # elements as high as the root is round: one leaves sharp roots' sides 3 % too low
+    layers = min(3, int(np.ceil(beam.thickness / beam.fillet / 2.0 - 1e-9)))
     eighth = solid(beam, density, (layers, 3))
     x, y = eighth.plane
     half, r = beam.length / 2.0, beam.fillet
